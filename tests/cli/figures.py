@@ -3,7 +3,8 @@
 """Figures as other programs see them: parsed as XML, rasterised by librsvg and poppler, and held against the pictures
 of the z-buffer.
 
-    figures.py PROGRAM
+    figures.py PROGRAM          the figures that take little time
+    figures.py PROGRAM long     the others
 
 A pixel of a figure is a mixture of what lies around it. So every channel of it must lie between the least and the
 greatest of the z-buffer's picture within a pixel, twice as fine so as to find what is narrower than one, give or take
@@ -62,6 +63,7 @@ CASES = {
     "a teapot of glass": Case(["builtin:teapot", *FLAT, "--opacity", "0.4"], 0, 0.006, browser=0.006),
     "leaves": Case(["leaves.gltf", *FLAT]),
 }
+LONG = {"tiles", "light and shadow", "normals", "ids, neighbours merged", "tiles, neighbours merged", "a teapot of glass"}
 LET_THROUGH = 5  # steps of 8 bits, 2 %: what viewers may show of the background within a plate
 LET_THROUGH_BETWEEN_COLOURS = 25  # 10 %: and within scenes of textures and shadows
 SVG = "{http://www.w3.org/2000/svg}"
@@ -160,15 +162,18 @@ def check_solid(program, name, folder, words, bound, most=0):
     return len(pictures["black"][1]) * 3, 6 - len(pictures["black"][1]) * 3
 
 
-def check_all_solid(program, folder):
+def check_plates(program, folder):
     counts = []
     for corners, view in ((12, []), (24, ["--camera-orthographic", "--camera-azimuth-angle", 20])):
         write_plate(folder / "plate.obj", 7, 5, corners)
         counts.append(check_solid(program, f"a plate with holes of {corners} corners", folder,
                                   [folder / "plate.obj", *view], LET_THROUGH))
-    for scene, most in (("gallery", 0.0002), ("city", 0)):
-        counts.append(check_solid(program, scene, folder, [f"builtin:{scene}"], LET_THROUGH_BETWEEN_COLOURS, most))
     return counts
+
+
+def check_scenes(program, folder):
+    return [check_solid(program, scene, folder, [f"builtin:{scene}"], LET_THROUGH_BETWEEN_COLOURS, most)
+            for scene, most in (("gallery", 0.0002), ("city", 0))]
 
 
 def check_xml(path):
@@ -286,12 +291,14 @@ def check_case(program, name, case, folder):
 
 
 def main():
-    program, counts = pathlib.Path(sys.argv[1]).resolve(), []
+    program, is_long, counts = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2:] == ["long"], []
+    assert LONG < CASES.keys()
+    chosen = {name: case for name, case in CASES.items() if (name in LONG) == is_long}
     with tempfile.TemporaryDirectory() as folder:
-        for name, case in CASES.items():
+        for name, case in chosen.items():
             counts += check_case(program, name, case, pathlib.Path(folder))
-        counts += check_all_solid(program, pathlib.Path(folder))
-    print(f"{len(CASES) + 4} figures, {sum(c[0] for c in counts)} rasterised, {sum(c[1] for c in counts)} skipped for want "
+        counts += (check_scenes if is_long else check_plates)(program, pathlib.Path(folder))
+    print(f"{len(chosen) + 2} figures, {sum(c[0] for c in counts)} rasterised, {sum(c[1] for c in counts)} skipped for want "
           "of a rasteriser")
 
 

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """frontmost render --mpi on 1, 2, 3 and 8 ranks of this machine: the bytes of one process, and how runs end that fail.
 
-    ranks.py PROGRAM
+    ranks.py PROGRAM          all but the bytes of 2 and 8 ranks
+    ranks.py PROGRAM long     these
 
 Without mpirun, or without the program's module for MPI, all but what is said then is skipped, and counted.
 """
@@ -105,12 +106,15 @@ def expect_same(scratch, count, mine, whole, *more):
         fail(f"{mine} on {count} ranks: not the answer of one process: {differing}, {made[0][1:]}, {made[1][1:]}")
 
 
-def try_bytes(scratch):
-    for count in (1, 2, 3, 8):
+def try_bytes(scratch, counts):
+    for count in counts:
         for suffix in ("ply", "stl"):
             parts = [f"../part-{part}.{suffix}" for part in range(count)]
             expect_same(scratch, count, [f"../part-{{rank}}.{suffix}"], parts)
             expect_same(scratch, count, [f"../one.{suffix}"], [f"../one.{suffix}"])
+
+
+def try_mixtures(scratch):
     # Some of one rank, some of all.
     mixed = ["../one.stl", "../part-{rank}.ply", "../part-0.stl"]
     expect_same(scratch, 3, mixed, ["../one.stl", *(f"../part-{part}.ply" for part in range(3)), "../part-0.stl"])
@@ -262,9 +266,12 @@ def main():
         make_models(scratch)
         try_without_module(scratch)
         if not shutil.which("mpirun") or not (PROGRAM.parent / "frontmost_mpi.so").exists():
-            print("6 skipped, as MPI is not installed: bytes, batch, recipe, failures, death, timeout")
+            print("7 skipped, as MPI is not installed: bytes, mixtures, batch, recipe, failures, death, timeout")
             sys.exit(77)
-        try_bytes(scratch)
+        if sys.argv[2:] == ["long"]:
+            return try_bytes(scratch, (2, 8))
+        try_bytes(scratch, (1, 3))
+        try_mixtures(scratch)
         try_batch(scratch)
         try_recipe(scratch)
         try_failures(scratch)

@@ -183,20 +183,17 @@ try {
   paths.push(...await contents.locator(".contents a").evaluateAll((links) => links.map((link) => link.getAttribute("href"))));
   await first.close();
   for (const path of paths) {
-    for (const lang of ["en", "zh"]) {
-      const { page, context } = await readyPage(path, lang);
+    // The English page in the light scheme, the Chinese one in the dark one.
+    for (const [lang, colorScheme] of [["en", "light"], ["zh", "dark"]]) {
+      const { page, context } = await readyPage(path, lang, { colorScheme });
+      const { faint, count } = await page.evaluate(faintTexts);
+      check(faint.length === 0, `${path}, ${lang}, ${colorScheme}: ${faint.join("; ")}`);
+      texts += count;
       await checkNames(page, context, lang, `${path}, ${lang}`);
       if (lang === "en") {
         await checkTabs(page, path);
         await checkKeys(page, path);
       }
-      await context.close();
-    }
-    for (const colorScheme of ["light", "dark"]) {
-      const { page, context } = await readyPage(path, "en", { colorScheme });
-      const { faint, count } = await page.evaluate(faintTexts);
-      check(faint.length === 0, `${path}, ${colorScheme}: ${faint.join("; ")}`);
-      texts += count;
       await context.close();
     }
   }
