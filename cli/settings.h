@@ -7,6 +7,7 @@
 #pragma once
 
 #include <frontmost/base.h>
+#include <frontmost/datasets.h>
 #include <frontmost/depth_buffer.h>
 #include <frontmost/image.h>
 #include <frontmost/io.h>
@@ -191,9 +192,6 @@ struct DrawingSettings {
   }
 };
 
-/// Which samples of an object BOP's files call visible: those that see it, or what is at most 15 mm behind.
-enum class BopVisible : std::uint8_t { exact, bop19 };
-
 /// What frontmost report counts, and where it goes.
 struct ReportSettings {
   double canvas = 3;                ///< as AccountingOptions::canvas
@@ -205,8 +203,9 @@ struct ReportSettings {
   std::optional<std::string> categories;  ///< a file that says which object has which
   std::optional<std::string> bop;         ///< a folder
   std::optional<BopVisible> bop_visible;
-  std::optional<std::string> why;    ///< the name or number of the objects of which alone something is said
-  std::optional<std::string> views;  ///< a batch file
+  std::vector<std::string> leave_out;  ///< names of objects or categories, of the three above
+  std::optional<std::string> why;      ///< the name or number of the objects of which alone something is said
+  std::optional<std::string> views;    ///< a batch file
 };
 
 /// What frontmost visible looks from, and where its lists go.

@@ -26,6 +26,7 @@ void bind_rays(py::module_& m);
 void bind_scans(py::module_& m);
 void bind_layers(py::module_& m);
 void bind_accounts(py::module_& m);
+void bind_datasets(py::module_& m);
 void bind_depth_buffer(py::module_& m);
 void bind_lines(py::module_& m);
 void bind_sheets(py::module_& m);

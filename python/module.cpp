@@ -19,6 +19,7 @@ PYBIND11_MODULE(_core, m) {
   bind_scans(m);
   bind_layers(m);
   bind_accounts(m);
+  bind_datasets(m);
   bind_depth_buffer(m);
   bind_lines(m);
   bind_sheets(m);

@@ -5,6 +5,8 @@
 //
 // The processes come before this one has threads, because a process with threads cannot be split safely; the answers
 // are compared afterwards, here.
+#include <frontmost/output_folder.h>
+
 #include <filesystem>
 #include <optional>
 
@@ -15,7 +17,6 @@
 #include "cli/inputs.h"
 #include "cli/option.h"
 #include "cli/outputs.h"
-#include "cli/staged_folder.h"
 #include "cli/view/view_options.h"
 
 namespace frontmost::cli {

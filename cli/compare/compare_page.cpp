@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <frontmost/base.h>
 #include <frontmost/io.h>
+#include <frontmost/output_folder.h>
 #include <frontmost/shade.h>
 
 #include <algorithm>
@@ -16,7 +17,6 @@
 #include "cli/console.h"
 #include "cli/failure.h"
 #include "cli/html.h"
-#include "cli/staged_folder.h"
 
 namespace frontmost::cli {
 namespace {

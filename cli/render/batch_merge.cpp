@@ -2,6 +2,7 @@
 // frontmost batch-merge: whether the shards of a batch make all of it, and all of it in one folder.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <frontmost/output_folder.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -12,7 +13,6 @@
 #include "cli/json.h"
 #include "cli/option.h"
 #include "cli/render/manifest.h"
-#include "cli/staged_folder.h"
 
 namespace frontmost::cli {
 namespace {

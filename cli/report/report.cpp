@@ -13,10 +13,9 @@
 #include "cli/inputs.h"
 #include "cli/option.h"
 #include "cli/outputs.h"
-#include "cli/report/report_files.h"
+#include "cli/report/report_datasets.h"
 #include "cli/report/report_page.h"
 #include "cli/report/report_run.h"
-#include "cli/staged_folder.h"
 #include "cli/view/view_options.h"
 
 namespace frontmost::cli {
@@ -51,11 +50,16 @@ constexpr Option report_options[] = {
      "missing.",
      Group::report, for_report, [](Settings& s, const Given& g) { s.report.masks = folder_name(g); }},
     {"bop", 0, "FOLDER",
-     "Write a scene of BOP with one image: poses, masks, depth; the folder is made where it is missing.", Group::report,
-     for_report, [](Settings& s, const Given& g) { s.report.bop = folder_name(g); }},
+     "Write a scene of BOP, an image for each view: poses, masks, depth; the folder is made where it is missing.",
+     Group::report, for_report, [](Settings& s, const Given& g) { s.report.bop = folder_name(g); }},
     {"bop-visible", 0, "exact|bop19",
      "What --bop calls visible: what is seen, by default, or what is at most 15 mm behind that, as bop_toolkit does.",
      Group::report, for_report, [](Settings& s, const Given& g) { s.report.bop_visible = g.choice<BopVisible>(); }},
+    {"leave-out", 0, "NAME",
+     "Leave objects of this name, or of the category of this name, out of --coco, --bop and --masks; they still hide "
+     "others. May be given several times.",
+     Group::report, for_report | may_repeat,
+     [](Settings& s, const Given& g) { s.report.leave_out.push_back(g.string()); }},
     {"all-hiders", 0, "", "Also count who hides how much behind others, and alone; in JSON.", Group::report, for_report,
      [](Settings& s, const Given&) { s.report.all_hiders = true; }},
     {"why", 0, "NAME", "Only say why the objects of this name, or the one of this number, are seen or not.",
@@ -75,27 +79,15 @@ void check(const Settings& settings, const std::vector<std::string>& outputs) {
   if (report.coco_polygons && !report.coco) throw UsageError("--coco-polygons needs --coco");
   if (report.bop_visible && !report.bop) throw UsageError("--bop-visible needs --bop");
   if (report.categories && !report.coco && !report.bop) throw UsageError("--categories needs --coco or --bop");
-  if (settings.report.bop && settings.view.orthographic)
+  if (!report.leave_out.empty() && !report.coco && !report.bop && !report.masks)
+    throw UsageError("--leave-out needs --coco, --bop or --masks");
+  if (settings.report.bop && settings.view.orthographic && !report.views)
     throw UsageError("--bop needs a perspective camera: BOP has no others");
   check_outputs(outputs, input_files(settings));
   if (report.page && *report.page != "-" && !report.page->ends_with(".html") && !report.page->ends_with(".htm"))
     throw UsageError(*report.page + ": the report is a page; use .html");
   if (settings.run.json && std::find(outputs.begin(), outputs.end(), "-") != outputs.end())
     throw UsageError("--json and an output to - both want standard output");
-}
-
-void write_files(ReportRun& run, const Execution& execution) {
-  const ReportSettings& to = run.settings.report;
-  if (to.page) write_report_page(run, *to.page, execution);
-  if (to.coco) {
-    const WritingFiles writing;
-    save_text(dump(coco_json(run, to.coco_polygons, execution)), *to.coco);
-  }
-  const auto add = [&](const std::vector<std::string>& files) {
-    run.files.insert(run.files.end(), files.begin(), files.end());
-  };
-  if (to.bop) add(write_bop_scene(run, *to.bop, execution));
-  if (to.masks) add(write_masks(run, *to.masks, execution));
 }
 
 }  // namespace
@@ -118,8 +110,13 @@ std::vector<std::uint32_t> objects_asked_for(const Settings& settings, const Sce
     if (std::to_string(i) == *wanted) return {i};
   std::vector<std::string_view> names;
   for (const Instance& instance : scene.instances) names.emplace_back(instance.name);
-  const std::string_view nearest = nearest_word(*wanted, names);
-  throw UsageError(fmt::format("--why: {} has no object {}{}", settings.model, printable_name(*wanted),
+  complain_of_name("--why", settings, "no object", *wanted, names);
+}
+
+void complain_of_name(std::string_view option, const Settings& settings, std::string_view what, std::string_view name,
+                      const std::vector<std::string_view>& known) {
+  const std::string_view nearest = nearest_word(name, known);
+  throw UsageError(fmt::format("{}: {} has {} {}{}", option, settings.model, what, printable_name(name),
                                nearest.empty() ? "" : fmt::format("; did you mean {}?", printable_name(nearest))));
 }
 
@@ -138,14 +135,11 @@ int run_report(const Settings& settings) {
   const std::vector<std::string> outputs = outputs_of(settings.report);
   check(settings, outputs);
   if (settings.report.views) {
-    if (!outputs.empty() || settings.report.bop || settings.report.masks)
-      throw UsageError("--views excludes --output, --coco, --bop and --masks: each of them holds one view");
-    report_views(settings);
+    if (settings.report.page) throw UsageError("--views excludes --output: a page holds one view");
+    report_views(settings, outputs);
     return exit_done;
   }
-  std::optional<MadeFolder> bop, masks;
-  if (settings.report.bop) bop.emplace(*settings.report.bop);
-  if (settings.report.masks) masks.emplace(*settings.report.masks);
+  DatasetFiles datasets(settings.report);
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
   const Scene scene = load_model(settings, execution, progress, outputs);
@@ -160,8 +154,14 @@ int run_report(const Settings& settings) {
       *surfaces, visible, {.canvas = settings.report.canvas, .all_hiders = settings.report.all_hiders}, execution);
   const std::vector<Explanation> why = explain_all(*surfaces, visible, accounts, execution);
   const ObjectNames names(surfaces->scene());
-  ReportRun run{settings, *surfaces, visible, accounts, why, names, outputs};
-  write_files(run, execution);
+  ReportRun run{settings, *surfaces, visible, accounts, why, names, {}};
+  if (const auto& page = settings.report.page) {
+    write_report_page(run, *page, execution);
+    run.files.push_back(*page);
+  }
+  datasets.begin(settings, scene);
+  datasets.add(run, std::nullopt, execution);
+  for (std::string& file : datasets.finish()) run.files.push_back(std::move(file));
   progress.clear();
   const bool stdout_is_taken = std::find(outputs.begin(), outputs.end(), "-") != outputs.end();
   if (!stdout_is_taken)

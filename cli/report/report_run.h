@@ -34,6 +34,9 @@ struct ReportRun {
 
 /// Of every object, or of those that --why names: by number. \throws UsageError where it names none.
 [[nodiscard]] std::vector<std::uint32_t> objects_asked_for(const Settings& settings, const Scene& scene);
+/// Says that a model has none of what an option names, and which name is near. \throws UsageError always.
+[[noreturn]] void complain_of_name(std::string_view option, const Settings& settings, std::string_view what,
+                                   std::string_view name, const std::vector<std::string_view>& known);
 /// Numbers of objects, those that show most first, then those of which most is in frame, then by number.
 [[nodiscard]] std::vector<std::uint32_t> objects_by_sight(const Accounting& accounts);
 
@@ -55,7 +58,7 @@ struct ReportRun {
 [[nodiscard]] Json view_report_json(const ReportRun& run);
 [[nodiscard]] Json report_json(const ReportRun& run);
 
-/// Prints the reports of all views of a file.
-void report_views(const Settings& settings);
+/// Prints the reports of all views of a file, and writes their data sets. `outputs` are files that must not be inputs.
+void report_views(const Settings& settings, const std::vector<std::string>& outputs);
 
 }  // namespace frontmost::cli

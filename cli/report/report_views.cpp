@@ -6,18 +6,22 @@
 #include <frontmost/version.h>
 #include <frontmost/zbuffer.h>
 
+#include <map>
+
 #include "cli/console.h"
 #include "cli/failure.h"
 #include "cli/inputs.h"
 #include "cli/render/jobs.h"
+#include "cli/report/report_datasets.h"
 #include "cli/report/report_run.h"
 #include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {
 
-void check_view_of_report(const ViewSettings& view) {
+void check_view_of_report(const ViewSettings& view, const ReportSettings& report) {
   check_view_settings(view);
+  if (report.bop && view.orthographic) throw UsageError("--bop needs a perspective camera: BOP has no others");
   if (view.camera_model != CameraModel::pinhole) throw UsageError("objects are counted by pinhole cameras alone");
   if (view.depth.is_used) throw UsageError("objects are counted where they are nearest, without a depth buffer");
 }
@@ -25,9 +29,15 @@ void check_view_of_report(const ViewSettings& view) {
 /// The views of the file, checked before any model is known.
 std::vector<ViewSettings> views_of_file(const Settings& settings) {
   std::vector<ViewSettings> views;
+  std::map<std::string, std::size_t> numbers;  // of the names of views
   for (Settings& one : read_batch(*settings.report.views, settings)) {
     try {
-      check_view_of_report(one.view);
+      check_view_of_report(one.view, settings.report);
+      const auto [known, is_new] = numbers.emplace(view_name(one.view), views.size());
+      if (settings.report.coco && !is_new)
+        throw UsageError(
+            fmt::format("is called {} as views[{}] is, and --coco needs a picture for each: give it a name",
+                        printable_name(known->first), known->second));
     } catch (const UsageError& error) {
       throw UsageError(fmt::format("{}: views[{}]: {}", *settings.report.views, views.size(), error.what()));
     }
@@ -68,12 +78,15 @@ class ViewReporter {
 
 }  // namespace
 
-void report_views(const Settings& settings) {
+void report_views(const Settings& settings, const std::vector<std::string>& outputs) {
   const std::vector<ViewSettings> views = views_of_file(settings);
+  DatasetFiles datasets(settings.report);
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
-  const Scene scene = load_model(settings, execution, progress);
+  const Scene scene = load_model(settings, execution, progress, outputs);
   (void)objects_asked_for(settings, scene);
+  datasets.begin(settings, scene);
+  const bool is_stdout_taken = settings.report.coco == "-";
   ViewReporter reporter(settings, scene, execution);
   std::optional<JsonListPrinter> list;
   if (settings.run.json) list.emplace(Json{{"frontmost", FRONTMOST_VERSION}, {"model", settings.model}}, "views");
@@ -81,18 +94,20 @@ void report_views(const Settings& settings) {
     progress.set_prefix(fmt::format("view {} of {}: ", i + 1, views.size()));
     reporter.report(views[i], [&](const ReportRun& run) {
       const std::string name = view_name(views[i]);
+      datasets.add(run, name, execution);
       progress.clear();
       if (list) {
         Json json = {{"name", name}};
         json.update(view_report_json(run));
         list->add(json);
-      } else {
+      } else if (!is_stdout_taken) {
         print(printable_name(name) + ":\n" + (settings.report.why ? why_text(run) : report_text(run)) + '\n');
       }
     });
     stop_if_interrupted();
   }
-  if (list) list->finish({{"files", Json::array()}});
+  const std::vector<std::string> files = datasets.finish();
+  if (list) list->finish({{"files", files}});
 }
 
 }  // namespace frontmost::cli

@@ -13,6 +13,7 @@
 #include "frontmost/agreement.h"       // IWYU pragma: export
 #include "frontmost/base.h"            // IWYU pragma: export
 #include "frontmost/curved.h"          // IWYU pragma: export
+#include "frontmost/datasets.h"        // IWYU pragma: export
 #include "frontmost/depth_buffer.h"    // IWYU pragma: export
 #include "frontmost/environment.h"     // IWYU pragma: export
 #include "frontmost/explain.h"         // IWYU pragma: export
@@ -25,6 +26,7 @@
 #include "frontmost/lines.h"           // IWYU pragma: export
 #include "frontmost/model_file.h"      // IWYU pragma: export
 #include "frontmost/occlusion.h"       // IWYU pragma: export
+#include "frontmost/output_folder.h"   // IWYU pragma: export
 #include "frontmost/page.h"            // IWYU pragma: export
 #include "frontmost/painter.h"         // IWYU pragma: export
 #include "frontmost/precision.h"       // IWYU pragma: export

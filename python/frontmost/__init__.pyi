@@ -2,7 +2,7 @@
 # The types of the package. The docstrings are those of the compiled part as well: make_docstrings.py takes them from
 # here, so help(), docs/python.md and type checkers say the same.
 import os
-from typing import Any, Callable, Literal, Sequence, Union
+from typing import Any, Callable, Iterable, Literal, Mapping, Sequence, Union
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
@@ -176,6 +176,14 @@ class Scene:
         """
     def find(self, name: str | int) -> int:
         """The number of an object. Raises ValueError where none, or several, are so called."""
+    def set_categories(self, categories: Mapping[str, str | int | tuple[int, str]]) -> None:
+        """Gives the objects of these names the category of that name, number, or (number, name), in place of all that they
+        had; for write_coco() and write_bop().
+
+        Names alone are numbered from 1, in the order of the objects' names. Where other categories have numbers, a name
+        has that of its place among all categories, as they come in the dict. Raises ValueError for a name that no object
+        has.
+        """
 
 def load(source: Path | bytes, *, name: str = "memory", up: Up | None = None, format: Format | None = None,
          threads: int = 0, progress: Progress = None) -> Scene:
@@ -875,6 +883,33 @@ class FightAreas:
         """The least polygon offset that ends the fights of a row of objects: (object, factor, units), found by drawing; None
         where none is enough. exact: of the same view."""
     def __len__(self) -> int: ...
+
+def write_coco(path: Path, seen: Visible | Iterable[Visible], *, names: Iterable[str] | None = None,
+               polygons: bool = False, leave_out: Sequence[str] = [], canvas: float = 3.0, threads: int = 0,
+               progress: Progress = None) -> list[str]:
+    """Writes annotations of COCO, as `frontmost report --coco` does, of one view, or of all that an iterable gives.
+
+    A generator has one Visible in memory at a time. names: of the pictures, "file_name"; None: the scene's name, and the
+    view's number from 0. polygons: masks as polygons, not as run lengths. leave_out: names of objects, or of categories,
+    that get no annotation and hide others all the same. canvas: as account() has it. Returns the paths of the files.
+    Raises Error: file_unwritable, unsupported, bad_argument.
+    """
+
+def write_bop(folder: Path, seen: Visible | Iterable[Visible], *, visible: Literal["exact", "bop19"] = "exact",
+              leave_out: Sequence[str] = [], canvas: float = 3.0, threads: int = 0,
+              progress: Progress = None) -> list[str]:
+    """Writes a scene of BOP, as `frontmost report --bop` does: poses, shares, masks and depths, an image for each view.
+
+    Its files are there when all views are done, or none is. visible: what counts as visible; leave_out, canvas and the
+    rest are those of write_coco().
+    """
+
+def write_masks(folder: Path, seen: Visible | Iterable[Visible], *, leave_out: Sequence[str] = [], threads: int = 0,
+                progress: Progress = None) -> list[str]:
+    """Writes two masks (PNG) of every object in the picture, as `frontmost report --masks` does.
+
+    "000003_visible.png" and "000003_amodal.png" of object 3; of an iterable the view's number comes before that.
+    """
 
 class Accounting:
     """How much of every object is seen: arrays with an element for each object. Samples are counted, exactly."""

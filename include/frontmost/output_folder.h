@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-namespace frontmost::cli {
+namespace frontmost {
 
-/// Makes a folder and those that lead to it, where they are missing. Those that it made go with it while they are
-/// empty.
+/// Makes a folder and those that lead to it, where they are missing. The destructor removes the folders that this
+/// object made, if they are empty.
 class MadeFolder {
  public:
   /// \throws Error file_unwritable where the folder cannot be made or is something else.
@@ -33,7 +33,7 @@ class StagedFolder {
 
   /// Where the file of this name is to be written.
   [[nodiscard]] std::string path(const std::string& name) const { return (staged_ / name).string(); }
-  /// A message about one of them, with the name that it is to have.
+  /// A message about one of the files, with the name that the file is to have.
   [[nodiscard]] std::string told(const std::string& message) const;
   /// Moves the files to their places, in this order; they need no more room there. Those that were there are replaced,
   /// those at the end of links too, and leave their permissions. \throws Error file_unwritable.
@@ -43,4 +43,4 @@ class StagedFolder {
   std::filesystem::path folder_, staged_;
 };
 
-}  // namespace frontmost::cli
+}  // namespace frontmost

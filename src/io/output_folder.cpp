@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several files cannot be replaced at once. They come as near to it as a file system allows: all are written beside
 // their places first, where a full disk is found out, and are then only renamed.
-#include "cli/staged_folder.h"
-
-#include <fmt/format.h>
-#include <frontmost/base.h>
+#include "frontmost/output_folder.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <system_error>
 
-namespace frontmost::cli {
+#include "frontmost/base.h"
+
+namespace frontmost {
 namespace {
 
 namespace fs = std::filesystem;
@@ -37,8 +36,7 @@ StagedFolder::StagedFolder(const std::string& folder) : folder_(folder) {
   std::string name = (folder_ / ".frontmost-XXXXXX").string();
   if (!::mkdtemp(name.data())) {
     const int code = errno;  // before strings are made: that may change it
-    throw Error(ErrorCode::file_unwritable,
-                fmt::format("{}: cannot write: {}", folder, std::generic_category().message(code)));
+    throw Error(ErrorCode::file_unwritable, folder + ": cannot write: " + std::generic_category().message(code));
   }
   staged_ = name;
 }
@@ -55,7 +53,7 @@ std::string StagedFolder::told(const std::string& message) const {
 
 void StagedFolder::commit(const std::vector<std::string>& names) const {
   const auto fail = [](const fs::path& place, const std::string& why) {
-    throw Error(ErrorCode::file_unwritable, fmt::format("{}: cannot replace: {}", place.string(), why));
+    throw Error(ErrorCode::file_unwritable, place.string() + ": cannot replace: " + why);
   };
   std::error_code unknown;
   for (const std::string& name : names)
@@ -70,4 +68,4 @@ void StagedFolder::commit(const std::vector<std::string>& names) const {
   }
 }
 
-}  // namespace frontmost::cli
+}  // namespace frontmost
