@@ -31,8 +31,10 @@ std::string path_text(const py::object& path) {
 }
 
 HeldScene load_scene(const py::object& source, const std::string& name, const std::optional<Axis>& up,
-                     const std::optional<ModelFormat>& format, int threads, const py::object& progress) {
+                     const std::optional<ModelFormat>& format, const std::vector<py::object>& allow_outside,
+                     int threads, const py::object& progress) {
   LoadOptions options;
+  for (const py::object& folder : allow_outside) options.allow_outside.push_back(path_text(folder));
   options.up = up;
   options.format = format;
   if (py::isinstance<py::bytes>(source)) {
@@ -80,7 +82,8 @@ void bind_models(py::module_& m) {
   py::class_<HeldScene>(m.attr("Scene"))
       .def("save", &save_scene, "path"_a, py::kw_only(), "of_triangles"_a = py::dict(), doc("Scene.save"));
   m.def("load", &load_scene, "source"_a, py::kw_only(), "name"_a = "memory", "up"_a = py::none(),
-        "format"_a = py::none(), "threads"_a = 0, "progress"_a = py::none(), doc("load"));
+        "format"_a = py::none(), "allow_outside"_a = std::vector<py::object>(), "threads"_a = 0,
+        "progress"_a = py::none(), doc("load"));
   m.def(
       "builtin", [](const std::string& name) { return HeldScene(builtin(name)); }, "name"_a, doc("builtin"));
   m.def(

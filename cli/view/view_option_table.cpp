@@ -45,6 +45,10 @@ constexpr Option view_options[] = {
     {"input-format", 0, "stl|ply|obj|off|gltf|3mf|scene",
      "Format of the model; by default from its name, or its first bytes.", Group::model, for_every_model,
      [](Settings& s, const Given& g) { s.load.format = g.choice<ModelFormat>(); }},
+    {"allow-outside", 0, "FOLDER",
+     "Folder in which a scene file may name models by paths that leave its own folder; may be given several times.",
+     Group::model, for_every_model | may_repeat,
+     [](Settings& s, const Given& g) { s.load.allow_outside.push_back(g.file_name()); }},
 
     {"view", 0, "front|back|left|right|top|bottom|iso", "Look from there, far enough away to see the model.",
      Group::camera, for_views, [](Settings& s, const Given& g) { s.view.named = g.choice<NamedView>(); }},

@@ -30,16 +30,18 @@ struct LoadOptions {
   std::optional<ModelFormat> format;  ///< none: by suffix and, for memory and standard input, by content
   std::optional<Axis> up;             ///< none: the format's (z for STL and 3MF, y for the others) or the scene file's
   const ImageDecoder* image_decoder = nullptr;  ///< borrowed while it loads; none: PNG and JPEG by the library itself
+  /// Folders in which, or below which, scene files may name models and poses, besides their own folder.
+  std::vector<std::string> allow_outside{};
 };
 
 /// Reads a model. "-" reads standard input, "builtin:NAME" makes a built-in scene. Files named inside a model
-/// (material libraries, buffers, textures, the models of a scene file) are read only from its own folder and below.
-/// Triangle order and count are the file's. Memory while reading is at most about twice the result.
-/// A model that lies far from zero for its size, as surveys do, gets a Scene::origin: it is taken off while coordinates
-/// are still doubles, so that text and double formats lose nothing, and files of floats nothing more. Positions,
-/// instances and cameras of the scene are about it; what is at p there is at origin + p in the file. fitting_origin()
-/// says when and which. Whoever brings eyes, rays or points in the file's coordinates takes it off first.
-/// Scene::source tells the format, the unit and the files that were read.
+/// (material libraries, buffers, textures, the models of a scene file) are read only from its own folder and below, and
+/// those of scene files also from LoadOptions::allow_outside. Triangle order and count are the file's. Memory while
+/// reading is at most about twice the result. A model that lies far from zero for its size, as surveys do, gets a
+/// Scene::origin: it is taken off while coordinates are still doubles, so that text and double formats lose nothing,
+/// and files of floats nothing more. Positions, instances and cameras of the scene are about it; what is at p there is
+/// at origin + p in the file. fitting_origin() says when and which. Whoever brings eyes, rays or points in the file's
+/// coordinates takes it off first. Scene::source tells the format, the unit and the files that were read.
 /// \throws Error file_unreadable, file_malformed, unsupported or limit_exceeded: "name: place: reason".
 [[nodiscard]] Scene load(const std::string& path, const LoadOptions& options = {}, const Execution& execution = {});
 

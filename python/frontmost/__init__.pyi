@@ -186,11 +186,11 @@ class Scene:
         """
 
 def load(source: Path | bytes, *, name: str = "memory", up: Up | None = None, format: Format | None = None,
-         threads: int = 0, progress: Progress = None) -> Scene:
+         allow_outside: Sequence[Path] = [], threads: int = 0, progress: Progress = None) -> Scene:
     """Reads a model: STL, PLY, OBJ, OFF, glTF, GLB, 3MF or a scene file; "builtin:NAME"; or the bytes of a file.
 
-    name: what messages call bytes. up, format: None takes the file's. Raises Error with the file, the place and the
-    reason: file_unreadable, file_malformed, unsupported, limit_exceeded.
+    name: what messages call bytes. up, format: None takes the file's. allow_outside: folders in which, or below which,
+    a scene file may name models, besides its own. Raises Error with the file, the place and the reason: file_unreadable, file_malformed, unsupported, limit_exceeded.
     """
 
 def builtin(name: str) -> Scene:

@@ -281,3 +281,14 @@ def test_objects_of_scene_files_have_categories(box, tmp_path):
     (tmp_path / "two.json").write_text('{"objects": [{"model": "crate.ply", "category": "crate"}, {"model": "crate.ply"}]}')
     scene = fm.load(tmp_path / "two.json")
     assert [(o.number, o.category) for o in scene.objects] == [(0, "crate"), (1, None)]
+
+
+def test_scene_files_name_models_where_they_are_allowed_to(box, tmp_path):
+    (tmp_path / "models").mkdir()
+    (tmp_path / "scenes").mkdir()
+    fm.Scene.from_arrays(*box, name="crate").save(tmp_path / "models" / "crate.ply")
+    (tmp_path / "scenes" / "room.json").write_text('{"objects": [{"model": "../models/crate.ply"}]}')
+    with pytest.raises(fm.Error, match=r"objects\[0\].model: ../models/crate.ply: lies outside .*--allow-outside"):
+        fm.load(tmp_path / "scenes" / "room.json")
+    scene = fm.load(tmp_path / "scenes" / "room.json", allow_outside=[tmp_path / "models"])
+    assert [o.name for o in scene.objects] == ["crate"]

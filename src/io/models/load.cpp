@@ -38,12 +38,13 @@ Scene read(ModelFormat format, Bytes bytes, const ModelSource& source) {
   throw Error(ErrorCode::unsupported, source.name() + ": " + why);
 }
 
-Scene read_any(Bytes bytes, const ModelSource& source, std::optional<ModelFormat> format, const LoadOptions& options) {
+Scene read_any(Bytes bytes, ModelSource& source, std::optional<ModelFormat> format, const LoadOptions& options) {
   if (bytes.empty()) throw Error(ErrorCode::file_malformed, source.name() + ": the file is empty");
   if (!format) format = format_of_content(bytes);
   if (!format)
     refuse(source, conversion_by_content(bytes).value_or(
                        "not a model that Frontmost can read (STL, PLY, OBJ, OFF, glTF, GLB, 3MF, a scene file)"));
+  if (*format == ModelFormat::scene) source.allow_outside(options.allow_outside);
   report_progress(source.execution(), "load", 0);
   Scene scene = read(*format, bytes, source);
   scene.source.format = format;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files beside a model are opened here, and nowhere else. A name inside a model is untrusted: "../../etc/passwd", an
-// absolute path and a link that leads out of the folder are all refused, by comparing real paths.
+// absolute path and a link that leads out of the folder are all refused, by comparing real paths. Scene files are
+// written by users for their own folders of models, which they may allow.
 #include "io/models/model_source.h"
 
 #include <algorithm>
@@ -57,8 +58,18 @@ void ModelSource::fail_limit(const std::string& place, const std::string& reason
   throw Error(ErrorCode::limit_exceeded, name_ + ": " + place + ": " + reason);
 }
 
+void ModelSource::allow_outside(const std::vector<std::string>& folders) {
+  allowed_.emplace();
+  for (const std::string& folder : folders) {
+    std::error_code error;
+    allowed_->push_back(fs::canonical(folder, error));
+    if (error || !fs::is_directory(allowed_->back(), error))
+      throw Error(ErrorCode::file_unreadable, folder + ": is no folder, which --allow-outside wants");
+  }
+}
+
 fs::path ModelSource::path_of(const std::string& reference) const {
-  const auto refuse = [&](const char* reason) -> void {
+  const auto refuse = [&](const std::string& reason) -> void {
     throw Error(ErrorCode::file_unreadable, name_ + ": " + printable(reference) + ": " + reason);
   };
   constexpr std::size_t longest = 4096;  // as on Linux; taking a longer one apart costs many times its size
@@ -66,16 +77,23 @@ fs::path ModelSource::path_of(const std::string& reference) const {
   std::string slashed = reference;
   std::replace(slashed.begin(), slashed.end(), '\\', '/');
   if (slashed.empty() || slashed.size() > longest || slashed.find('\0') != std::string::npos) refuse("not a file name");
-  if (leaves_folder(slashed)) refuse("lies outside the model's folder, so it is not read");
+  const bool leaves = leaves_folder(slashed);
+  const std::string is_outside =
+      std::string(leaves ? "lies outside" : "links to a place outside") +
+      (allowed_ ? " the scene file's folder, so it is not read unless --allow-outside names the folder that it is in"
+                : " the model's folder, so it is not read");
+  if (leaves && (!allowed_ || allowed_->empty())) refuse(is_outside);
 
   std::error_code error;
   const fs::path folder = path_.has_parent_path() ? path_.parent_path() : fs::path(".");
   const fs::path found = fs::canonical(folder / slashed, error);
   if (error) refuse("cannot be found");
   // A model may itself be a link into a store; then the files beside it are links to the same place.
-  const bool inside =
+  const bool is_inside =
       is_within(found, fs::canonical(folder, error)) || is_within(found, fs::canonical(path_, error).parent_path());
-  if (error || !inside) refuse("links to a place outside the model's folder, so it is not read");
+  const bool is_allowed = allowed_ && std::any_of(allowed_->begin(), allowed_->end(),
+                                                  [&](const fs::path& other) { return is_within(found, other); });
+  if (error || !(is_inside || is_allowed)) refuse(is_outside);
   // Never a pipe or a device, which could block for ever.
   if (!fs::is_regular_file(found, error)) refuse("is not an ordinary file");
   return found;

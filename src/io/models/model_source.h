@@ -61,12 +61,15 @@ class ModelSource {
   /// As LoadOptions has it.
   [[nodiscard]] const ImageDecoder* image_decoder() const { return image_decoder_; }
   void decode_images_by(const ImageDecoder* decoder) { image_decoder_ = decoder; }
+  /// Lets files named inside a scene file lie in these folders, too. \throws Error file_unreadable where one is none.
+  void allow_outside(const std::vector<std::string>& folders);
 
   /// Whether files named inside the model can be read at all.
   [[nodiscard]] bool has_folder() const { return !path_.empty(); }
   /// Opens a file that the model names relative to its own folder; both kinds of slashes are taken.
   /// \throws Error file_unreadable: missing, not an ordinary file, or outside the model's folder (by its name or
-  /// through links); limit_exceeded. what() starts with the name of the model and `reference`.
+  /// through links) and those that are allowed; limit_exceeded. what() starts with the name of the model and
+  /// `reference`.
   [[nodiscard]] InputFile open(const std::string& reference, std::uint64_t max_bytes) const;
   /// Where that file lies, without links. \throws Error as open() does.
   [[nodiscard]] std::filesystem::path path_of(const std::string& reference) const;
@@ -90,6 +93,7 @@ class ModelSource {
   std::string name_;
   Execution execution_;
   const ImageDecoder* image_decoder_ = nullptr;
+  std::optional<std::vector<std::filesystem::path>> allowed_;  ///< of scene files: folders, without links
   const InputFile* file_ = nullptr;
   std::filesystem::path path_;
   std::shared_ptr<OpenedFiles> opened_;

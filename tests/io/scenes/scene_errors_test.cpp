@@ -108,7 +108,7 @@ TEST(SceneErrors, NothingOutsideTheFolderIsOpened) {
   ASSERT_EQ(::mkfifo(folder.file("pipe.off").c_str(), 0600), 0);
   const auto error = [&](const std::string& model) { return folder.error_of_object(R"({"model": ")" + model + "\"}"); };
   for (const char* const outside : {"../model.stl", "/etc/passwd", "a/../../b.stl", "C:\\\\a.stl"})
-    EXPECT_THAT(error(outside), HasSubstr("lies outside the model's folder")) << outside;
+    EXPECT_THAT(error(outside), HasSubstr("lies outside the scene file's folder")) << outside;
   EXPECT_THAT(error("link.off"), HasSubstr("links to a place outside"));
   EXPECT_THAT(error("zero.off"), HasSubstr("links to a place outside"));
   EXPECT_THAT(error("pipe.off"), HasSubstr("is not an ordinary file"));
@@ -118,6 +118,48 @@ TEST(SceneErrors, NothingOutsideTheFolderIsOpened) {
                            (void)load(std::as_bytes(std::span(text)), "memory");
                          }),
               StartsWith("memory: objects[0].model: corner.off: files named inside a model are not read"));
+}
+
+TEST(SceneErrors, OtherFoldersAreReadFromWhereTheyAreAllowed) {
+  SceneFolder folder;
+  const auto sub = [&](const std::string& name) {
+    std::filesystem::create_directories(folder.path() / name);
+    return folder.file(name);
+  };
+  const std::string parts = sub("parts/deep"), scenes = sub("scenes");
+  folder.write("parts/deep/corner.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 2 0\n3 0 1 2\n");
+  folder.write("parts/pose.txt", "1 0 0 7  0 1 0 0  0 0 1 0");
+  folder.write("partsonly.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 2 0\n3 0 1 2\n");
+  ASSERT_EQ(::symlink("/etc/passwd", folder.file("parts/link.off").c_str()), 0);
+  const auto error = [&](const std::string& model, const std::vector<std::string>& allowed) -> std::string {
+    folder.write("scenes/scene.json", R"({"objects": [{"model": ")" + model + R"(", "pose": "../parts/pose.txt"}]})");
+    LoadOptions options;
+    options.allow_outside = allowed;
+    try {
+      const Scene scene = load(folder.file("scenes/scene.json"), options);
+      EXPECT_EQ(scene.instances[0].world_from_mesh[3].x, 7);
+      EXPECT_EQ(scene.source.files.size(), 3u);
+      return "read";
+    } catch (const Error& e) {
+      return e.what();
+    }
+  };
+  const std::string relative = "../parts/deep/corner.off", absolute = parts + "/corner.off";
+  for (const std::string& model : {relative, absolute}) {
+    EXPECT_THAT(error(model, {}), HasSubstr("unless --allow-outside names the folder"));
+    EXPECT_THAT(error(model, {scenes}), HasSubstr("unless --allow-outside names the folder"));
+    EXPECT_EQ(error(model, {folder.file("parts")}), "read");
+    EXPECT_EQ(error(model, {scenes, folder.file("parts/deep/..")}), "read");
+  }
+  EXPECT_THAT(error("../parts/link.off", {folder.file("parts")}), HasSubstr("lies outside the scene file's folder"));
+  EXPECT_THAT(error("../partsonly.off", {folder.file("parts")}), HasSubstr("lies outside the scene file's folder"));
+  EXPECT_THAT(error(relative, {folder.file("absent")}), HasSubstr("absent: is no folder, which --allow-outside wants"));
+  // Other formats name files by themselves, whoever wrote them: the option is not for them.
+  folder.write("scenes/m.obj", "mtllib ../pair.mtl\nv 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");
+  LoadOptions options;
+  options.allow_outside = {folder.path().string()};
+  EXPECT_THAT(load(folder.file("scenes/m.obj"), options).warnings,
+              testing::ElementsAre(HasSubstr("lies outside the model's folder")));
 }
 
 TEST(SceneErrors, SceneFilesPlaceNoSceneFilesSoThereAreNoCycles) {
