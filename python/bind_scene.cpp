@@ -355,6 +355,14 @@ void bind_scene(py::module_& m) {
             return list;
           },
           doc("Scene.warnings"))
+      .def_property_readonly(
+          "hidden_by_file",
+          [](const HeldScene& held) {
+            py::list list;
+            for (const std::string& name : held.scene->source.hidden) list.append(utf8_text(name));
+            return list;
+          },
+          doc("Scene.hidden_by_file"))
       .def(
           "find", [](const HeldScene& held, const py::object& name) { return object_of(*held.scene, name); }, "name"_a,
           doc("Scene.find"))

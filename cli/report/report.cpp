@@ -106,6 +106,7 @@ std::vector<std::uint32_t> objects_asked_for(const Settings& settings, const Sce
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
     if (!wanted || scene.instances[i].name == *wanted) numbers.push_back(i);
   if (!wanted || !numbers.empty()) return numbers;
+  if (!hidden_asked_for(settings, scene).empty()) return {};
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
     if (std::to_string(i) == *wanted) return {i};
   std::vector<std::string_view> names;
@@ -118,6 +119,14 @@ void complain_of_name(std::string_view option, const Settings& settings, std::st
   const std::string_view nearest = nearest_word(name, known);
   throw UsageError(fmt::format("{}: {} has {} {}{}", option, settings.model, what, printable_name(name),
                                nearest.empty() ? "" : fmt::format("; did you mean {}?", printable_name(nearest))));
+}
+
+std::vector<std::string> hidden_asked_for(const Settings& settings, const Scene& scene) {
+  const std::optional<std::string>& wanted = settings.report.why;
+  std::vector<std::string> names;
+  for (const std::string& name : scene.source.hidden)
+    if (!wanted || name == *wanted) names.push_back(name);
+  return names;
 }
 
 std::vector<std::uint32_t> objects_by_sight(const Accounting& accounts) {

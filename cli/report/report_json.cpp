@@ -101,6 +101,7 @@ Json view_report_json(const ReportRun& run) {
     objects.push_back(object_json(run, i));
     objects.back()["rank"] = order.ranks[i];
   }
+  json["hidden_by_file"] = hidden_asked_for(run.settings, run.scene());
   json["cycles"] = order.cycles;
   return json;
 }

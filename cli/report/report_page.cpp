@@ -156,6 +156,13 @@ std::string table_of(const ReportRun& run) {
   return text + "</tr></thead><tbody>\n" + rows_of(run) + "</tbody></table></div>\n";
 }
 
+/// A paragraph; empty where the file hides nothing.
+std::string hidden_by_file(const ReportRun& run) {
+  std::string names;
+  for (const std::string& name : run.scene().source.hidden) names += (names.empty() ? "" : ", ") + printable_name(name);
+  return names.empty() ? "" : "<p>Hidden by the file, and not drawn: " + html_text(names) + "</p>\n";
+}
+
 std::string page_of(const ReportRun& run, const std::string& picture, const Execution& execution) {
   const View& view = run.view();
   const std::string model = std::filesystem::path(run.settings.model).filename().string();
@@ -168,7 +175,7 @@ std::string page_of(const ReportRun& run, const std::string& picture, const Exec
       "mask is shown, what is hidden of it in the colours of what hides it.\"></div></div>\n",
       html_text(model), report_summary(run), picture, view.width, view.height, view.width, view.height);
   const std::string graph = report_graph(run);
-  text += "<h2>Objects</h2>" + table_of(run);
+  text += "<h2>Objects</h2>" + table_of(run) + hidden_by_file(run);
   if (!graph.empty())
     text +=
         "<h2>Who hides whom</h2><p>An arrow goes from what hides to what it hides; objects that hide each other in a "

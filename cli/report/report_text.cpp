@@ -12,8 +12,10 @@ namespace {
 
 constexpr std::size_t rows_shown = 40, longest_name = 28;
 
+std::string short_text(const std::string& name) { return shortened(printable_name(name), longest_name); }
+
 std::string short_name(const ReportRun& run, std::uint32_t object) {
-  return shortened(printable_name(run.scene().instances[object].name), longest_name);
+  return short_text(run.scene().instances[object].name);
 }
 
 std::string share_text(double share) { return fmt::format("{:.1f} %", 100 * share); }
@@ -46,14 +48,16 @@ std::string report_summary(const ReportRun& run) {
        : object.in_frame.count > 0 ? hidden
        : object.alone.count > 0    ? beyond
                                    : nowhere);
+  const std::size_t by_file = run.scene().source.hidden.size();
   const View& view = run.view();
   const PixelBox& canvas = run.accounts.canvas;
   return fmt::format(
       "{} x {} pixels, on a canvas of {} x {}: {} see an object, {} see none\n"
-      "{} object{}: {} seen, {} hidden, {} beyond the frame, {} cover no sample\n",
+      "{} object{}: {} seen, {} hidden, {} beyond the frame, {} cover no sample{}\n",
       view.width, view.height, canvas.width, canvas.height, grouped(view.pixel_count() - run.accounts.background),
       grouped(run.accounts.background), grouped(run.accounts.objects.size()),
-      run.accounts.objects.size() == 1 ? "" : "s", grouped(seen), grouped(hidden), grouped(beyond), grouped(nowhere));
+      run.accounts.objects.size() == 1 ? "" : "s", grouped(seen), grouped(hidden), grouped(beyond), grouped(nowhere),
+      by_file == 0 ? "" : fmt::format("; {} hidden by the file", grouped(by_file)));
 }
 
 std::string distance_text(const ObjectAccount& object) {
@@ -69,22 +73,30 @@ std::string why_text(const ReportRun& run) {
   std::string text;
   for (const std::uint32_t object : objects_asked_for(run.settings, run.scene()))
     text += sentence(run.why[object], run.names) + '\n';
+  for (const std::string& name : hidden_asked_for(run.settings, run.scene()))
+    text += printable_name(name) + " is hidden by the file.\n";
   return text;
 }
 
 std::string report_text(const ReportRun& run) {
   std::string text = report_summary(run);
   std::vector<std::uint32_t> numbers = objects_by_sight(run.accounts);
-  if (numbers.empty()) return text;
+  const std::vector<std::string>& hidden = run.scene().source.hidden;
+  if (numbers.empty() && hidden.empty()) return text;
   const std::size_t shown = std::min(numbers.size(), rows_shown);
+  const std::size_t shown_hidden = std::min(hidden.size(), rows_shown);
   std::size_t width = 4;
   for (std::size_t i = 0; i < shown; ++i) width = std::max(width, short_name(run, numbers[i]).size());
+  for (std::size_t i = 0; i < shown_hidden; ++i) width = std::max(width, short_text(hidden[i]).size());
   text +=
       '\n' +
       fmt::format(layout, "object", "name", width, "samples", "alone", "visible", "hidden", "cut", "distance", "why") +
       '\n';
   for (std::size_t i = 0; i < shown; ++i) text += row_text(run, numbers[i], width);
-  if (shown < numbers.size()) text += fmt::format("{} more; --json has all\n", grouped(numbers.size() - shown));
+  for (std::size_t i = 0; i < shown_hidden; ++i)
+    text += fmt::format(layout, "-", short_text(hidden[i]), width, "", "", "", "", "", "", "hidden by the file") + '\n';
+  const std::size_t more = numbers.size() - shown + hidden.size() - shown_hidden;
+  if (more > 0) text += fmt::format("{} more; --json has all\n", grouped(more));
   return text;
 }
 

@@ -244,6 +244,8 @@ struct SceneSource {
   /// Every file that was opened: the model, and the material libraries, buffers and textures that the model names. Each
   /// once for each model, by its path without links, in the order of their names.
   std::vector<std::filesystem::path> files;
+  /// Names of nodes with a mesh that the files hide (glTF's KHR_node_visibility). Hidden nodes are no instances.
+  std::vector<std::string> hidden;
 };
 
 struct Scene {

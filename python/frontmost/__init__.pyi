@@ -174,6 +174,9 @@ class Scene:
         wound both ways; meshes: these and pieces, shells, closed, genus; materials; cameras: position, direction, up,
         orthographic, and vertical, the field of view in degrees or the height.
         """
+    @property
+    def hidden_by_file(self) -> list[str]:
+        """Names of what the file holds and hides (glTF's KHR_node_visibility): it is not drawn, and is none of objects."""
     def find(self, name: str | int) -> int:
         """The number of an object. Raises ValueError where none, or several, are so called."""
     def set_categories(self, categories: Mapping[str, str | int | tuple[int, str]]) -> None:

@@ -67,6 +67,7 @@ void add(Scene& scene, Scene part) {
   move_all(part.lights, scene.lights);
   move_all(part.warnings, scene.warnings);
   move_all(part.source.files, scene.source.files);
+  move_all(part.source.hidden, scene.source.hidden);
 }
 
 }  // namespace frontmost

@@ -311,6 +311,35 @@ TEST_F(Report, BopsOwnDefinitionOfVisibleHasATolerance) {
   expect_failure("report squares.obj --bop squares.obj/scene", 1, "squares.obj/scene");
 }
 
+TEST_F(Report, WhatTheFileHidesIsSaid) {
+  // Two triangles, of which one is below a node that is hidden.
+  write("two.gltf", R"({"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_node_visibility"],
+      "nodes": [{"name": "seen", "mesh": 0}, {"children": [2], "extensions": {"KHR_node_visibility": {"visible": false}}},
+                {"name": "a < lid", "mesh": 0, "translation": [3, 0, 0]}], "scenes": [{"nodes": [0, 1]}], "scene": 0,
+      "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+      "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+      "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri":
+      "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAAEAAAAAA"}]})");
+  const std::string command = "report two.gltf --quiet --view front --resolution 20,20";
+  const std::string text = succeed(command).out;
+  EXPECT_THAT(text,
+              HasSubstr("1 object: 1 seen, 0 hidden, 0 beyond the frame, 0 cover no sample; 1 hidden by the file\n"));
+  EXPECT_THAT(text, testing::ContainsRegex("\n     -  a < lid .* hidden by the file\n$"));
+  const json report = succeed(command + " --json").json();
+  EXPECT_EQ(report["objects"].size(), 1u);
+  EXPECT_EQ(report["hidden_by_file"], json({"a < lid"}));
+  EXPECT_EQ(run({"report", "two.gltf", "--quiet", "--why", "a < lid"}).out, "a < lid is hidden by the file.\n");
+  EXPECT_EQ(succeed(command + " --why seen --json").json()["hidden_by_file"], json::array());
+  expect_failure(command + " --why lid", 2, "--why: two.gltf has no object lid");
+  succeed(command + " -o page.html");
+  EXPECT_THAT(read("page.html"), HasSubstr("Hidden by the file, and not drawn: a &lt; lid</p>"));
+  // A scene file tells of which of its objects it is.
+  write("placed.json", R"({"objects": [{"model": "two.gltf", "name": "box"}]})");
+  EXPECT_EQ(succeed("report placed.json --quiet --resolution 20,20 --json").json()["hidden_by_file"],
+            json({"box/a < lid"}));
+  EXPECT_EQ(succeed("report squares.obj --json --resolution 20,20").json()["hidden_by_file"], json::array());
+}
+
 TEST_F(Report, LongTablesSayHowMuchIsLeftOut) {
   const std::string text = succeed("report builtin:city --resolution 320,180").out;
   EXPECT_THAT(text, HasSubstr(" more; --json has all\n"));

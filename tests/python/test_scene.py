@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes: from arrays, from files, looked into, changed, and written."""
+import base64
 import gc
 import json
 import os
@@ -292,3 +293,16 @@ def test_scene_files_name_models_where_they_are_allowed_to(box, tmp_path):
         fm.load(tmp_path / "scenes" / "room.json")
     scene = fm.load(tmp_path / "scenes" / "room.json", allow_outside=[tmp_path / "models"])
     assert [o.name for o in scene.objects] == ["crate"]
+
+
+def test_what_a_file_hides_is_told():
+    corners = base64.b64encode(numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], numpy.float32).tobytes()).decode()
+    scene = fm.load(json.dumps({
+        "asset": {"version": "2.0"}, "extensionsUsed": ["KHR_node_visibility"],
+        "nodes": [{"name": "cup", "mesh": 0},
+                  {"name": "lid", "mesh": 0, "extensions": {"KHR_node_visibility": {"visible": False}}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + corners}]}).encode())
+    assert [o.name for o in scene.objects] == ["cup"] and scene.hidden_by_file == ["lid"]

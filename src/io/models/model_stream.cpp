@@ -86,7 +86,7 @@ std::unique_ptr<ModelStream> open_model_stream(const std::string& path, const Lo
             conversion_by_content(start.start).value_or("not a model that can be streamed (binary STL or PLY)"));
   std::unique_ptr<ModelStream> stream = open(*format, std::move(start), source);
   stream->introduce(path == "-" ? "stdin" : source.stem(), options.up.value_or(default_up(*format)),
-                    {format, std::nullopt, opened->paths()});
+                    {format, std::nullopt, opened->paths(), {}});
   return stream;
 }
 

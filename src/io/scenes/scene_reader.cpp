@@ -84,6 +84,8 @@ class PlacedMeshes {
     constexpr std::uint64_t least_cost = 4;
     budget_.charge(triangle_count(model_), least_cost, object.place, source_);
     const std::string name = object.name.empty() ? model_.name : object.name;
+    budget_.charge(model_.source.hidden.size(), longest_name, object.place, source_);
+    for (const std::string& hidden : model_.source.hidden) scene_.source.hidden.push_back(name_of(name + "/" + hidden));
     if (is_one) return {{name, meshes[0], scene_from_model, object.category}};
     budget_.charge(model_.instances.size(), sizeof(Instance) + longest_name, object.place, source_);
     std::vector<Instance> instances;

@@ -270,6 +270,7 @@ TEST(Gltf, HiddenNodesHideWhatIsBelowThemButForCameras) {
   EXPECT_EQ(scene.cameras.size(), 1u);
   EXPECT_EQ(scene.lights.size(), 0u);
   EXPECT_THAT(scene.warnings, ElementsAre("t.glb: KHR_node_visibility: the file hides 4 of 6 nodes"));
+  EXPECT_THAT(scene.source.hidden, ElementsAre("below")) << "others have nothing to show";
   maker.add("nodes", "{" + visible("0") + "}");
   EXPECT_THAT(error_of(maker), HasSubstr("nodes[6].extensions.KHR_node_visibility.visible"));
 }

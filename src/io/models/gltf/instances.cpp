@@ -76,8 +76,14 @@ class PosedMeshes {
 
   void place() {
     scene_.meshes.resize(plans_.size());
-    for (const std::uint32_t id : tree_.shown)
-      if (tree_.nodes[id].mesh != no_index && !tree_.nodes[id].is_hidden) place_node(tree_.nodes[id]);
+    for (const std::uint32_t id : tree_.shown) {
+      const Node& node = tree_.nodes[id];
+      if (node.mesh == no_index) continue;
+      if (node.is_hidden)
+        scene_.source.hidden.push_back(name_of_node(node));
+      else
+        place_node(node);
+    }
     for (std::uint32_t i = 0; i < plans_.size(); ++i)
       // Meshes that no node shows are read as well: they keep the file's numbers, and a user may place them.
       if (!is_read_[i]) (void)read(i, {plans_[i].weights});
@@ -86,13 +92,18 @@ class PosedMeshes {
  private:
   using Key = std::tuple<std::uint32_t, std::uint32_t, std::vector<double>>;
 
+  [[nodiscard]] const std::string& name_of_node(const Node& node) const {
+    const std::string& name = plans_[node.mesh].name;
+    return !node.name.empty() ? node.name : !name.empty() ? name : node.place;
+  }
+
   void place_node(const Node& node) {
     const MeshPlan& plan = plans_[node.mesh];
     if (plan.primitives.empty()) return;
     // A skin says where its mesh is; the node that holds the mesh then does not.
     const bool skinned = node.skin != no_index && plan.has_joints;
     Instance instance;
-    instance.name = !node.name.empty() ? node.name : !plan.name.empty() ? plan.name : node.place;
+    instance.name = name_of_node(node);
     instance.mesh = posed_mesh(node, skinned);
     const std::uint64_t copies = node.copies ? node.copies->count : 1;
     // No memory here, but ten times as much in whatever looks at the triangles in the world.
