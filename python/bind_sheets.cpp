@@ -34,7 +34,7 @@ using namespace py::literals;
 struct HeldPage {
   Page page;
   std::optional<double> scale;
-  std::size_t left_out = 0, undrawn = 0;  ///< as Sheet's
+  std::size_t left_out = 0, undrawn = 0, prisms = 0;  ///< as Sheet's
 };
 struct HeldFigure {
   std::shared_ptr<const Figure> figure;
@@ -136,7 +136,7 @@ HeldPage sheet_of(const std::shared_ptr<HeldSurfaces>& held, const py::object& v
     const std::shared_lock lock(held->scene->reading);
     return view ? draw_view(held->surfaces, *view, options, execution) : draw_sheet(held->surfaces, options, execution);
   });
-  return {std::move(sheet.page), sheet.scale, sheet.left_out, sheet.undrawn};
+  return {std::move(sheet.page), sheet.scale, sheet.left_out, sheet.undrawn, sheet.prisms};
 }
 
 /// Lines on a page that is as large as the view, with 96 pixels to an inch.
@@ -238,6 +238,7 @@ void bind_sheets(py::module_& m) {
           doc("Sheet.size"))
       .def_readonly("left_out", &HeldPage::left_out, doc("Sheet.left_out"))
       .def_readonly("undrawn", &HeldPage::undrawn, doc("Sheet.undrawn"))
+      .def_readonly("prisms", &HeldPage::prisms, doc("Sheet.prisms"))
       .def("__repr__", [](const HeldPage& held) {
         return "Sheet of " + paper_name({held.page.width, held.page.height}) +
                (held.scale ? ", " + scale_text(*held.scale) : "");

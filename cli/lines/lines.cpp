@@ -141,6 +141,9 @@ void warn_of(const Sheet& sheet, const Surfaces& surfaces, const Settings& setti
     warn(
         {fmt::format("cylinders without a diameter, because no line of theirs is drawn: {}{}", sheet.undrawn,
                      settings.drawing.sheet.hidden == HiddenLines::none ? "; --hidden dashed draws hidden ones" : "")});
+  if (sheet.prisms > 0)
+    warn({fmt::format("cylinders without a diameter, because they have fewer than 18 sides and count as polygons: {}",
+                      sheet.prisms)});
 }
 
 /// Draws one model, and writes its own files; its page goes to `pages` where some file holds all. \returns the report.

@@ -36,6 +36,8 @@ struct Rounds {
   std::vector<Round> rounds;
   /// Those with a side on the circle, or of the surface. In the order of the rounds, each's ascending.
   std::vector<PrimitiveId> triangles;
+  /// Cylinders of 7 to 17 sides with a sharp rim at either end. They count as polygons: nothing is drawn for them.
+  std::vector<Round> prisms;
 };
 
 /// The circles and cylinders of a scene of which at least 160 degrees are there, and what else is round about an axis.

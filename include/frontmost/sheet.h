@@ -154,6 +154,7 @@ struct Sheet {
   bool is_empty = false;         ///< no line of the model is on it
   std::size_t left_out = 0;      ///< diameters for which there was no room
   std::size_t undrawn = 0;       ///< diameters of cylinders that are seen along their axes, but not drawn: hidden
+  std::size_t prisms = 0;        ///< diameters of cylinders of 7 to 17 sides, which count as polygons
 };
 
 /// \throws Error bad_argument for values out of range and what excludes or needs another; the message begins with the

@@ -1074,6 +1074,9 @@ class Sheet:
     @property
     def undrawn(self) -> int:
         """Diameters of cylinders that are seen along their axes, but not drawn: hidden."""
+    @property
+    def prisms(self) -> int:
+        """Diameters of cylinders of 7 to 17 sides, which count as polygons."""
 
 class Figure:
     """A picture of polygons, to be filled one after the other, which shows itself in notebooks."""

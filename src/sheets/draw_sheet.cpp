@@ -92,6 +92,7 @@ void add_dimensions(Sheet& sheet, const std::vector<PlannedView>& views, const s
   if (all.count > 0) sheet.page.layers.push_back(std::move(all.layer));
   sheet.left_out = all.left_out;
   sheet.undrawn = all.undrawn;
+  sheet.prisms = all.prisms;
 }
 
 void add_frame(Page& page, const SheetOptions& options, const Scene& scene, std::optional<double> scale) {

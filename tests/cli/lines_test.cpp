@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "program.h"
 
@@ -131,13 +132,12 @@ TEST_F(LinesCommand, ScalesAndUnits) {
 }
 
 /// A closed tube of 36 sides about z, as OBJ.
-std::string peg_obj(double radius, double height) {
-  constexpr int sides = 36;
+std::string peg_obj(double radius, double height, int sides = 36) {
   std::string text = "o peg\n";
   for (const double z : {0.0, height})
     for (int i = 0; i < sides; ++i)
-      text += "v " + std::to_string(radius * std::cos(i * 0.174532925199433)) + " " +
-              std::to_string(radius * std::sin(i * 0.174532925199433)) + " " + std::to_string(z) + "\n";
+      text += "v " + std::to_string(radius * std::cos(i * 2 * std::numbers::pi / sides)) + " " +
+              std::to_string(radius * std::sin(i * 2 * std::numbers::pi / sides)) + " " + std::to_string(z) + "\n";
   std::string foot = "f", head = "f";
   for (int i = 1; i <= sides; ++i) {
     const int next = i % sides + 1;
@@ -218,6 +218,10 @@ TEST_F(LinesCommand, SheetsHaveDimensionsWhereTheyAreAskedFor) {
       succeed(pegs).err,
       HasSubstr("warning: cylinders without a diameter, because no line of theirs is drawn: 1; --hidden dashed"));
   EXPECT_EQ(succeed(pegs + " --hidden dashed").err, "");
+  write("low.obj", peg_obj(5, 20, 12));
+  EXPECT_THAT(succeed("lines low.obj --up +z --views front,top --dimensions -o a.svg").err,
+              HasSubstr("warning: cylinders without a diameter, because they have fewer than 18 sides and count as "
+                        "polygons: 1\n"));
 }
 
 TEST_F(LinesCommand, ViewsStandInLine) {

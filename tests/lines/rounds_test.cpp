@@ -147,6 +147,30 @@ TEST(Rounds, NutsAndPolygonsAreNotRound) {
   for (const int sides : {3, 4, 6, 8, 12, 17}) EXPECT_TRUE(rounds_of({.sides = sides}).rounds.empty()) << sides;
 }
 
+TEST(Rounds, CylindersOfFewSidesAreTold) {
+  for (const int sides : {7, 8, 12, 17})
+    for (const bool is_hollow : {false, true}) {
+      const glm::dmat4 place = anywhere();
+      const Rounds all = rounds_of({.sides = sides}, place, is_hollow);
+      ASSERT_EQ(all.prisms.size(), 1u) << sides;
+      const Round& prism = all.prisms[0];
+      EXPECT_NEAR(prism.radius, 5, 2e-5);
+      EXPECT_NEAR(std::abs(glm::dot(prism.axis, glm::dvec3(place[2]))), 1, 1e-6);
+      EXPECT_NEAR(glm::distance(prism.from, prism.to), 20, 1e-4);
+    }
+  for (const int sides : {4, 5, 6, 18, 60}) EXPECT_TRUE(rounds_of({.sides = sides}).prisms.empty()) << sides;
+  for (const Tube& other : {Tube{.sides = 12, .turn = pi}, {.sides = 12, .ratio = 0.9}, {.sides = 12, .top_radius = 4}})
+    EXPECT_TRUE(rounds_of(other).prisms.empty());
+  Mesh holes;  // side by side, and two on one axis
+  for (int i = 0; i < 50; ++i) {
+    glm::dmat4 place(1);
+    place[3] = {10 * (i % 7), 10 * (i / 7), 0, 1};
+    add_tube(holes, {.radius = 2, .sides = 8}, place);
+  }
+  add_tube(holes, {.radius = 2, .low = 30, .high = 31, .sides = 8});
+  EXPECT_EQ(rounds_of(scene_of(holes)).prisms.size(), 51u);
+}
+
 TEST(Rounds, EllipsesAreNotRound) {
   for (const double ratio : {0.5, 0.9, 1.03})
     EXPECT_TRUE(rounds_of({.sides = 60, .ratio = ratio}, anywhere()).rounds.empty()) << ratio;

@@ -77,7 +77,7 @@ def test_views_on_paper():
     xml.fromstring(sheet.svg)
     sheet = surfaces.draw_sheet(["front"], sections=["front"], dimensions=True, page="a3-landscape",
                                 title_block={"title": "Cubes", "author": "A. Appel"})
-    assert sheet.size == (420, 297) and "Cubes" in sheet.svg and (sheet.left_out, sheet.undrawn) == (0, 0)
+    assert sheet.size == (420, 297) and "Cubes" in sheet.svg and (sheet.left_out, sheet.undrawn, sheet.prisms) == (0, 0, 0)
 
 
 def test_figures_are_the_command_lines_files(cli):

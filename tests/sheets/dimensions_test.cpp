@@ -245,6 +245,23 @@ TEST_F(DimensionsTest, WhatIsNotDrawnIsCounted) {
   EXPECT_EQ(all.left_out, 0u);
 }
 
+TEST_F(DimensionsTest, CylindersOfFewSidesAreCounted) {
+  Mesh mesh;
+  add_box(mesh, {100, 60, 20});
+  add_peg(mesh, {20, 30, 20}, 6, 8, 12);
+  add_peg(mesh, {20, 30, 28}, 6, 2, 12);  // the same once more
+  add_peg(mesh, {60, 30, 20}, 3, 8, 8);
+  add_peg(mesh, {80, 30, 20}, 3, 8, 6);
+  scene_ = scene_of(mesh);
+  draw({NamedView::front, NamedView::top});
+  const Dimensions all = dimensioned();
+  EXPECT_EQ(all.count, 3u) << "width, depth and height";
+  EXPECT_EQ(all.prisms, 2u) << "six sides are a nut";
+  EXPECT_EQ(all.left_out + all.undrawn, 0u);
+  draw({NamedView::top});
+  EXPECT_EQ(dimensioned().prisms, 0u) << "seen from the side alone";
+}
+
 TEST_F(DimensionsTest, NothingLiesOnANumber) {
   Mesh mesh;
   add_box(mesh, {100, 60, 10});

@@ -64,4 +64,15 @@ struct FoundRevolved {
 /// that is smooth from one triangle to the next. O(triangles log triangles).
 [[nodiscard]] std::vector<FoundRevolved> find_revolved(const SmoothMesh& mesh, const Execution& execution);
 
+// Cylinders of too few sides to be round.
+
+struct FoundPrism {
+  Circle3 rim;           ///< one end: the circle through the corners
+  glm::dvec3 other_end;  ///< the middle of the other end
+};
+
+/// Cylinders of 7 to 17 sides with a sharp rim at either end. O(sharp edges log sharp edges), and at worst 4096 for
+/// each rim.
+[[nodiscard]] std::vector<FoundPrism> find_prisms(const SmoothMesh& mesh, const Execution& execution);
+
 }  // namespace frontmost::lines_detail

@@ -50,6 +50,11 @@ Rounds find_rounds(const Surfaces& surfaces, const Execution& execution) {
   for (const FoundRevolved& found : find_revolved(mesh, execution))
     append({RoundKind::revolved, found.from, found.to, found.axis, found.radius, 2 * std::numbers::pi}, found.triangles,
            mesh.mesh, all);
+  for (const FoundPrism& found : find_prisms(mesh, execution)) {
+    const Circle3& rim = found.rim;
+    all.prisms.push_back(
+        {RoundKind::cylinder, rim.centre, found.other_end, rim.axis, rim.radius, 2 * std::numbers::pi});
+  }
   return all;
 }
 

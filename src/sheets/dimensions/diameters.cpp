@@ -119,10 +119,14 @@ std::optional<Diameters::Leader> Diameters::best_leader(const Group& group, std:
   return best;
 }
 
-void Diameters::count_undrawn(const MeasuredView& view, Dimensions& all) {
-  std::size_t looked_at = 0;
-  for (const Round* const round : view.undrawn())
-    all.undrawn += round->turn >= least_turn && (++looked_at > most_circles || take(*round));
+void Diameters::count_missing(const MeasuredView& view, Dimensions& all) {
+  const auto count = [&](const std::vector<const Round*>& rounds, std::size_t& number) {
+    std::size_t looked_at = 0;
+    for (const Round* const round : rounds)
+      number += round->turn >= least_turn && (++looked_at > most_circles || take(*round));
+  };
+  count(view.undrawn(), all.undrawn);
+  count(view.prisms(), all.prisms);
 }
 
 void Diameters::add(const MeasuredView& view, Dimensions& all) {

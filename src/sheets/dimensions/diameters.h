@@ -24,9 +24,9 @@ class Diameters {
   bool take(const Round& round);
   /// Those that a view shows and no view before it.
   void add(const MeasuredView& view, Dimensions& all);
-  /// Counts the cylinders of a view that have no diameter, because no view draws them. Call it after all views were
-  /// added.
-  void count_undrawn(const MeasuredView& view, Dimensions& all);
+  /// Counts the cylinders of a view that have no diameter, because no view draws them, or because they are prisms. Call
+  /// it after all views were added.
+  void count_missing(const MeasuredView& view, Dimensions& all);
 
  private:
   struct Group {

@@ -149,7 +149,7 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
   for (std::size_t i = 0; i < views.size(); ++i)
     if (views[i].is_dimensioned) diameters.add(measured[i], all);
   for (std::size_t i = 0; i < views.size(); ++i)
-    if (views[i].is_dimensioned) diameters.count_undrawn(measured[i], all);
+    if (views[i].is_dimensioned) diameters.count_missing(measured[i], all);
   all.layer.groups = pen.take();
   return all;
 }

@@ -53,6 +53,7 @@ struct Dimensions {
   std::size_t count = 0;            ///< of dimensions on the page
   std::size_t left_out = 0;         ///< diameters for which there was no room
   std::size_t undrawn = 0;          ///< diameters of cylinders that are seen along their axes, but not drawn
+  std::size_t prisms = 0;           ///< likewise of cylinders of fewer than 18 sides, which count as polygons
 };
 
 /// Overall sizes as overall_sizes_of() shares them out, and diameters of circles and cylinders that are seen along

@@ -35,12 +35,18 @@ glm::dvec2 MeasuredView::on_page(const glm::dvec3& point) const {
   return view_.sheet->on_page(on_screen(view_.drawing->view, point));
 }
 
+bool MeasuredView::is_seen_along(const Round& round) const {
+  return glm::length(glm::cross(round.axis, view_.drawing->view.forward())) <= square;
+}
+
 void MeasuredView::find_circles() {
+  for (const Round& prism : view_.rounds->prisms)
+    if (is_seen_along(prism)) prisms_.push_back(&prism);
   const std::vector<double> lengths = drawn_lengths(*view_.rounds, *view_.drawing, view_.with_hidden);
   for (std::size_t i = 0; i < lengths.size(); ++i) {
     const Round& round = view_.rounds->rounds[i];
     if (round.kind == RoundKind::revolved) continue;  // its largest circle is no edge
-    if (glm::length(glm::cross(round.axis, view_.drawing->view.forward())) > square) continue;
+    if (!is_seen_along(round)) continue;
     const double radius = round.radius * millimetres_;
     if (lengths[i] * view_.sheet->millimetres_per_pixel >= least_drawn * round.turn * radius)
       circles_.push_back({&round, on_page(round.from), radius});

@@ -36,17 +36,20 @@ class MeasuredView {
   [[nodiscard]] const std::vector<SeenCircle>& circles() const { return circles_; }
   /// Cylinders that are seen along their axes, and of which less is drawn.
   [[nodiscard]] const std::vector<const Round*>& undrawn() const { return undrawn_; }
+  /// Rounds::prisms that are seen along their axes.
+  [[nodiscard]] const std::vector<const Round*>& prisms() const { return prisms_; }
   [[nodiscard]] glm::dvec2 on_page(const glm::dvec3& point) const;
 
  private:
   void find_circles();
+  [[nodiscard]] bool is_seen_along(const Round& round) const;
 
   const DimensionedView& view_;
   double millimetres_;  ///< of paper to a unit of the scene
   bool is_empty_ = true;
   PageBox box_;
   std::vector<SeenCircle> circles_;
-  std::vector<const Round*> undrawn_;
+  std::vector<const Round*> undrawn_, prisms_;
 };
 
 }  // namespace frontmost::detail
