@@ -50,11 +50,11 @@ struct Section {
 /// is cut just if its object lies behind it. Of an object whose triangles are wound alike, all that its outlines wind
 /// around is filled (nonzero rule), of another what an odd number of outlines goes around. Sides that two triangles
 /// have in opposite directions are none. Ends that lie nearer to each other than a hundred thousandth of the cut's size
-/// are joined: T-junctions leave such gaps. Normals, texture coordinates and colours of vertices are not kept.
-/// Triangles with a corner that is not finite are left out. O(triangles), and of the corners of each cut n log n where
-/// it looks like a part; combs and mazes may take n * n.
-/// (G. Meisters. Polygons Have Ears. 1975.)
-/// \throws Error bad_argument for a plane that is not finite as a float.
+/// are joined: T-junctions leave such gaps. Outlines that cross themselves are filled by triangles that may overlap.
+/// Normals, texture coordinates and colours of vertices are not kept. Triangles with a corner that is not finite are
+/// left out. O(triangles), and of the corners of each cut n log n where it looks like a part; combs and mazes may take
+/// n * n. (G. Meisters. Polygons Have Ears. 1975.) \throws Error bad_argument for a plane that is not finite as a
+/// float.
 [[nodiscard]] Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution& execution = {});
 
 /// By instance, in which of six ways an object is hatched in all of these sections: another one than the objects before

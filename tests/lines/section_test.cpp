@@ -95,6 +95,21 @@ CutFace expect_solid(const Mesh& mesh, const CuttingPlane& plane) {
   return section.faces[0];
 }
 
+/// Walls over an outline, from z = 0 to 1, with a fan of triangles on either end.
+Mesh walls_over(const std::vector<glm::vec2>& outline) {
+  Mesh mesh;
+  const auto n = std::uint32_t(outline.size());
+  for (const float z : {0.0f, 1.0f})
+    for (const glm::vec2& p : outline) mesh.positions.emplace_back(p, z);
+  for (const float z : {0.0f, 1.0f}) mesh.positions.emplace_back(0, 0, z);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t k = (i + 1) % n;
+    mesh.triangles.insert(mesh.triangles.end(),
+                          {{i, k, n + k}, {i, n + k, n + i}, {k, i, 2 * n}, {n + i, n + k, 2 * n + 1}});
+  }
+  return mesh;
+}
+
 /// A rectangle of quads whose rows and columns close, as points on a grid.
 Mesh ring_mesh(int rows, int columns, const std::function<glm::dvec3(int, int)>& point) {
   Mesh mesh;
@@ -207,6 +222,28 @@ TEST(Section, ThroughCornersEdgesAndFacesOfALatticeEveryCutIsClosed) {
   // An octahedron through its corners and edges.
   Mesh octahedron = sphere(2);
   for (const Axis axis : all_axes) EXPECT_EQ(expect_solid(octahedron, {axis, 0}).open_count, 0u);
+}
+
+TEST(Section, OutlinesThatCrossThemselvesAreClosedAllTheSame) {
+  std::vector<std::vector<glm::vec2>> outlines = {
+      {{-1, 0}, {2, 0}, {0, 1}, {0, -2}},                               // an hourglass, as much one way as the other
+      {{-1, 0}, {2, 0}, {0, 1}, {0, -1}},                               // one that is not
+      {{0, 0}, {9, 0}, {9, 0.01f}, {8.9f, -0.01f}, {8.9f, 5}, {0, 5}},  // a small loop at a corner
+      {},
+      {}};
+  for (int i = 0; i < 5; ++i)  // a star of five points in one line, which goes around its middle twice
+    outlines[3].emplace_back(std::cos(4 * pi * i / 5), std::sin(4 * pi * i / 5));
+  Random random(7);
+  for (int i = 0; i < 40; ++i) outlines[4].emplace_back(random.point(1));
+  for (std::vector<glm::vec2>& outline : outlines) {
+    if (volume_of(walls_over(outline)) < 0) std::reverse(outline.begin(), outline.end());
+    for (const float at : {0.25f, 0.5f}) {
+      const Section section = cut_of(walls_over(outline), {Axis::z, at});
+      const Mesh& left = section.scene.meshes[0];
+      EXPECT_EQ(open_sides(left), 0u) << outline.size();
+      EXPECT_NEAR(volume_of(left), double(at) * volume_of(walls_over(outline)), 1e-5) << outline.size();
+    }
+  }
 }
 
 TEST(Section, RandomConvexSolidsBesideTheHullOfTheirEdges) {

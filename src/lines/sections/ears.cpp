@@ -11,7 +11,8 @@
 //
 // All turns are exact signs, so no ear overlaps another. Only corners at which the polygon turns right may lie in an
 // ear, and those are looked for in the cells of a grid. Where outlines cross there may be no ear at all: then flat
-// corners are cut, then any corner that turns left, so that the loop always ends.
+// corners are cut, then any corner that turns left, and then any corner. So each side of an outline is a side of one
+// triangle, and what is left of the object is closed even there; triangles of turns to the right overlap others.
 #include <algorithm>
 #include <cmath>
 
@@ -257,7 +258,6 @@ class EarCutter {
       }
       corner = next;
       if (++since_cut < left_) continue;
-      if (patience == Patience::none) return;  // what is left runs clockwise: outlines cross
       patience = Patience(int(patience) + 1);
       since_cut = 0;
     }
@@ -265,12 +265,12 @@ class EarCutter {
 
  private:
   /// What is cut off when there is nothing better.
-  enum class Patience : std::uint8_t { ears, flat, crossing, none };
+  enum class Patience : std::uint8_t { ears, flat, crossing, any };
 
   [[nodiscard]] bool may_go(std::uint32_t i, Patience patience) const {
     const int turn = orientation(rings_.at(rings_.last(i)), rings_.at(i), rings_.at(rings_.next(i)));
     if (turn > 0) return patience >= Patience::crossing || is_ear(i);
-    return turn == 0 && patience >= Patience::flat;
+    return patience == Patience::any || (turn == 0 && patience >= Patience::flat);
   }
 
   [[nodiscard]] bool is_ear(std::uint32_t i) const {

@@ -5,11 +5,13 @@
 //        |  +-----+  |          region around it.
 //        +-----------+
 //
-// Areas are summed about a point of the line; what is no more than the rounding of that sum counts as nothing.
+// Areas are summed about a point of the line; what is no more than the rounding of that sum counts as nothing, unless
+// the line crosses itself, as an hourglass: then it is filled all the same.
 #include "lines/sections/regions.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/orientation.h"
 #include "base/parallel.h"
@@ -18,6 +20,7 @@ namespace frontmost::lines_detail {
 namespace {
 
 constexpr double area_rounding = 1e-12;  // of the sum of what it is the sum of
+constexpr double crossed_area = 1e-6;    // likewise: of lines that go around as much one way as the other
 
 /// A closed line, and what is asked of it.
 struct Ring {
@@ -29,17 +32,19 @@ struct Ring {
 Ring ring_of(SectionOutline points) {
   Ring ring;
   ring.low = ring.high = points[0];
-  double size = 0;
+  double size = 0, turned = 0;
   const glm::dvec2 origin(points[0]);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const glm::dvec2 a = glm::dvec2(points[i]) - origin;
     const glm::dvec2 b = glm::dvec2(points[i + 1 < points.size() ? i + 1 : 0]) - origin;
     ring.area += (a.x * b.y - a.y * b.x) / 2;
+    turned += std::abs(a.x * b.y - a.y * b.x);
     size += std::abs(a.x * b.y) + std::abs(a.y * b.x);
     ring.low = glm::min(ring.low, points[i]);
     ring.high = glm::max(ring.high, points[i]);
   }
-  if (std::abs(ring.area) <= area_rounding * size) ring.area = 0;
+  if (std::abs(ring.area) <= area_rounding * size)
+    ring.area = turned > crossed_area * size ? std::numeric_limits<double>::min() : 0;
   ring.points = std::move(points);
   return ring;
 }
