@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG and JPEG textures, which the browser decodes: the module holds no libraries for them.
+// PNG, JPEG and WebP textures, which the browser decodes: the module holds no libraries for them.
 //
 //   load() -- asks for pixels --> GivenImages: not there, noted --> the page decodes what was noted --> load() again
 #pragma once

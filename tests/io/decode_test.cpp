@@ -184,10 +184,52 @@ TEST(Decode, JpegScansWithoutEndAreRefused) {
   EXPECT_THAT(error_of(many), HasSubstr("more scans than an image of its size has"));
 }
 
+// Red, green, blue and white, four by four pixels each, without loss.
+constexpr std::string_view quarters(
+    "RIFF\x36\0\0\0WEBPVP8L\x2a\0\0\0\x2f\x0f\xc0\x03\0\x1f \x10H\xde\x1f:\x8d\xf9\x17\x10\x14\xfc\x1f\xdd\xfc"
+    "Gd\x0f\x80"
+    "0\xdbh\x92\x93\x9c\xe4\xbd\xcf \xa2\xffQ\xfa\xc1\xf6\x01",
+    62);
+
+class DecodeWebp : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!decodes_webp(nullptr)) GTEST_SKIP() << "built without libwebp";
+  }
+};
+
+TEST_F(DecodeWebp, LosslessPixelsAreAsTheyWere) {
+  EXPECT_EQ(texture_size(bytes_of(quarters), "t.webp"), glm::ivec2(16, 16));
+  const Texture t = decode_texture(bytes_of(quarters), "t.webp");
+  ASSERT_THAT(t.pixels, testing::SizeIs(256));
+  for (std::size_t i = 0; i < 256; ++i) {
+    const bool right = i % 16 >= 8, low = i / 16 >= 8;
+    const Pixel expected = low     ? right ? Pixel(255) : Pixel(0, 0, 255, 255)
+                               : right ? Pixel(0, 255, 0, 255)
+                                   : Pixel(255, 0, 0, 255);
+    EXPECT_EQ(t.pixels[i], expected) << i;
+  }
+}
+
+TEST_F(DecodeWebp, EveryPrefixIsAnError) {
+  for (std::size_t n = 12; n < quarters.size(); ++n)
+    EXPECT_THAT(error_of(bytes_of(quarters.substr(0, n))), HasSubstr("WebP: ")) << n;
+}
+
+TEST_F(DecodeWebp, AnimationsAreNamed) {
+  using namespace std::string_view_literals;
+  EXPECT_EQ(error_of(bytes_of("RIFF\x16\0\0\0WEBPVP8X\x0a\0\0\0\x02\0\0\0\x0f\0\0\x0f\0\0"sv), ErrorCode::unsupported),
+            "a.png: WebP: animations are not supported");
+}
+
+TEST(Decode, ABuildWithoutLibwebpSaysSo) {
+  if (decodes_webp(nullptr)) GTEST_SKIP() << "built with libwebp";
+  EXPECT_THAT(error_of(bytes_of(quarters), ErrorCode::unsupported), HasSubstr("libwebp-dev"));
+}
+
 TEST(Decode, OtherFormatsAreNamed) {
   using namespace std::string_view_literals;
   const std::pair<std::string_view, const char*> files[] = {
-      {"RIFF\0\0\0\0WEBPVP8 "sv, "WebP"},
       {"\xABKTX 20\xBB\r\n\x1A\n"sv, "KTX2"},
       {"\xABKTX 11\xBB\r\n\x1A\n"sv, "KTX"},
       {"DDS |"sv, "DDS"},
@@ -204,13 +246,13 @@ TEST(Decode, OtherFormatsAreNamed) {
   };
   for (const auto& [bytes, format] : files) {
     EXPECT_EQ(error_of(bytes_of(bytes), ErrorCode::unsupported),
-              std::string("a.png: ") + format + " images are not supported, only PNG and JPEG");
+              std::string("a.png: ") + format + " images are not supported, only PNG, JPEG and WebP");
   }
 }
 
 TEST(Decode, TextsThatBeginLikeASignatureAreNoneOfTheseFormats) {
   for (const char* text : {"MMXXVI", "II*x", "Bm", "GIF", "8BP", "#?RADIANT", "RIFF....WAVE", "RIFF....WEB"})
-    EXPECT_EQ(error_of(bytes_of(text)), "a.png: neither PNG nor JPEG") << text;
+    EXPECT_EQ(error_of(bytes_of(text)), "a.png: neither PNG nor JPEG nor WebP") << text;
 }
 
 TEST(Decode, EmptyAndUnknownAreErrors) {

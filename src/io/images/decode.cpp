@@ -20,7 +20,6 @@ using namespace std::string_view_literals;
 /// Formats that models refer to in the wild and that we name instead of calling them broken. Literals with a zero
 /// inside say their own length: as plain ones they would end there, and "MM" begins many a text.
 constexpr Signature foreign_formats[] = {
-    {8, "WEBP", "WebP"},
     {1, "KTX 20", "KTX2"},
     {1, "KTX 11", "KTX"},
     {0, "DDS ", "DDS"},
@@ -42,11 +41,13 @@ bool matches(std::span<const std::byte> bytes, std::size_t offset, std::string_v
 Texture decode(std::span<const std::byte> bytes, const std::string& name, detail::ImagePart part) {
   if (matches(bytes, 0, "\x89PNG\r\n\x1a\n"sv)) return detail::decode_png(bytes, name, part);
   if (matches(bytes, 0, "\xff\xd8\xff"sv)) return detail::decode_jpeg(bytes, name, part);
+  if (matches(bytes, 0, "RIFF") && matches(bytes, 8, "WEBP")) return detail::decode_webp(bytes, name, part);
   for (const Signature& foreign : foreign_formats)
     if (matches(bytes, foreign.offset, foreign.bytes))
       throw Error(ErrorCode::unsupported,
-                  name + ": " + foreign.format + " images are not supported, only PNG and JPEG");
-  throw Error(ErrorCode::file_malformed, name + (bytes.empty() ? ": the image is empty" : ": neither PNG nor JPEG"));
+                  name + ": " + foreign.format + " images are not supported, only PNG, JPEG and WebP");
+  throw Error(ErrorCode::file_malformed,
+              name + (bytes.empty() ? ": the image is empty" : ": neither PNG nor JPEG nor WebP"));
 }
 
 /// Runs a decoder of the caller's, whose errors do not know where they come from.
@@ -83,6 +84,8 @@ void check_image_size(const std::string& name, std::uint64_t width, std::uint64_
 Texture decode_texture(std::span<const std::byte> bytes, const std::string& name) {
   return decode(bytes, name, detail::ImagePart::pixels);
 }
+
+bool decodes_webp(const ImageDecoder* decoder) { return decoder != nullptr || detail::has_webp(); }
 
 glm::ivec2 texture_size(std::span<const std::byte> bytes, const std::string& name) {
   const Texture header = decode(bytes, name, detail::ImagePart::size);

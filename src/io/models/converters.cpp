@@ -19,6 +19,11 @@ constexpr Converter assimp{"Debian package assimp-utils", "assimp export {in} {o
 constexpr Converter blender{
     "Debian package blender",
     R"sh(blender -b {in} --python-expr "import bpy; bpy.ops.export_scene.gltf(filepath='{out}.glb')")sh"};
+// glTF Transform writes what it has decoded without the extension, but leaves images as they are unless told otherwise.
+constexpr std::string_view gltf_transform = "Node.js fetches glTF Transform";
+constexpr Converter decompress{gltf_transform, "npx @gltf-transform/cli copy {in} {out}-plain.glb"};
+constexpr Converter webp_to_png{gltf_transform, "npx @gltf-transform/cli png --formats webp {in} {out}-plain.glb"};
+constexpr Converter ktx_to_png{gltf_transform, "npx @gltf-transform/cli ktxdecompress {in} {out}-plain.glb"};
 constexpr Converter blender_usd{
     "Blender from blender.org; that of Debian has no USD",
     R"sh(blender -b --python-expr "import bpy; bpy.ops.wm.read_factory_settings(use_empty=True); )sh"
@@ -36,6 +41,17 @@ constexpr Foreign step{"STEP", ".step .stp .p21 ", gmsh}, iges{"IGES", ".iges .i
     blend{"Blender", ".blend ", blender}, usd{"USD", ".usdz .usd .usda .usdc ", blender_usd};
 constexpr const Foreign* all[] = {&step,      &iges, &brep, &fbx, &collada, &three_ds, &x3d,
                                   &lightwave, &ac3d, &ifc,  &amf, &blend,   &usd};
+
+struct ForeignExtension {
+  std::string_view name;
+  const Converter& converter;
+};
+/// The first one that a file has decides: the program decodes those behind it anyway.
+constexpr ForeignExtension foreign_extensions[] = {{"KHR_texture_basisu", ktx_to_png},
+                                                   {"EXT_texture_webp", webp_to_png},
+                                                   {"KHR_draco_mesh_compression", decompress},
+                                                   {"EXT_meshopt_compression", decompress},
+                                                   {"KHR_meshopt_compression", decompress}};
 
 std::string lower_suffix(const std::string& path) {
   std::string suffix = std::filesystem::path(path).extension().string();
@@ -73,9 +89,11 @@ std::string filled(std::string_view command, const std::string& path) {
   return out;
 }
 
+std::string advice(const Converter& converter, const std::string& path) {
+  return "convert it first: " + filled(converter.command, path) + " (" + std::string(converter.program) + ")";
+}
 std::string advice(const Foreign& format, const std::string& path) {
-  return std::string(format.name) + " is not read; convert it first: " + filled(format.converter.command, path) + " (" +
-         std::string(format.converter.program) + ")";
+  return std::string(format.name) + " is not read; " + advice(format.converter, path);
 }
 
 /// Lines of 80 columns, of which the first is the first of the start section.
@@ -88,6 +106,13 @@ std::optional<std::string> conversion_by_suffix(const std::string& path) {
   if (suffix.size() < 2) return std::nullopt;
   for (const Foreign* format : all)
     if (format->suffixes.find(suffix + " ") != std::string_view::npos) return advice(*format, path);
+  return std::nullopt;
+}
+
+std::optional<std::string> conversion_of_extensions(const std::vector<std::string>& names, const std::string& path) {
+  const std::string file = lower_suffix(path).size() < 2 ? "model.glb" : path;  // standard input has no name
+  for (const ForeignExtension& known : foreign_extensions)
+    if (std::find(names.begin(), names.end(), known.name) != names.end()) return advice(known.converter, file);
   return std::nullopt;
 }
 

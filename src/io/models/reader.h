@@ -44,5 +44,9 @@ inline constexpr const char* no_triangles_warning = "the file holds no triangles
 [[nodiscard]] std::optional<std::string> conversion_by_suffix(const std::string& path);
 /// The same by the first bytes, for what has no suffix, such as standard input.
 [[nodiscard]] std::optional<std::string> conversion_by_content(Bytes bytes);
+/// The same of the glTF file `path`, for extensions that it requires or uses. None: no program is known for any of
+/// them.
+[[nodiscard]] std::optional<std::string> conversion_of_extensions(const std::vector<std::string>& names,
+                                                                  const std::string& path);
 
 }  // namespace frontmost

@@ -55,6 +55,22 @@ TEST(Converters, ContentsAreKnownToo) {
             "model: not a model that Frontmost can read (STL, PLY, OBJ, OFF, glTF, GLB, 3MF, a scene file)");
 }
 
+TEST(Converters, ExtensionsOfGltfNameTheCommand) {
+  const auto by_extensions = [](const std::vector<std::string>& names, const std::string& path) {
+    return conversion_of_extensions(names, path).value_or("none");
+  };
+  EXPECT_EQ(by_extensions({"KHR_draco_mesh_compression"}, "a/my lamp.glb"),
+            "convert it first: npx @gltf-transform/cli copy 'a/my lamp.glb' 'a/my lamp-plain.glb' "
+            "(Node.js fetches glTF Transform)");
+  EXPECT_THAT(by_extensions({"EXT_meshopt_compression"}, "standard input"),
+              HasSubstr("copy model.glb model-plain.glb"));
+  EXPECT_THAT(by_extensions({"EXT_texture_webp"}, "a.gltf"), HasSubstr("png --formats webp a.gltf a-plain.glb"));
+  // The one for images decodes meshes as well.
+  EXPECT_THAT(by_extensions({"KHR_draco_mesh_compression", "KHR_texture_basisu"}, "a.glb"),
+              HasSubstr("ktxdecompress a.glb a-plain.glb"));
+  EXPECT_EQ(by_extensions({"EXT_other"}, "a.glb"), "none");
+}
+
 // Whatever its contents, unless the format was said: a zip archive is also 3MF's.
 TEST(Converters, LoadSaysSoBeforeItReads) {
   const std::string path = std::filesystem::temp_directory_path() / ("toy" + std::to_string(getpid()) + ".usdz");

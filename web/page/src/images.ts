@@ -1,10 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels of PNG and JPEG files as they are stored: neither multiplied by alpha nor brought to the screen's colours, as a
+// Pixels of PNG, JPEG and WebP files as they are stored: neither multiplied by alpha nor brought to the screen's colours, as a
 // canvas would.
 
-/** Pixels as a PNG's or a JPEG's header states them; 0 where it does not. */
+/** Pixels as the header of a WebP states them: lossy, lossless or extended; 0 where it does not. */
+function pixelsOfWebp(view: DataView): number {
+  if (view.byteLength < 30) return 0;
+  const size24 = (at: number) => 1 + view.getUint16(at, true) + 65536 * view.getUint8(at + 2);
+  const kind = view.getUint8(15);
+  if (kind === 0x58) return size24(24) * size24(27); // "VP8X"
+  const bits = view.getUint32(21, true);
+  if (kind === 0x4c) return (1 + (bits & 0x3fff)) * (1 + ((bits >> 14) & 0x3fff)); // "VP8L"
+  return (view.getUint16(26, true) & 0x3fff) * (view.getUint16(28, true) & 0x3fff);
+}
+
+/** Pixels as an image's header states them; 0 where it does not. */
 function pixelsOf(file: Uint8Array): number {
   const view = new DataView(file.buffer, file.byteOffset, file.byteLength);
+  if (file[0] === 0x52) return pixelsOfWebp(view);
   if (file[0] === 0x89) return file.length < 24 ? 0 : view.getUint32(16) * view.getUint32(20);
   for (let at = 2; at + 9 < file.length && file[at] === 0xff; ) {
     const marker = file[at + 1];
@@ -33,11 +45,12 @@ export class PixelBudget {
 
 export interface Pixels { width: number; height: number; rgba: Uint8Array<ArrayBuffer> }
 
-const kinds: [number[], string][] = [[[0x89, 0x50, 0x4e, 0x47], "image/png"], [[0xff, 0xd8, 0xff], "image/jpeg"]];
+const kinds: [number[], string][] = [
+  [[0x89, 0x50, 0x4e, 0x47], "image/png"], [[0xff, 0xd8, 0xff], "image/jpeg"], [[0x52, 0x49, 0x46, 0x46], "image/webp"]];
 
 export async function decodeImage(file: Uint8Array<ArrayBuffer>): Promise<Pixels> {
   const type = kinds.find(([begin]) => begin.every((byte, i) => file[i] === byte))?.[1];
-  if (!type) throw new Error("neither PNG nor JPEG");
+  if (!type) throw new Error("neither PNG nor JPEG nor WebP");
   return "ImageDecoder" in self ? byDecoder(file, type) : byWebGL(file, type);
 }
 

@@ -9,6 +9,7 @@
 // what is known to be smaller. Whatever is read later is then read without a check.
 #include "io/models/gltf/data.h"
 
+#include "io/models/gltf/compressed.h"
 #include "io/models/gltf/container.h"
 
 namespace frontmost::gltf {
@@ -85,7 +86,8 @@ Data::Data(const JsonValue& root, const Container& container)
     for (std::size_t i = 0; array && i < array->size(); ++i) read((*array)[i], i);
   };
   each("buffers", [&](const JsonValue& json, std::size_t i) { read_buffer(json, container, i == 0); });
-  each("bufferViews", [&](const JsonValue& json, std::size_t) { read_view(json); });
+  Budget decoded(byte_count());
+  each("bufferViews", [&](const JsonValue& json, std::size_t) { read_view(json, decoded); });
   each("accessors", [&](const JsonValue& json, std::size_t) { read_accessor(json); });
 }
 
@@ -104,6 +106,11 @@ std::uint32_t Data::readable_accessor(const JsonValue& user) const {
   const std::uint32_t id = user.to_index(accessors_.size());
   if (accessors_[id].unreadable != nullptr) user.fail(accessors_[id].unreadable);
   return id;
+}
+
+std::uint32_t Data::add(const Accessor& accessor) {
+  accessors_.push_back(accessor);
+  return std::uint32_t(accessors_.size() - 1);
 }
 
 void Data::read_buffer(const JsonValue& json, const Container& container, bool first) {
@@ -139,7 +146,7 @@ Bytes Data::file_bytes(const std::string& path, const ModelSource& source) {
   return found->second.bytes();
 }
 
-void Data::read_view(const JsonValue& json) {
+void Data::read_view(const JsonValue& json, Budget& decoded) {
   const ByteExtent& buffer = buffers_[json.require("buffer").to_index(buffers_.size())];
   const std::uint64_t offset = json.unsigned_or("byteOffset", 0);
   ByteExtent view;
@@ -150,7 +157,26 @@ void Data::read_view(const JsonValue& json) {
     json.fail("bytes " + std::to_string(offset) + " + " + std::to_string(view.length) +
               " are not within the buffer, which has " + std::to_string(buffer.length));
   if (view.present) view.bytes = buffer.bytes.subspan(offset, view.length);
+  const std::optional<JsonValue> compression = find_meshopt(json);
+  if (compression && has_meshopt()) {
+    view.bytes = decode_view(*compression, view.length, decoded);
+    view.present = true;
+  }
   views_.push_back(view);
+}
+
+/// The bytes of a view whose buffer is a stand-in: the extension names the buffer with the compressed ones.
+Bytes Data::decode_view(const JsonValue& compression, std::uint64_t length, Budget& decoded) {
+  const ByteExtent& buffer = buffers_[compression.require("buffer").to_index(buffers_.size())];
+  const std::uint64_t offset = compression.unsigned_or("byteOffset", 0);
+  const std::uint64_t size = compression.require("byteLength").to_unsigned();
+  if (!buffer.present) compression.fail(no_contents);
+  if (!fits(offset, size, 1, 1, buffer.length))
+    compression.fail("bytes " + std::to_string(offset) + " + " + std::to_string(size) +
+                     " are not within the buffer, which has " + std::to_string(buffer.length));
+  decoded.charge(length, 1, compression.place(), compression.source());
+  decoded.charge(size, 1, compression.place(), compression.source());
+  return keep(decode_meshopt(compression, buffer.bytes.subspan(offset, size), length));
 }
 
 void Data::read_accessor(const JsonValue& json) {

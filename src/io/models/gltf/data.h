@@ -57,6 +57,7 @@ class Data {
   Data(const JsonValue& root, const Container& container);
 
   [[nodiscard]] std::size_t view_count() const { return views_.size(); }
+  [[nodiscard]] std::size_t accessor_count() const { return accessors_.size(); }
   [[nodiscard]] const Accessor& accessor(std::uint32_t i) const { return accessors_[i]; }
   /// The accessor that `user` names, which must be readable.
   [[nodiscard]] std::uint32_t readable_accessor(const JsonValue& user) const;
@@ -65,10 +66,16 @@ class Data {
   /// All bytes that belong to the model.
   [[nodiscard]] std::uint64_t byte_count() const;
 
+  // What a decoder has made of compressed bytes.
+  [[nodiscard]] Bytes keep(std::vector<std::byte> bytes) { return decoded_.emplace_back(std::move(bytes)); }
+  /// \returns the number of the accessor, which follows those of the file.
+  std::uint32_t add(const Accessor& accessor);
+
  private:
   void read_buffer(const JsonValue& json, const Container& container, bool first);
   [[nodiscard]] Bytes file_bytes(const std::string& path, const ModelSource& source);
-  void read_view(const JsonValue& json);
+  void read_view(const JsonValue& json, Budget& decoded);
+  [[nodiscard]] Bytes decode_view(const JsonValue& compression, std::uint64_t length, Budget& decoded);
   void read_accessor(const JsonValue& json);
   void find_elements(const JsonValue& json, Accessor& accessor) const;
   void read_sparse(const JsonValue& json, Accessor& accessor, std::size_t value_stride) const;
@@ -77,7 +84,7 @@ class Data {
   };
   [[nodiscard]] Bytes packed(const JsonValue& json, const Packed& elements) const;
 
-  std::deque<std::vector<std::byte>> decoded_;  ///< contents of data URIs; a deque, so that they stay where they are
+  std::deque<std::vector<std::byte>> decoded_;  ///< of data URIs and by decoders; a deque, so that they stay in place
   std::map<std::string, InputFile> files_;
   std::vector<ByteExtent> buffers_, views_;
   std::vector<Accessor> accessors_;

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "io/images/decode.h"
+#include "io/models/gltf/compressed.h"
 #include "io/models/gltf/nodes.h"
 #include "io/models/mesh_building.h"
 #include "io/models/reader.h"
@@ -33,7 +35,31 @@ constexpr std::string_view supported_extensions[] = {
     "KHR_materials_pbrSpecularGlossiness",
 };
 
-bool is_supported(const std::string& extension) {
+/// Extensions whose decoder is an optional part of a build.
+struct OptionalExtension {
+  std::string_view name;
+  bool (*is_there)(const ModelSource& source);
+  const char* part;
+};
+constexpr OptionalExtension optional_extensions[] = {
+    {"KHR_draco_mesh_compression", [](const ModelSource&) { return has_draco(); },
+     "Draco (Debian package libdraco-dev, FRONTMOST_DRACO)"},
+    {"EXT_meshopt_compression", [](const ModelSource&) { return has_meshopt(); },
+     "meshoptimizer (Debian package libmeshoptimizer-dev, FRONTMOST_MESHOPT)"},
+    {"KHR_meshopt_compression", [](const ModelSource&) { return has_meshopt(); },
+     "meshoptimizer (Debian package libmeshoptimizer-dev, FRONTMOST_MESHOPT)"},
+    {"EXT_texture_webp", [](const ModelSource& source) { return decodes_webp(source.image_decoder()); },
+     "libwebp (Debian package libwebp-dev, FRONTMOST_WEBP)"},
+};
+
+const OptionalExtension* optional_extension(std::string_view name) {
+  for (const OptionalExtension& extension : optional_extensions)
+    if (extension.name == name) return &extension;
+  return nullptr;
+}
+
+bool is_supported(const std::string& extension, const ModelSource& source) {
+  if (const OptionalExtension* known = optional_extension(extension)) return known->is_there(source);
   return std::find(std::begin(supported_extensions), std::end(supported_extensions), extension) !=
          std::end(supported_extensions);
 }
@@ -54,17 +80,24 @@ std::vector<std::string> unsupported(const JsonValue& root, const char* key) {
   const std::optional<JsonValue> array = root.find(key);
   for (std::size_t i = 0; array && i < array->size(); ++i) {
     const std::string name = (*array)[i].to_string();
-    if (!is_supported(name)) names.push_back(printable(name));
+    if (!is_supported(name, root.source())) names.push_back(printable(name));
   }
   return names;
 }
 
 void check_extensions(const JsonValue& root, std::vector<std::string>& warnings) {
-  std::string list;
-  for (const std::string& name : unsupported(root, "extensionsRequired")) list += (list.empty() ? "" : ", ") + name;
-  if (!list.empty())
-    throw Error(ErrorCode::unsupported,
-                root.source().name() + ": extensionsRequired: " + printable(list) + ": not supported");
+  const std::vector<std::string> required = unsupported(root, "extensionsRequired");
+  if (!required.empty()) {
+    std::string list, absent;
+    for (const std::string& name : required) {
+      list += (list.empty() ? "" : ", ") + name;
+      if (const OptionalExtension* known = optional_extension(name))
+        absent = std::string("; this Frontmost was built without ") + known->part;
+    }
+    const std::optional<std::string> advice = conversion_of_extensions(required, root.source().name());
+    throw Error(ErrorCode::unsupported, root.source().name() + ": extensionsRequired: " + printable(list) +
+                                            ": not supported" + absent + (advice ? "; " + *advice : ""));
+  }
   for (const std::string& name : unsupported(root, "extensionsUsed"))
     warnings.push_back("extensionsUsed: " + name + " is not supported and passed over");
 }
@@ -90,7 +123,7 @@ Scene read_scene(const Container& container, const ModelSource& source) {
   check_extensions(root, scene.warnings);
   check_counts(root);
   // Ranges first: whatever follows reads through `data` and checks no length of its own.
-  const Data data(root, container);
+  Data data(root, container);
   TextureTable textures(root, data);
   // Materials before meshes, because their textures decide which sets of texture coordinates are read.
   MaterialList materials = read_materials(root, textures, scene.warnings);

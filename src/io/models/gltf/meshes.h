@@ -53,7 +53,8 @@ struct MeshPlan {
 };
 
 /// Checks primitives and their accessors. Points, lines and primitives without positions become warnings.
-[[nodiscard]] std::vector<MeshPlan> plan_meshes(const JsonValue& root, const Data& data, const MaterialList& materials,
+/// Arrays of compressed primitives are decoded, and added to `data`.
+[[nodiscard]] std::vector<MeshPlan> plan_meshes(const JsonValue& root, Data& data, const MaterialList& materials,
                                                 std::vector<std::string>& warnings);
 
 /// How vertices are moved: by morph targets, then by joints.

@@ -8,6 +8,7 @@
 // whatever it is for. What is left is a MeshPlan, which can be read without a further question.
 #include <algorithm>
 
+#include "io/models/gltf/compressed.h"
 #include "io/models/gltf/meshes.h"
 
 namespace frontmost::gltf {
@@ -22,16 +23,17 @@ struct Allowed {
   bool integers;  ///< unsigned ones, and nothing else
 };
 
-/// Reads the attributes of one primitive or morph target.
+/// Reads the attributes of one primitive or morph target; `decoded` has those that are compressed, if any are.
 class AttributeReader {
  public:
-  AttributeReader(const JsonValue& json, const Data& data) : json_(json), data_(data) {}
+  AttributeReader(const JsonValue& json, const Data& data, const DecodedPrimitive* decoded = nullptr)
+      : json_(json), data_(data), decoded_(decoded) {}
 
   /// The accessor of an attribute, if it is there and can be read as asked.
   std::uint32_t find(const std::string& name, Allowed allowed) {
     const std::optional<JsonValue> found = json_.find(name.c_str());
     if (!found) return no_index;
-    const std::uint32_t id = data_.readable_accessor(*found);
+    const std::uint32_t id = accessor_of(name, *found);
     const Accessor& accessor = data_.accessor(id);
     if (accessor.components < allowed.least_components || accessor.components > allowed.most_components)
       found->fail("has " + std::to_string(accessor.components) + " components");
@@ -58,15 +60,23 @@ class AttributeReader {
   [[nodiscard]] std::size_t count() const { return count_.value_or(0); }
 
  private:
+  [[nodiscard]] std::uint32_t accessor_of(const std::string& name, const JsonValue& json) const {
+    if (decoded_ == nullptr) return data_.readable_accessor(json);
+    const auto found = decoded_->attributes.find(name);
+    return found != decoded_->attributes.end() ? found->second : data_.readable_accessor(json);
+  }
+
   const JsonValue& json_;
   const Data& data_;
+  const DecodedPrimitive* decoded_;
   std::optional<std::size_t> count_;
 };
 
 class Planner {
  public:
-  Planner(const JsonValue& json, const Data& data, const MaterialList& materials, std::vector<std::string>& warnings)
-      : json_(json), data_(data), materials_(materials), warnings_(warnings) {}
+  Planner(const JsonValue& json, const Data& data, DracoPrimitives& compressed, const MaterialList& materials,
+          std::vector<std::string>& warnings)
+      : json_(json), data_(data), compressed_(compressed), materials_(materials), warnings_(warnings) {}
 
   MeshPlan plan() {
     MeshPlan plan;
@@ -109,14 +119,18 @@ class Planner {
     primitive.place = json.place();
     const std::uint64_t mode = json.unsigned_or("mode", 4);
     primitive.material = json.index_or_none("material", materials_.materials.size());
+    const std::optional<DecodedPrimitive> decoded = compressed_.decode(json);
     // Points and lines too, although they are not drawn: what a file says wrongly is found whatever it is for.
-    read_vertices(json, primitive);
-    if (const auto indices = json.find("indices")) primitive.indices = read_indices(*indices);
+    read_vertices(json, decoded ? &*decoded : nullptr, primitive);
+    if (decoded)
+      primitive.indices = decoded->indices;
+    else if (const auto indices = json.find("indices"))
+      primitive.indices = read_indices(*indices);
     if (mode < 4) return skip(json, mode == 0 ? "points are not drawn" : "lines are not drawn");
     if (mode > 6) return skip(json, "mode " + std::to_string(mode) + " is unknown");
-    primitive.mode = Mode(mode);
+    primitive.mode = decoded ? Mode::triangles : Mode(mode);  // of strips, too, Draco keeps a list
     if (primitive.vertices.base.position == no_index) return skip(json, "has no POSITION, nothing to draw");
-    if (json.extension("KHR_draco_mesh_compression"))
+    if (!decoded && json.extension("KHR_draco_mesh_compression"))
       warnings_.push_back(json.place() + ": the uncompressed data are taken");
     return primitive;
   }
@@ -132,9 +146,9 @@ class Planner {
     return sets;
   }
 
-  void read_vertices(const JsonValue& json, Primitive& primitive) {
+  void read_vertices(const JsonValue& json, const DecodedPrimitive* decoded, Primitive& primitive) {
     const JsonValue attributes = json.require("attributes");
-    AttributeReader reader(attributes, data_);
+    AttributeReader reader(attributes, data_, decoded);
     VertexSet& vertices = primitive.vertices;
     vertices.base = reader.read_sources();
     for (std::size_t set = 0; set < max_joint_sets; ++set) {
@@ -168,19 +182,21 @@ class Planner {
 
   const JsonValue& json_;
   const Data& data_;
+  DracoPrimitives& compressed_;
   const MaterialList& materials_;
   std::vector<std::string>& warnings_;
 };
 
 }  // namespace
 
-std::vector<MeshPlan> plan_meshes(const JsonValue& root, const Data& data, const MaterialList& materials,
+std::vector<MeshPlan> plan_meshes(const JsonValue& root, Data& data, const MaterialList& materials,
                                   std::vector<std::string>& warnings) {
+  DracoPrimitives compressed(data);
   std::vector<MeshPlan> plans;
   const std::optional<JsonValue> array = root.find("meshes");
   for (std::size_t i = 0; array && i < array->size(); ++i) {
     const JsonValue json = (*array)[i];
-    plans.push_back(Planner(json, data, materials, warnings).plan());
+    plans.push_back(Planner(json, data, compressed, materials, warnings).plan());
   }
   return plans;
 }

@@ -25,6 +25,15 @@ Texture::Wrap wrap_of(std::uint64_t code) {
 }
 constexpr std::uint64_t repeat_code = 10497, nearest_code = 9728;
 
+/// What to say of a texture without a source.
+std::string lack_of_image(const JsonValue& texture) {
+  if (texture.extension("KHR_texture_basisu")) {
+    const auto advice = conversion_of_extensions({"KHR_texture_basisu"}, texture.source().name());
+    return ": its image is KTX2, which is not read (" + advice.value_or("") + ")";
+  }
+  return ": has no PNG, JPEG or WebP image";
+}
+
 /// False: the texture is lost.
 bool remap(TextureUse& use, const std::vector<std::uint32_t>& new_numbers) {
   if (!use.is_set()) return true;
@@ -60,10 +69,15 @@ std::uint32_t TextureTable::intern(const JsonValue& index, std::vector<std::stri
   const std::uint32_t id = index.to_index(textures ? textures->size() : 0);
   const JsonValue texture = (*textures)[id];
   const std::optional<JsonValue> images = root_.find("images");
+  const std::size_t image_count = images ? images->size() : 0;
   Look look;
-  look.image = texture.index_or_none("source", images ? images->size() : 0);
+  // WebP first: its plain source is there for programs that do not know the extension.
+  if (const auto webp = texture.extension("EXT_texture_webp"); webp && decodes_webp(root_.source().image_decoder()))
+    look.image = webp->require("source").to_index(image_count);
+  else
+    look.image = texture.index_or_none("source", image_count);
   if (look.image == no_index) {
-    warnings.push_back(texture.place() + ": has no PNG or JPEG image, materials go without it");
+    warnings.push_back(texture.place() + lack_of_image(texture) + ", materials go without it");
     return lost_texture;
   }
   read_sampler(texture, look);

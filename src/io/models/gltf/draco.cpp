@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// Primitives that Draco has compressed.
+//
+// Draco's decoder checks what it reads, but asks for memory as its data say: a stream of 20 bytes may state a billion
+// triangles, or an attribute of 255 components. So its decoders are derived from, and stopped where they are about to:
+//
+//   header -> connectivity: counts of faces and seams -> attributes: their components -> values
+//             ^ checked                                  ^ checked
+#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
+#include <draco/compression/mesh/mesh_sequential_decoder.h>
+#include <draco/core/varint_decoding.h>
+
+#include <algorithm>
+
+#include "io/models/gltf/compressed.h"
+
+namespace frontmost::gltf {
+namespace {
+
+// Memory that the decoder works in, as estimated from its sources: tables of three corners a face, one more table for
+// every set of attributes with seams of its own, and values with their quantised copies.
+constexpr std::uint64_t bytes_of_face = 128, bytes_of_seams = 24, bytes_of_value = 32;
+// Honest data need some 200 bytes for each of theirs; regular grids more. The base is that of Budget.
+constexpr std::uint64_t working_base = std::uint64_t(1) << 28, working_factor = 1024;
+
+class WorkingMemory {
+ public:
+  explicit WorkingMemory(std::uint64_t compressed) : left_(working_base + working_factor * compressed) {}
+  /// False: that is more than there should be.
+  [[nodiscard]] bool take(std::uint64_t count, std::uint64_t size) {
+    is_exceeded_ = count > left_ / size;
+    if (!is_exceeded_) left_ -= count * size;
+    return !is_exceeded_;
+  }
+  [[nodiscard]] bool is_exceeded() const { return is_exceeded_; }
+
+ private:
+  std::uint64_t left_;
+  bool is_exceeded_ = false;
+};
+
+/// Stops before values are decoded that would take too much memory.
+template <class Decoder>
+class BoundedDecoder : public Decoder {
+ public:
+  explicit BoundedDecoder(WorkingMemory& memory) : memory_(memory) {}
+
+ protected:
+  bool DecodeAllAttributes() override {
+    const draco::PointCloud& cloud = *this->point_cloud();
+    std::uint64_t size = bytes_of_value * std::uint64_t(this->num_attributes_decoders());
+    for (int i = 0; i < cloud.num_attributes(); ++i)
+      size += bytes_of_value + 3 * std::uint64_t(cloud.attribute(i)->byte_stride());
+    return memory_.take(cloud.num_points(), size) && Decoder::DecodeAllAttributes();
+  }
+
+  WorkingMemory& memory_;
+};
+
+using SequentialDecoder = BoundedDecoder<draco::MeshSequentialDecoder>;  // holds its faces against its bytes itself
+
+class EdgebreakerDecoder : public BoundedDecoder<draco::MeshEdgebreakerDecoder> {
+ public:
+  using BoundedDecoder::BoundedDecoder;
+
+ protected:
+  bool DecodeConnectivity() override {
+    draco::DecoderBuffer ahead = *buffer();
+    std::uint32_t vertices = 0, faces = 0;
+    std::uint8_t seams = 0;
+    return draco::DecodeVarint(&vertices, &ahead) && draco::DecodeVarint(&faces, &ahead) && ahead.Decode(&seams) &&
+           memory_.take(faces, bytes_of_face + bytes_of_seams * seams) &&
+           draco::MeshEdgebreakerDecoder::DecodeConnectivity();
+  }
+};
+
+std::optional<Component> component_of(draco::DataType type) {
+  switch (type) {
+    case draco::DT_INT8: return Component::i8;
+    case draco::DT_UINT8: return Component::u8;
+    case draco::DT_INT16: return Component::i16;
+    case draco::DT_UINT16: return Component::u16;
+    case draco::DT_UINT32: return Component::u32;
+    case draco::DT_FLOAT32: return Component::f32;
+    default: return std::nullopt;
+  }
+}
+
+/// The values of all vertices. None: a type that glTF does not have, or vertices without a value.
+std::optional<DracoAttribute> attribute_of(const draco::PointAttribute& from, std::uint32_t vertex_count) {
+  const std::optional<Component> component = component_of(from.data_type());
+  if (!component) return std::nullopt;
+  const auto size = std::size_t(from.num_components()) * size_of(*component);
+  DracoAttribute to{*component, from.num_components(), std::vector<std::byte>(vertex_count * size)};
+  if (!from.is_mapping_identity() && from.indices_map_size() < vertex_count) return std::nullopt;
+  const std::size_t stored = std::min<std::size_t>(from.size(), from.buffer()->data_size() / size);
+  for (std::uint32_t i = 0; i < vertex_count; ++i) {
+    const draco::AttributeValueIndex value = from.mapped_index(draco::PointIndex(i));
+    if (value.value() >= stored) return std::nullopt;
+    std::copy_n(reinterpret_cast<const std::byte*>(from.GetAddress(value)), size, to.values.data() + i * size);
+  }
+  return to;
+}
+
+DracoMesh converted(const draco::Mesh& from) {
+  DracoMesh to;
+  to.vertex_count = from.num_points();
+  static_assert(sizeof(draco::Mesh::Face) == 3 * sizeof(std::uint32_t));
+  to.corners.resize(std::size_t(from.num_faces()) * sizeof(draco::Mesh::Face));
+  for (std::uint32_t i = 0; i < from.num_faces(); ++i) {
+    const draco::Mesh::Face& face = from.face(draco::FaceIndex(i));
+    const std::uint32_t corners[] = {face[0].value(), face[1].value(), face[2].value()};
+    std::copy_n(reinterpret_cast<const std::byte*>(corners), sizeof corners, to.corners.data() + i * sizeof corners);
+  }
+  for (int i = 0; i < from.num_attributes(); ++i)
+    if (auto attribute = attribute_of(*from.attribute(i), from.num_points()))
+      to.attributes.emplace(from.attribute(i)->unique_id(), *std::move(attribute));
+  return to;
+}
+
+}  // namespace
+
+bool has_draco() { return true; }
+
+DracoMesh decode_draco(const JsonValue& json, Bytes compressed) {
+  const auto* bytes = reinterpret_cast<const char*>(compressed.data());
+  draco::DecoderBuffer buffer, ahead;
+  buffer.Init(bytes, compressed.size());
+  ahead.Init(bytes, compressed.size());
+  draco::DracoHeader header;
+  if (!draco::PointCloudDecoder::DecodeHeader(&ahead, &header).ok()) json.fail("the buffer view holds no Draco data");
+  // The version that the extension asks for. Older ones are decoded by code that nothing writes for any more.
+  if (header.version_major != 2 || header.version_minor != 2)
+    throw Error(ErrorCode::unsupported,
+                json.source().name() + ": " + json.place() + ": version " + std::to_string(header.version_major) + "." +
+                    std::to_string(header.version_minor) + " of Draco's format is not supported, only 2.2");
+  const draco::DecoderOptions options;
+  WorkingMemory memory(compressed.size());
+  draco::Mesh mesh;
+  const draco::Status status = header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING
+                                   ? EdgebreakerDecoder(memory).Decode(options, &buffer, &mesh)
+                                   : SequentialDecoder(memory).Decode(options, &buffer, &mesh);
+  if (memory.is_exceeded())
+    json.source().fail_limit(json.place(), std::to_string(compressed.size()) + " bytes of Draco data state more than " +
+                                               "so few should make");
+  if (!status.ok()) json.fail("the Draco data are damaged: " + printable(status.error_msg_string()));
+  return converted(mesh);
+}
+
+}  // namespace frontmost::gltf
