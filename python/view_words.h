@@ -10,7 +10,8 @@ FRONTMOST_WORDS(frontmost::Culling, "culling",
                 {{frontmost::Culling::none, "none"},
                  {frontmost::Culling::back, "back"},
                  {frontmost::Culling::front, "front"},
-                 {frontmost::Culling::both, "both"}});
+                 {frontmost::Culling::both, "both"},
+                 {frontmost::Culling::material, "material"}});
 FRONTMOST_WORDS(frontmost::PixelRule, "pixel_rule",
                 {{frontmost::PixelRule::centre_at_half, "centre_at_half"},
                  {frontmost::PixelRule::centre_at_integer, "centre_at_integer"}});

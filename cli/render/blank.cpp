@@ -51,13 +51,14 @@ bool is_outside(const WorldCorners& c, const Projection& p) {
          all(c, [&](const glm::dvec3& v) { return v.y > p.top * reach(v); });
 }
 
+/// With Culling::material double-sided triangles count as one-sided ones: they are missing only where they are tiny.
 bool is_culled(const WorldCorners& c, const View& view) {
   if (view.culling == Culling::none) return false;
   if (view.culling == Culling::both) return true;
   // Positive when the corners run counter-clockwise as seen from the eye: y up, looking along +distance.
   const glm::dvec3 normal = glm::cross(c[1] - c[0], c[2] - c[0]);
   const double facing = view.projection.orthographic ? normal.z : glm::dot(normal, c[0]);
-  return view.culling == Culling::back ? facing < 0 : facing > 0;
+  return view.culling == Culling::front ? facing > 0 : facing < 0;
 }
 
 Cause cause_of(const std::array<glm::vec3, 3>& corners, const View& view) {

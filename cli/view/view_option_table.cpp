@@ -134,7 +134,8 @@ constexpr Option view_options[] = {
      [](Settings& s, const Given& g) {
        s.view.far = g.text == "inf" ? std::numeric_limits<double>::infinity() : g.number();
      }},
-    {"cull", 0, "none|back|front|both", "Leave out triangles that face this way.", Group::grid,
+    {"cull", 0, "none|back|front|both|material",
+     "Leave out triangles that face this way; material: backs, where the material is not double-sided.", Group::grid,
      for_render | for_camera | for_precision | for_compare | for_report | for_visible,
      [](Settings& s, const Given& g) { s.view.culling = g.choice<Culling>(); }},
     {"tessellation-error", 0, "PIXELS",

@@ -90,8 +90,10 @@ enum class PoseConvention : std::uint8_t {
 [[nodiscard]] glm::dmat4 pose_of(const glm::dmat4& world_from_eye, PoseConvention convention);
 
 /// Which triangles are left out by the way they face. Counter-clockwise on the screen is front. A triangle that is
-/// seen edge-on (N.V = 0, zero area after snapping) faces nobody and covers nothing.
-enum class Culling : std::uint8_t { none, back, front, both };
+/// seen edge-on (N.V = 0, zero area after snapping) faces nobody and covers nothing. `material`: those that face away
+/// and whose material is not Material::double_sided, as glTF says; shadows go through them where the light is behind
+/// them. The other modes leave shadows alone.
+enum class Culling : std::uint8_t { none, back, front, both, material };
 
 /// Width * height * samples of a view is at most this: 16384 x 16384 pixels of one sample, 2 GiB of ids and keys.
 inline constexpr std::size_t most_samples = std::size_t(1) << 28;

@@ -16,7 +16,7 @@ Format = Literal["stl", "ply", "obj", "off", "gltf", "3mf", "scene"]
 Convention = Literal["opencv", "opengl", "opencv_world_to_camera", "opencv_camera_to_world", "opengl_camera_to_world",
                      "opengl_world_to_camera"]
 PixelRule = Literal["centre_at_integer", "centre_at_half"]
-Culling = Literal["none", "back", "front", "both"]
+Culling = Literal["none", "back", "front", "both", "material"]
 Direction = Literal["front", "back", "left", "right", "top", "bottom", "iso", "three_quarter"]
 Shading = Literal["lit", "flat", "normals", "depth", "ids", "uv"]
 Reason = Literal["empty", "behind_eye", "nearer_than_near", "beyond_far", "outside", "faces_away", "transparent",
@@ -205,7 +205,8 @@ def builtin_names() -> list[str]:
 class View:
     """A camera and a grid of pixels. Never changes; the methods that seem to change one give another. Can be pickled.
 
-    Distances are in scene units. samples: 1, 2, 4, 8 or 16 a pixel. culling: which sides of triangles are left out.
+    Distances are in scene units. samples: 1, 2, 4, 8 or 16 a pixel. culling: which sides of triangles are left out;
+    "material": backs of materials that are not double-sided.
     Raises Error: bad_argument, singular_camera.
     """
     @staticmethod

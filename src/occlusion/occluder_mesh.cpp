@@ -82,6 +82,7 @@ struct WeldedTriangle {
   std::uint32_t part;
   bool hides;
   bool is_flat;  ///< two corners lie at one place, so that it is not seen
+  bool is_double_sided;
 };
 
 std::vector<WeldedTriangle> seen_triangles(const PlacedScene& placed, std::uint32_t instance) {
@@ -96,7 +97,8 @@ std::vector<WeldedTriangle> seen_triangles(const PlacedScene& placed, std::uint3
     const glm::uvec3 corners(first[c.x], first[c.y], first[c.z]);
     const bool has_holes = placed.cutouts && placed.cutouts->has(placed.first_primitives[instance] + t);
     const bool is_flat = corners.x == corners.y || corners.y == corners.z || corners.z == corners.x;
-    seen.push_back({t, corners, 0, !has_holes && !is_flat && !is_see_through(scene, mesh.material_of(t)), is_flat});
+    seen.push_back({t, corners, 0, !has_holes && !is_flat && !is_see_through(scene, mesh.material_of(t)), is_flat,
+                    placed.sides->is_double(placed.first_primitives[instance] + t)});
   }
   return seen;
 }
@@ -207,6 +209,7 @@ class PartWriter {
 
  private:
   void add(std::uint32_t triangle, OccluderPart& part) {
+    (seen_[triangle].is_double_sided ? part.has_double_sided : part.has_one_sided) = true;
     glm::uvec3 corners;
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t vertex = seen_[triangle].corners[k];

@@ -157,14 +157,16 @@ class Sweep::Run {
   bool is_behind_cover(std::uint32_t item, const HidingObject& it, const OccluderOnScreen& on_screen,
                        std::size_t first_row) {
     CoverPass pass{.rect = memory_.boxes_[item].rect, .distance = memory_.boxes_[item].farthest};
-    leave_out_culled(item, pass);
+    leave_out_culled(item, it.part, pass);
     // One side of a closed surface covers what the other does.
     if (it.part.is_closed && on_screen.cut.empty() && pass.clockwise) pass.counter_clockwise = false;
     const bool is_near_open = find_solid({view_.grid, it, on_screen, pass}, memory_.scratch_, cover_,
                                          memory_.solid_.data() + first_row, view_.isa);
     // A needle may turn the other way when it is snapped, and be left out although its side faces the eye. What is
-    // closed has others before and behind it.
-    const bool are_all_told = view_.culling == Culling::none || it.part.is_closed || on_screen.has_certain_turns;
+    // closed has others before and behind it. Nor do fronts alone tell of double-sided triangles among one-sided ones.
+    const bool is_mixed = view_.culling == Culling::material && it.part.has_double_sided && it.part.has_one_sided;
+    const bool are_all_told =
+        culling_of(it.part) == Culling::none || it.part.is_closed || (on_screen.has_certain_turns && !is_mixed);
     return !is_near_open && on_screen.is_told_by_cells && are_all_told;
   }
 
@@ -185,7 +187,7 @@ class Sweep::Run {
     const HidingObject it = occluder(event.item);
     CoverPass pass = o.choose(view_.grid, it, event.slab, box.rect);
     if (pass.rect.is_empty() || is_covered_(cover_, pass.rect, infinite_distance)) return;
-    leave_out_culled(event.item, pass);
+    leave_out_culled(event.item, it.part, pass);
     const std::size_t first_row = add_rows(pass.rect);
     std::uint32_t* const solid = memory_.solid_.data() + first_row;
     find_solid({view_.grid, it, o.on_screen, pass}, memory_.scratch_, cover_, solid, view_.isa);
@@ -194,13 +196,20 @@ class Sweep::Run {
   }
 
   /// Which triangles the view leaves out by the way they face.
-  void leave_out_culled(std::uint32_t item, CoverPass& pass) const {
+  void leave_out_culled(std::uint32_t item, const OccluderPart& part, CoverPass& pass) const {
+    const Culling culling = culling_of(part);
     // Fronts are counter-clockwise on the screen; a mirrored instance has the corners the other way round.
     const bool is_mirrored = scene_.mirrored[object_of(item).instance] != 0;
     bool& fronts = is_mirrored ? pass.clockwise : pass.counter_clockwise;
     bool& backs = is_mirrored ? pass.counter_clockwise : pass.clockwise;
-    if (view_.culling == Culling::front || view_.culling == Culling::both) fronts = false;
-    if (view_.culling == Culling::back || view_.culling == Culling::both) backs = false;
+    if (culling == Culling::front || culling == Culling::both) fronts = false;
+    if (culling == Culling::back || culling == Culling::both) backs = false;
+  }
+
+  /// What certainly hides by the material: of double-sided triangles among one-sided ones the fronts alone.
+  [[nodiscard]] Culling culling_of(const OccluderPart& part) const {
+    if (view_.culling != Culling::material) return view_.culling;
+    return part.has_double_sided && !part.has_one_sided ? Culling::none : Culling::back;
   }
 
   /// \returns where the rows for a rectangle begin in solid_.

@@ -14,6 +14,7 @@
 
 #include "painter/stages.h"
 #include "surfaces/cluster_set.h"
+#include "view/facing_rule.h"
 
 namespace frontmost::painter_detail {
 namespace {
@@ -25,7 +26,11 @@ constexpr double kMargin = 1e-9;
 class Gatherer {
  public:
   Gatherer(const Surfaces& surfaces, const View& view, const Sight& sight)
-      : surfaces_(surfaces), view_(view), sight_(sight), empty_(sight) {}
+      : surfaces_(surfaces),
+        view_(view),
+        sight_(sight),
+        empty_(sight),
+        facing_(view.culling, surfaces.placed().sides.get()) {}
 
   enum class Place : std::uint8_t { outside, inside, crossing };
 
@@ -62,10 +67,10 @@ class Gatherer {
   bool turn_to_eye(Face& face) const {
     const auto& c = face.corners;
     const int facing = sight_.facing(glm::dvec3(c[0]), glm::dvec3(c[1]), glm::dvec3(c[2]));
-    if (facing == 0 || view_.culling == Culling::both) return false;
-    if (view_.culling != Culling::none) {
+    if (facing == 0) return false;
+    if (facing_.culling() != Culling::none) {
       const bool is_front = (facing > 0) != surfaces_.is_mirrored(surfaces_.source(face.id).instance);
-      if (is_front == (view_.culling == Culling::front)) return false;
+      if (!facing_.keeps(face.id, is_front)) return false;
     }
     if (facing < 0) std::swap(face.corners[1], face.corners[2]);
     return true;
@@ -75,6 +80,7 @@ class Gatherer {
   const View& view_;
   const Sight& sight_;
   const ExtentBuilder empty_;
+  const FacingRule facing_;
 };
 
 /// At a distance before the eye, facing away from it.

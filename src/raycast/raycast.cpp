@@ -60,6 +60,7 @@ const Visible& RayCaster::cast(const RayIndex& index, const View& view, const Ex
   const RayTileInput frame{tree,
                            transform,
                            view,
+                           FacingRule(view.culling, tree.sides.get()),
                            sample_offsets(view.samples),
                            reach_of(tree.bounds, transform),
                            visible.primitives.data(),

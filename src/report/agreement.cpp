@@ -19,6 +19,7 @@
 #include "base/parallel.h"
 #include "report/sample_square.h"
 #include "surfaces/cluster_set.h"
+#include "view/facing_rule.h"
 #include "view/screen_cutout.h"
 #include "view/screen_transform.h"
 
@@ -40,6 +41,7 @@ struct Question {
   const SampleRays rays;
   const ScreenRays screen_rays;
   const std::span<const glm::ivec2> offsets;
+  const FacingRule facing;
 
   [[nodiscard]] SampleSquare square(std::size_t sample) const {
     const std::size_t pixel = sample % view.pixel_count(), width = std::size_t(view.width);
@@ -53,9 +55,9 @@ struct Question {
     return ViewedTriangle(corners, rays);
   }
   [[nodiscard]] bool is_culled(const ViewedTriangle& triangle, PrimitiveId id) const {
-    if (view.culling == Culling::none) return false;
+    if (facing.culling() == Culling::none) return false;
     const bool is_front = (triangle.facing() < 0) != surfaces.is_mirrored(surfaces.source(id).instance);
-    return view.culling == Culling::both || (view.culling == Culling::front) == is_front;
+    return !facing.keeps(id, is_front);
   }
   /// Whether a triangle with holes lets the ray of a sample pass: asked as the methods ask.
   [[nodiscard]] bool is_hole(PrimitiveId id, std::size_t sample) const {
@@ -310,8 +312,12 @@ Agreement check_agreement(const Surfaces& surfaces, const Visible& a, const Visi
   Agreement result;
   result.view = a.view;
   result.differences = Buffer<Difference>(a.primitives.size());
-  const Question question{surfaces, result.view, SampleRays(a.view), ScreenRays(a.view),
-                          sample_offsets(a.view.samples)};
+  const Question question{surfaces,
+                          result.view,
+                          SampleRays(a.view),
+                          ScreenRays(a.view),
+                          sample_offsets(a.view.samples),
+                          FacingRule(a.view.culling, surfaces.placed().sides.get())};
   look_at_samples(question, a, b, execution, result);
   const std::vector<Contest> contests = contests_of(question, a, b, result);
   Verdicts impossible(contests.size());

@@ -85,6 +85,7 @@ PlacedScene place_scene(const Scene& scene, const Execution& execution) {
       placed.instance_bounds[range.instance].include(placed.boxes[range.first_box + k]);
   placed.find_bounds();
   placed.cutouts = Cutouts::of(scene, placed.first_primitives);
+  placed.sides = MaterialSides::of(scene, placed.first_primitives);
   report_progress(execution, "surfaces", 1);
   return placed;
 }

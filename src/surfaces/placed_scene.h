@@ -18,6 +18,7 @@
 
 #include "frontmost/surfaces.h"
 #include "surfaces/cutouts.h"
+#include "surfaces/material_sides.h"
 
 namespace frontmost {
 
@@ -112,8 +113,9 @@ struct PlacedScene {
   std::vector<PrimitiveId> first_primitives;  ///< by instance, and the total at the end
   std::vector<std::uint8_t> mirrored;         ///< by instance: its triangles have their last two corners swapped
   std::shared_ptr<Cutouts> cutouts;           ///< null where no triangle may have holes
-  std::vector<MeshRange> ranges;              ///< of all triangles, in the order of their ids
-  std::vector<Box> boxes;                     ///< of those with finite corners, a few consecutive ones each
+  std::shared_ptr<const MaterialSides> sides;
+  std::vector<MeshRange> ranges;  ///< of all triangles, in the order of their ids
+  std::vector<Box> boxes;         ///< of those with finite corners, a few consecutive ones each
   std::vector<Box> instance_bounds;
   /// Around 16 consecutive boxes of the level below each, the lowest level around instances; up to a single box.
   std::vector<std::vector<Box>> levels;

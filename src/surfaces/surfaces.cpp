@@ -111,7 +111,8 @@ std::size_t Surfaces::byte_count() const {
   const ClusterSet* const made = state_->clusters.made();
   return sizeof(State) + p.first_primitives.size() * sizeof(PrimitiveId) + p.mirrored.size() +
          p.ranges.size() * sizeof(MeshRange) + (p.boxes.size() + p.instance_bounds.size()) * sizeof(Box) +
-         (p.cutouts ? p.cutouts->byte_count() : 0) + (made ? frontmost::byte_count(*made) : 0);
+         (p.cutouts ? p.cutouts->byte_count() : 0) + p.sides->bits.size() * sizeof(std::uint32_t) +
+         (made ? frontmost::byte_count(*made) : 0);
 }
 
 const ClusterSet* LazyClusters::get(const PlacedScene& placed, const Execution& execution) const {

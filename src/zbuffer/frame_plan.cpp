@@ -33,18 +33,20 @@ TileJob FramePlan::job(std::size_t tile, const View& view) const {
   return {Tile(tile, view), {records.solid, clusters.solid}, {records.cutouts, clusters.cutouts}};
 }
 
-void FramePlan::make(const ClusterSet& set, const ScreenTransform& transform, const View& view,
-                     const Execution& execution, std::size_t most_record_items) {
+void FramePlan::make(const ClusterSet& set, const PlaceTarget& target, const Execution& execution,
+                     std::size_t most_record_items) {
   constexpr std::size_t kCullGrain = 4096;
   culled_.resize(set.clusters.size());
-  const bool by_facing = view.culling == Culling::back || view.culling == Culling::front;
-  const CullInput input{set.boxes, by_facing ? set.cones.get(set, execution) : nullptr, transform, view};
+  const View& view = target.view;
+  const Culling culling = target.facing.culling();
+  const bool by_facing = culling == Culling::back || culling == Culling::front;
+  const CullInput input{set.boxes, by_facing ? set.cones.get(set, execution) : nullptr, target.transform, view};
   parallel_for(execution, set.clusters.size(), kCullGrain, [&](std::size_t begin, std::size_t end) {
     cull_clusters(input, execution.isa, {begin, end}, culled_);
   });
   first_cutout_ = set.first_cutout;
   choose_apart(set.clusters.size());
-  take_apart(set, transform, view, execution);
+  take_apart(set, target, execution);
   records_.plan(view, set.cutouts.get(), most_record_items);
   order_whole(set.clusters.size());
   list_clusters(view);
@@ -59,8 +61,7 @@ void FramePlan::choose_apart(std::size_t cluster_count) {
   }
 }
 
-void FramePlan::take_apart(const ClusterSet& set, const ScreenTransform& transform, const View& view,
-                           const Execution& execution) {
+void FramePlan::take_apart(const ClusterSet& set, const PlaceTarget& target, const Execution& execution) {
   constexpr std::size_t kGrain = 64;
   const std::size_t part_count = (apart_.size() + kGrain - 1) / kGrain;
   if (apart_parts_.size() < part_count) apart_parts_.resize(part_count);
@@ -68,7 +69,7 @@ void FramePlan::take_apart(const ClusterSet& set, const ScreenTransform& transfo
     // By chunk, not by thread: records are put together in the same order however many threads there are.
     std::vector<TriangleRecord>& part = apart_parts_[begin / kGrain];
     part.clear();
-    for (std::size_t i = begin; i < end; ++i) append_records(set, set.clusters[apart_[i]], transform, view, part);
+    for (std::size_t i = begin; i < end; ++i) append_records(target, set, set.clusters[apart_[i]], part);
   });
   std::vector<TriangleRecord>& all = records_.records;
   all.clear();

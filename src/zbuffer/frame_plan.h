@@ -23,6 +23,7 @@ namespace frontmost::zbuffer_detail {
 struct FrameInput : Picture {
   const ClusterSet& set;
   const ScreenTransform& transform;
+  const FacingRule& facing;
   const CullResult& culled;
   std::span<const TriangleRecord> records;  ///< corners from the image's top left
 };
@@ -48,7 +49,7 @@ class FramePlan {
  public:
   /// Culls, takes apart what must be, orders and bins. O(clusters + pairs of large triangle and tile) time. Memory:
   /// about 30 bytes a cluster and 64 for one drawn whole, 100 a large or clipped triangle, and the lists of one round.
-  void make(const ClusterSet& set, const ScreenTransform& transform, const View& view, const Execution& execution,
+  void make(const ClusterSet& set, const PlaceTarget& target, const Execution& execution,
             std::size_t most_record_items = kMostRecordItems);
 
   [[nodiscard]] const CullResult& culled() const { return culled_; }
@@ -59,8 +60,7 @@ class FramePlan {
 
  private:
   void choose_apart(std::size_t cluster_count);
-  void take_apart(const ClusterSet& set, const ScreenTransform& transform, const View& view,
-                  const Execution& execution);
+  void take_apart(const ClusterSet& set, const PlaceTarget& target, const Execution& execution);
   void order_whole(std::size_t cluster_count);
   void list_clusters(const View& view);
 

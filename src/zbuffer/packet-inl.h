@@ -17,7 +17,7 @@
 #include "base/highway-inl.h"
 #include "base/lane_types-inl.h"
 #include "base/lanes-inl.h"
-#include "frontmost/view.h"
+#include "view/facing-inl.h"
 #include "view/key_planes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -25,6 +25,7 @@ namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace frontmost::HWY_NAMESPACE;
+using view_detail::HWY_NAMESPACE::Kept;
 using view_detail::HWY_NAMESPACE::KeyPlanes;
 using view_detail::HWY_NAMESPACE::KeyPlanesOf;
 
@@ -61,17 +62,6 @@ HWY_INLINE PixelRange PixelsOf(const CoordinateRange& range, std::int32_t low, s
           hn::Min(hn::ShiftRight<8>(hn::Sub(range.greatest, hn::Set(d, low))), hn::Set(d, size - 1))};
 }
 
-/// The triangles that culling leaves.
-HWY_INLINE MI Facing(Culling culling, MI front, MI back) {
-  switch (culling) {
-    case Culling::none: return hn::Or(front, back);
-    case Culling::back: return front;
-    case Culling::front: return back;
-    case Culling::both: break;
-  }
-  return hn::And(front, back);  // none
-}
-
 /// One corner of each triangle of a vector: its vertex, and where that is on the screen.
 struct Corners {
   VI number, x, y;
@@ -88,11 +78,14 @@ struct Winding {
   MI kept;  ///< culling leaves them, and they have an area
 };
 /// Precondition: corners of kept triangles are no farther apart than kSmallExtent.
-HWY_INLINE Winding WindingOf(Culling culling, const Corners& a, const Corners& b, const Corners& c) {
+template <class Ids>
+HWY_INLINE Winding WindingOf(const FacingRule& facing, const Corners (&corners)[3], MI asked, const Ids& ids) {
+  const Corners &a = corners[0], &b = corners[1], &c = corners[2];
   const VI zero = hn::Zero(DI());
   const VI area = hn::Sub(hn::Mul(hn::Sub(b.x, a.x), hn::Sub(c.y, a.y)), hn::Mul(hn::Sub(c.x, a.x), hn::Sub(b.y, a.y)));
   const MI front = hn::Lt(area, zero);
-  return {front, Facing(culling, front, hn::Gt(area, zero))};
+  const MI back = hn::Gt(area, zero);
+  return {front, Kept(DI(), facing, front, hn::And(back, asked), ids)};
 }
 
 HWY_INLINE MI AllLanes() { return hn::Eq(hn::Zero(DI()), hn::Zero(DI())); }
@@ -105,10 +98,10 @@ struct PlacedPacket {
 };
 
 /// Sorts out what of the `live` triangles may cover a sample, for whatever draws them. `sink` has ColumnsOf(range) and
-/// RowsOf(range), the pixels that samples within the triangles' bounds belong to; PutLarge(mask), which is given those
-/// whose corners are farther apart than kSmallExtent, neither turned nor culled; and PutSmall(placed).
+/// RowsOf(range), the pixels that samples within the triangles' bounds belong to; Ids(); PutLarge(mask), which is given
+/// those whose corners are farther apart than kSmallExtent, neither turned nor culled; and PutSmall(placed).
 template <class Sink>
-HWY_INLINE void SortOut(const Corners (&c)[3], MI live, Culling culling, Sink& sink) {
+HWY_INLINE void SortOut(const Corners (&c)[3], MI live, const FacingRule& facing, Sink& sink) {
   const DI d;
   const CoordinateRange x = RangeOf(c[0].x, c[1].x, c[2].x), y = RangeOf(c[0].y, c[1].y, c[2].y);
   const PixelRange columns = sink.ColumnsOf(x), rows = sink.RowsOf(y);
@@ -120,7 +113,7 @@ HWY_INLINE void SortOut(const Corners (&c)[3], MI live, Culling culling, Sink& s
     sink.PutLarge(large);
     keep = hn::AndNot(large, keep);
   }
-  const Winding winding = WindingOf(culling, c[0], c[1], c[2]);
+  const Winding winding = WindingOf(facing, c, keep, [&]() HWY_ATTR { return sink.Ids(); });
   keep = hn::And(keep, winding.kept);
   if (hn::AllFalse(d, keep)) return;
   sink.PutSmall({keep, {c[0], Chosen(winding.front, c[2], c[1]), Chosen(winding.front, c[1], c[2])}, columns, rows});

@@ -14,16 +14,6 @@
 namespace frontmost::zbuffer_detail {
 namespace {
 
-bool keeps(Culling culling, bool is_front) {
-  switch (culling) {
-    case Culling::none: return true;
-    case Culling::back: return is_front;
-    case Culling::front: return !is_front;
-    case Culling::both: return false;
-  }
-  return true;
-}
-
 /// The vertices of a cluster on the screen, each worked out once.
 class SnappedCluster {
  public:
@@ -67,10 +57,15 @@ class SnappedCluster {
 
 }  // namespace
 
-bool orient(TriangleRecord& r, Culling culling) {
+PlaceTarget::PlaceTarget(const ScreenTransform& t, const View& v, const MaterialSides* sides, Isa i)
+    : transform(t), view(v), facing(v.culling, sides), low(kSubPixels), high(0), isa(i) {
+  for (const glm::ivec2& s : sample_offsets(v.samples)) low = glm::min(low, s), high = glm::max(high, s);
+}
+
+bool orient(TriangleRecord& r, const FacingRule& facing) {
   const std::int64_t area = doubled_area(r);
   // Without area is edge-on, whatever the winding was: culling never comes to it.
-  if (area == 0 || !keeps(culling, area < 0)) return false;
+  if (area == 0 || !facing.keeps(r.id, area < 0)) return false;
   if (area < 0) {
     std::swap(r.x[1], r.x[2]);
     std::swap(r.y[1], r.y[2]);
@@ -79,18 +74,18 @@ bool orient(TriangleRecord& r, Culling culling) {
   return true;
 }
 
-void append_records(const ClusterSet& set, const Cluster& cluster, const ScreenTransform& t, const View& view,
+void append_records(const PlaceTarget& target, const ClusterSet& set, const Cluster& cluster,
                     std::vector<TriangleRecord>& records) {
-  const SnappedCluster snapped(set, cluster, t);
+  const SnappedCluster snapped(set, cluster, target.transform);
   for (std::size_t i = 0; i < cluster.triangle_count; ++i)
-    append_polygon(snapped.polygon(i), t, set.id[cluster.first_triangle + i], view, records);
+    append_polygon(target, snapped.polygon(i), set.id[cluster.first_triangle + i], records);
 }
 
-void append_polygon(const ClippedPolygon& polygon, const ScreenTransform& t, PrimitiveId id, const View& view,
+void append_polygon(const PlaceTarget& target, const ClippedPolygon& polygon, PrimitiveId id,
                     std::vector<TriangleRecord>& records) {
-  for_each_of_fan(polygon, t, id, [&](TriangleRecord& record) {
-    const PixelRect rect = pixel_rect(record, view.width, view.height);
-    if (!rect.is_empty() && orient(record, view.culling)) records.push_back(record);
+  for_each_of_fan(polygon, target.transform, id, [&](TriangleRecord& record) {
+    const PixelRect rect = pixel_rect(record, target.view.width, target.view.height);
+    if (!rect.is_empty() && orient(record, target.facing)) records.push_back(record);
   });
 }
 

@@ -10,6 +10,7 @@
 
 #include "surfaces/cluster_set.h"
 #include "view/clip.h"
+#include "view/facing_rule.h"
 #include "view/screen_transform.h"
 #include "view/triangle_keys.h"
 #include "zbuffer/cull.h"
@@ -50,15 +51,27 @@ struct TriangleEdges {
   }
 };
 
+/// Where triangles are placed.
+struct PlaceTarget {
+  const ScreenTransform& transform;
+  const View& view;
+  FacingRule facing;
+  glm::ivec2 low, high;  ///< of the sample offsets
+  Isa isa;
+
+  /// Borrows everything; `sides` are those of the scene that is placed.
+  PlaceTarget(const ScreenTransform& t, const View& v, const MaterialSides* sides, Isa i);
+};
+
 /// Turns a record's area positive. \returns false when it is culled, or has no area and so covers nothing.
-[[nodiscard]] bool orient(TriangleRecord& record, Culling culling);
+[[nodiscard]] bool orient(TriangleRecord& record, const FacingRule& facing);
 
 /// Appends the triangles of one cluster that may be seen, clipped where needed, corners from the image's top left.
-void append_records(const ClusterSet& set, const Cluster& cluster, const ScreenTransform& transform, const View& view,
+void append_records(const PlaceTarget& target, const ClusterSet& set, const Cluster& cluster,
                     std::vector<TriangleRecord>& records);
 
 /// The same of one polygon.
-void append_polygon(const ClippedPolygon& polygon, const ScreenTransform& t, PrimitiveId id, const View& view,
+void append_polygon(const PlaceTarget& target, const ClippedPolygon& polygon, PrimitiveId id,
                     std::vector<TriangleRecord>& records);
 
 /// The pixels whose samples a record may cover, within the image; empty (x1 < x0 or y1 < y0) when there are none.

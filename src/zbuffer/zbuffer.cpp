@@ -61,7 +61,8 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
   const ClusterSet& set = surfaces.clusters(execution);
   const ScreenTransform transform(view);
   FramePlan& plan = state_->plan;
-  plan.make(set, transform, view, execution);
+  const PlaceTarget target(transform, view, surfaces.placed().sides.get(), execution.isa);
+  plan.make(set, target, execution);
 
   // On planes that are touched for the first time streaming costs 20 % at 16 MiB and saves 15 % at 66 MiB; on planes
   // that were used before it pays from the size on at which they leave the second-level cache.
@@ -76,7 +77,7 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
                         set.cutouts.get(),
                         ScreenRays(view),
                         nullptr};
-  const FrameInput frame{picture, set, transform, plan.culled(), plan.records().records};
+  const FrameInput frame{picture, set, transform, target.facing, plan.culled(), plan.records().records};
   std::atomic<std::size_t> drawn{0};
   draw_tiles(plan.records(), view, execution, state_->scratches, [&](std::size_t tile, TileScratch& scratch) {
     const TileJob job = plan.job(tile, view);

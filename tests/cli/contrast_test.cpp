@@ -53,6 +53,17 @@ TEST_F(Contrast, WhiteOnWhiteSaysSo) {
   EXPECT_THAT(succeed("render white.gltf --json -o a.png" + view).json()["warnings"].dump(), HasSubstr("stands out"));
 }
 
+TEST_F(Contrast, CullingByTheMaterialAsksIt) {
+  const std::string both = square("0.5,0.5,0.5"), word = R"("doubleSided":true)";
+  write("both.gltf", both);
+  write("one.gltf", std::string(both).replace(both.find(word), word.size(), R"("doubleSided":false)"));
+  const std::string view = " --resolution 64,64 --cull material -o a.png --view ";
+  EXPECT_THAT(succeed("render both.gltf" + view + "back").err, IsEmpty());
+  EXPECT_THAT(succeed("render one.gltf" + view + "front").err, IsEmpty());
+  EXPECT_THAT(succeed("render one.gltf" + view + "back").err,
+              HasSubstr("nothing is in view: all of the model faces the way that --cull leaves out"));
+}
+
 TEST_F(Contrast, WhatMaterialsHideIsSaidToBeHiddenByThem) {
   const std::string plain = square("0.5,0.5,0.5"), at = R"("doubleSided":true)";
   const auto with = [&](const std::string& alpha) {

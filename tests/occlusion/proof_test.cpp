@@ -57,6 +57,18 @@ TEST(OcclusionProof, WhatMayBeSeenGivesThePictureOfAllToTheBit) {
   EXPECT_GT(hidden, seeds(120) * 10);
 }
 
+TEST(OcclusionProof, HoldsWhereTheMaterialSaysWhichSidesAreSeen) {
+  std::size_t hidden = 0;
+  for (std::uint64_t seed = 0; seed < seeds(120); ++seed) {
+    Scene scene = hidden_scene(80, seed + 700);
+    add_random_sides(scene, seed);
+    View view = random_view(160, 120, seed);
+    view.culling = Culling::material;
+    ASSERT_NO_FATAL_FAILURE(expect_picture_of_all(scene, view, 1, hidden)) << seed;
+  }
+  EXPECT_GT(hidden, seeds(120) * 5);
+}
+
 TEST(OcclusionProof, BoxesThatAreHiddenAreNotSeenEither) {
   std::size_t hidden = 0;
   for (std::uint64_t seed = 0; seed < seeds(120); ++seed) {

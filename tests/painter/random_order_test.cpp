@@ -51,6 +51,16 @@ TEST_P(EveryKind, PaintsWhatTheZBufferShows) {
   }
 }
 
+TEST_P(EveryKind, PaintsByMaterialWhatTheZBufferShows) {
+  for (std::uint64_t seed = 0; seed < seeds(8); ++seed) {
+    SCOPED_TRACE(seed);
+    RandomCase c = small_case(GetParam(), seed);
+    add_random_sides(c.scene, seed);
+    c.view.culling = Culling::material;
+    EXPECT_EQ(painted(Surfaces(c.scene), c.view, PaintMethod::depth_sort).unexplained, 0u);
+  }
+}
+
 TEST_P(EveryKind, ThreadsChangeNothing) {
   const RandomCase c = small_case(GetParam(), 5);
   const Surfaces surfaces(c.scene);

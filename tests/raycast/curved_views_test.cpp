@@ -119,6 +119,29 @@ TEST(CurvedViews, ByPacketsAreThoseOfSingleRaysToTheBit) {
   }
 }
 
+TEST(CurvedViews, CullByTheMaterialOfEachMesh) {
+  // Seen from the middle of both: the inner one lets the rays pass unless it is double-sided.
+  Scene scene;
+  for (const double radius : {2.0, 3.0}) {
+    Mesh& ball = scene.meshes.emplace_back();
+    ball.spheres = {{{0, 0, 0}, radius}};
+    ball.material_ids = {std::uint32_t(scene.instances.size())};
+    scene.instances.push_back({"ball", std::uint32_t(scene.instances.size()), glm::dmat4(1.0)});
+  }
+  scene.materials.resize(2);
+  View view = make_view(glm::radians(60.0), 16, 16);
+  view.culling = Culling::material;
+  const auto middle = [&](bool inner, bool outer) {
+    scene.materials[0].double_sided = inner;
+    scene.materials[1].double_sided = outer;
+    return raycast(CurvedIndex(scene), view).visible.primitives[8 * 16 + 8];
+  };
+  EXPECT_EQ(middle(true, true), 0u);
+  EXPECT_EQ(middle(false, true), 1u);
+  EXPECT_EQ(middle(true, false), 0u);
+  EXPECT_EQ(middle(false, false), no_primitive);
+}
+
 TEST(CurvedViews, ShowWhatLiesInFront) {
   // A sphere half sunk into a box: triangles and sphere hide each other.
   Scene scene;

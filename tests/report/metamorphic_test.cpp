@@ -3,11 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "frontmost/abuffer.h"
+#include "frontmost/accounting.h"
 #include "frontmost/agreement.h"
 #include "frontmost/depth_buffer.h"
+#include "frontmost/explain.h"
+#include "frontmost/precision.h"
 #include "frontmost/raycast.h"
+#include "frontmost/visible_faces.h"
 #include "frontmost/zbuffer.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
@@ -195,6 +200,118 @@ TEST(Metamorphic, AMirroredWorldIsAMirroredPicture) {
     }
   }
   EXPECT_LT(differing * 100, all) << differing << " of " << all;
+}
+
+/// Every triangle twice, one after the other: a double-sided one with its front on both sides, of others the second
+/// time without an area.
+Scene with_backs(Scene scene) {
+  for (Mesh& mesh : scene.meshes) {
+    std::vector<glm::uvec3> both;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const std::uint32_t material = mesh.material_of(t);
+      const glm::uvec3& c = mesh.triangles[t];
+      both.push_back(c);
+      both.push_back(material != no_index && scene.materials[material].double_sided ? glm::uvec3(c.x, c.z, c.y)
+                                                                                    : glm::uvec3(c.x));
+    }
+    mesh.triangles = both;
+    mesh.material_ids.clear();
+  }
+  return scene;
+}
+
+/// Two meshes, one of them twice and the second time mirrored.
+Example example_with_sides(std::uint64_t seed) {
+  Example made = example(seed);
+  made.scene.meshes.push_back(random_mesh(Kind::soup, 30, seed + 50));
+  made.scene.instances.push_back({"other", 1, glm::dmat4(1.0)});
+  made.scene.instances.push_back({"mirrored", 0, glm::dmat4(1.0)});
+  made.scene.instances[2].world_from_mesh[0][0] = -1;
+  add_random_sides(made.scene, seed);
+  made.view.culling = Culling::material;
+  return made;
+}
+
+TEST(Metamorphic, CullingByMaterialIsThatOfBacksWhereDoubleSidedTrianglesHaveTwoFronts) {
+  std::size_t seen = 0, other = 0;
+  for (std::uint64_t seed = 0; seed < seeds(32); ++seed) {
+    const Example e = example_with_sides(seed);
+    View backs = e.view;
+    backs.culling = Culling::back;
+    for (const Method& method : methods) {
+      SCOPED_TRACE(testing::Message() << method.name << ", seed " << seed);
+      Visible expected = method.see(with_backs(e.scene), backs);
+      expected.view = e.view;
+      for (PrimitiveId& id : expected.primitives)
+        if (id != no_primitive) id /= 2;
+      expect_same(expected, method.see(e.scene, e.view));
+      seen += covered(expected);
+      other += covered(expected) != covered(method.see(e.scene, backs));
+    }
+  }
+  EXPECT_GT(seen, seeds(32) * 1000);
+  EXPECT_GT(other, seeds(32)) << "culling backs alone shows as much";
+}
+
+TEST(Metamorphic, CullingByMaterialIsTheSameForAllInstructionSets) {
+  for (std::uint64_t seed = 2; seed < seeds(16); ++seed) {
+    const Example e = example_with_sides(seed);
+    const Surfaces surfaces(e.scene);
+    for (const Isa isa : available_isas()) {
+      SCOPED_TRACE(testing::Message() << name(isa) << ", seed " << seed);
+      const Execution execution{.threads = 1, .isa = isa};
+      expect_same(zbuffer(surfaces, e.view), draw_both_ways(surfaces, e.view, execution));
+      expect_same(raycast(surfaces, e.view), raycast(surfaces, e.view, execution));
+      expect_same(visible_layers(surfaces, e.view, 1)[0], visible_layers(surfaces, e.view, 1, {}, execution)[0]);
+    }
+  }
+}
+
+// What exact methods find of the same triangles.
+TEST(Metamorphic, FacesAndAccountsCullByMaterialAsThePictureDoes) {
+  for (std::uint64_t seed = 0; seed < seeds(16); ++seed) {
+    SCOPED_TRACE(seed);
+    const Example e = example_with_sides(seed);
+    const Scene doubled = with_backs(e.scene);
+    View backs = e.view;
+    backs.culling = Culling::back;
+    const Surfaces surfaces(e.scene), of_doubled(doubled);
+    const Visible visible = zbuffer(surfaces, e.view);
+    EXPECT_EQ(check_agreement(surfaces, visible, raycast(surfaces, e.view)).count(Difference::unexplained), 0u);
+    const ExactVisible exact = find_exact_visible(surfaces, e.view), by_backs = find_exact_visible(of_doubled, backs);
+    for (std::size_t i = 0; i < exact.primitives.size(); ++i)
+      ASSERT_EQ(exact.primitives[i],
+                by_backs.primitives[i] == no_primitive ? no_primitive : by_backs.primitives[i] / 2);
+    const Accounting found = account(surfaces, visible), expected = account(of_doubled, zbuffer(of_doubled, backs));
+    for (std::size_t i = 0; i < found.objects.size(); ++i) {
+      EXPECT_EQ(found.objects[i].alone.count, expected.objects[i].alone.count);
+      EXPECT_EQ(found.objects[i].visible.count, expected.objects[i].visible.count);
+    }
+    std::map<PrimitiveId, double> areas;
+    for (const VisibleFace& face : visible_faces(surfaces, e.view).faces) areas[face.id] += face.pixels;
+    for (const VisibleFace& face : visible_faces(of_doubled, backs).faces) areas[face.id / 2] -= face.pixels;
+    for (const auto& [id, difference] : areas) EXPECT_NEAR(difference, 0, 1e-6) << id;
+    const std::vector<Explanation> reasons = explain_all(surfaces, visible, found);
+    for (const Explanation& reason : reasons)
+      EXPECT_EQ(reason.reason == SightReason::seen, found.objects[reason.object].visible.count > 0);
+  }
+}
+
+TEST(Metamorphic, ACopyThatIsSeenFromBothSidesIsNoCopyOfAOneSidedTriangle) {
+  // Thousands of the same two triangles, seen from behind: the second has a material with two sides.
+  Mesh mesh;
+  for (int i = 0; i < 5000; ++i)
+    for (int k = 0; k < 2; ++k) add_triangle(mesh, {-9, -9, 0}, {0, 9, 0}, {9, -9, 0.1f});
+  Scene scene = scene_of(std::move(mesh));
+  scene.materials.resize(2);
+  scene.materials[1].double_sided = true;
+  for (std::uint32_t i = 0; i < 10000; ++i) scene.meshes[0].material_ids.push_back(i % 2);
+  View view;
+  view.width = view.height = 64;
+  view.world_from_eye = look_at({0, 0, 2}, {0, 0, 0}, {0, 1, 0});
+  view.projection = make_projection(0.9, 1, {0.1, 10});
+  view.culling = Culling::material;
+  for (const Method& method : methods) EXPECT_EQ(method.see(scene, view).primitives[32 * 64 + 32], 1u) << method.name;
 }
 
 TEST(Metamorphic, ARolledCameraIsATurnedPicture) {

@@ -50,6 +50,42 @@ double beside_roof(const Light& light, const glm::dvec2& point) {
   return std::max(std::abs(hit.x), std::abs(hit.y)) - 0.5;
 }
 
+// A roof whose back the lights see throws a shadow where its material is double-sided; and always where culling does
+// not ask the material.
+TEST(LampShadows, PassThroughTheBacksOfOneSidedMaterialsWhereTheEyeDoes) {
+  const Light sun = light_towards(Light::Kind::sun, {0, 0, 0}, {1, 0.5, -1.4}, 2);
+  const Light spot = light_towards(Light::Kind::spot, {-1.5, 1, 2.5}, {0, 0, 0}, 12);
+  const Light point = light_towards(Light::Kind::point, {1, 1, 2}, {0, 0, 0}, 8);
+  for (const Light& light : {sun, spot, point})
+    for (const Shadows shadows : {Shadows::map, Shadows::rays})
+      for (const Lights lights : {Lights::file, Lights::key}) {
+        if (light.kind == Light::Kind::point && shadows == Shadows::map) continue;
+        Scene scene = floor_and_roof({light});
+        scene.meshes.push_back(scene.meshes[0]);
+        scene.instances[1].mesh = 1;
+        for (glm::uvec3& corners : scene.meshes[1].triangles) std::swap(corners.y, corners.z);
+        scene.meshes[1].material_ids = {1};
+        scene.materials.push_back(scene.materials[0]);
+        View view = front_view(128);
+        // The mean of the floor, of which the roof hides the same part wherever it is drawn.
+        const auto brightness = [&](Culling culling, bool is_double_sided, Shadows kind) {
+          scene.materials[1].double_sided = is_double_sided;
+          view.culling = culling;
+          const Image image = picture(scene, view, kind, lights);
+          double sum = 0;
+          for (int y = 0; y < 128; ++y)
+            for (int x = 0; x < 128; ++x)
+              if (x < 48 || x >= 80 || y < 48 || y >= 80) sum += double(color_at(image, x, y).g);
+          return sum;
+        };
+        const double lit = brightness(Culling::none, false, Shadows::off);
+        EXPECT_EQ(brightness(Culling::material, false, shadows), lit);
+        EXPECT_LT(brightness(Culling::material, true, shadows), 0.99 * lit);
+        EXPECT_LT(brightness(Culling::none, false, shadows), 0.99 * lit);
+        EXPECT_LT(brightness(Culling::back, false, shadows), 0.99 * lit);
+      }
+}
+
 TEST(LampShadows, FallWhereTheRoofStandsBeforeTheLight) {
   Light wide = light_towards(Light::Kind::spot, {0.5, -0.4, 1.9}, {0, 0, 0}, 6);
   wide.outer_cone = 1.45;  // 83 degrees: more than its map holds

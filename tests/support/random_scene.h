@@ -130,6 +130,21 @@ inline View random_view(Random& random, int width, int height) {
   return view;
 }
 
+/// Some triangles get a double-sided material, some a one-sided one and some none. Every eighth seed makes all of them
+/// double-sided, and the one after it none.
+inline void add_random_sides(Scene& scene, std::uint64_t seed) {
+  Random random(seed + 300);
+  scene.materials.resize(2);
+  scene.materials[1].double_sided = true;
+  for (Mesh& mesh : scene.meshes) {
+    mesh.material_ids.assign(mesh.triangles.size(), seed % 8 == 0 ? 1 : 0);
+    if (seed % 8 < 2) continue;
+    for (std::uint32_t& id : mesh.material_ids) id = random.below(5) == 0 ? no_index : std::uint32_t(random.below(2));
+    // One material for all of a mesh is told once.
+    if (random.below(3) == 0) mesh.material_ids.assign(1, std::uint32_t(random.below(2)));
+  }
+}
+
 /// A scene of one kind and a view of it, of all sizes up to 200 x 170, with and without culling, one sample or four.
 struct RandomCase {
   Scene scene;

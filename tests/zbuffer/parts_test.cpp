@@ -42,19 +42,20 @@ TEST(TriangleRecord, IsTurnedSoThatItsAreaIsPositive) {
   // y is down: to the right and then down is clockwise to the eye, the back.
   TriangleRecord back = record_of({{{0, 0}, {256, 0}, {256, 256}}});
   EXPECT_EQ(doubled_area(back), 65536);
-  EXPECT_TRUE(orient(back, Culling::none));
+  EXPECT_TRUE(orient(back, FacingRule(Culling::none, nullptr)));
   EXPECT_EQ(back.key[1], 0.5f) << "it was turned rightly before";
-  EXPECT_FALSE(orient(back, Culling::back));
-  EXPECT_TRUE(orient(back, Culling::front));
+  EXPECT_FALSE(orient(back, FacingRule(Culling::back, nullptr)));
+  EXPECT_TRUE(orient(back, FacingRule(Culling::front, nullptr)));
   TriangleRecord front = record_of({{{0, 0}, {256, 256}, {256, 0}}});
   EXPECT_EQ(doubled_area(front), -65536);
-  EXPECT_FALSE(orient(front, Culling::front));
-  EXPECT_FALSE(orient(front, Culling::both));
-  EXPECT_TRUE(orient(front, Culling::back));
+  EXPECT_FALSE(orient(front, FacingRule(Culling::front, nullptr)));
+  EXPECT_FALSE(orient(front, FacingRule(Culling::both, nullptr)));
+  EXPECT_TRUE(orient(front, FacingRule(Culling::back, nullptr)));
+  EXPECT_FALSE(orient(back, FacingRule(Culling::material, nullptr))) << "one-sided";
   EXPECT_EQ(doubled_area(front), 65536);
   EXPECT_THAT(front.key, ElementsAre(0.25f, 0.75f, 0.5f)) << "keys go with their corners, the first one stays first";
   TriangleRecord line = record_of({{{0, 0}, {256, 256}, {512, 512}}});
-  EXPECT_FALSE(orient(line, Culling::none)) << "no area, no side";
+  EXPECT_FALSE(orient(line, FacingRule(Culling::none, nullptr))) << "no area, no side";
 }
 
 // The greatest coordinates of the guard band: 22 bits, whose products need more than 32.
@@ -126,7 +127,7 @@ TEST(Coverage, TwoWaysToWalkFindWhatTheRuleSays) {
     TriangleRecord record = random_record(random, i % 3 == 0 ? 200'000 : 2000);
     if (i % 2)
       for (std::size_t k = 0; k < 3; ++k) record.x[k] = record.x[k] / 128 * 128, record.y[k] = record.y[k] / 128 * 128;
-    if (!orient(record, Culling::none)) continue;
+    if (!orient(record, FacingRule(Culling::none, nullptr))) continue;
     const glm::ivec2 offset = sample_offsets(16)[std::size_t(random.below(16))];
     const PixelRect rect = pixel_rect(record, 40, 30);
     std::vector<std::pair<int, int>> visited, wanted;
@@ -155,7 +156,7 @@ TEST(Misses, IsRightWhereItSaysSo) {
   std::size_t missed = 0;
   for (int i = 0; i < 3000; ++i) {
     TriangleRecord record = random_record(random, 3000);
-    if (!orient(record, Culling::none)) continue;
+    if (!orient(record, FacingRule(Culling::none, nullptr))) continue;
     const int x = random.below(40), y = random.below(30), w = random.below(6), h = random.below(6);
     if (!misses(record, {x, y, x + w, y + h})) continue;
     ++missed;

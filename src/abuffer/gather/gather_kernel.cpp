@@ -19,6 +19,7 @@
 #include "abuffer/gather/large_triangles-inl.h"
 #include "abuffer/gather/list_sort-inl.h"
 #include "abuffer/gather/small_triangles-inl.h"
+#include "view/facing-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::abuffer_detail {
@@ -103,7 +104,9 @@ class TileGatherer {
     const VI area =
         hn::Sub(hn::Mul(hn::Sub(b.x, a.x), hn::Sub(c.y, a.y)), hn::Mul(hn::Sub(c.x, a.x), hn::Sub(b.y, a.y)));
     const MI front = hn::Lt(area, hn::Zero(d));  // counter-clockwise to the eye; y is down
-    keep = hn::And(keep, Facing(front, area));
+    const MI back = hn::And(keep, hn::Gt(area, hn::Zero(d)));
+    const auto ids = [&]() HWY_ATTR { return hn::LoadU(DU(), set.id.data() + at); };
+    keep = hn::And(keep, view_detail::HWY_NAMESPACE::Kept(d, frame_.plan.facing(), front, back, ids));
     if (hn::AllFalse(d, keep)) return;
 
     // Turn the area positive: swap the last two corners of front faces.
@@ -119,20 +122,8 @@ class TileGatherer {
                                                key_of(a.number),
                                                key_of(bn),
                                                key_of(cn),
-                                               hn::BitCast(d, hn::LoadU(DU(), set.id.data() + at))};
+                                               hn::BitCast(d, ids())};
     small_.Append(fields, keep);
-  }
-
-  HWY_INLINE MI Facing(MI front, VI area) const {
-    const DI d;
-    const MI back = hn::Gt(area, hn::Zero(d));
-    switch (frame_.plan.view().culling) {
-      case Culling::none: return hn::Or(front, back);
-      case Culling::back: return front;
-      case Culling::front: return back;
-      case Culling::both: break;
-    }
-    return hn::And(front, back);  // none
   }
 
   void DrawLargeLanes(const Cluster& cluster, std::size_t at, MI large) {
@@ -150,7 +141,7 @@ class TileGatherer {
         triangle.y[k] = screen.y[v] + t.centre_y - job_.pixels.y * kSubPixels;
         triangle.key[k] = screen.key[v];
       }
-      if (!orient(triangle, frame_.plan.view().culling)) continue;
+      if (!orient(triangle, frame_.plan.facing())) continue;
       // A vector of large triangles may hold more than there is room for at once.
       if (!sink_.HasRoom()) return;
       large_.Draw(triangle);

@@ -82,11 +82,10 @@ void for_tiles(const TileSpan& rect, int tiles_x, const Add& add) {
 
 }  // namespace
 
-bool orient(ScreenTriangle& t, Culling culling) {
+bool orient(ScreenTriangle& t, const FacingRule& facing) {
   const std::int64_t area = doubled_area(t);
   const bool front = area < 0;  // y is down
-  if (area == 0 || culling == Culling::both) return false;
-  if (culling == (front ? Culling::front : Culling::back)) return false;
+  if (area == 0 || !facing.keeps(t.id, front)) return false;
   if (front) {
     std::swap(t.x[1], t.x[2]);
     std::swap(t.y[1], t.y[2]);
@@ -101,6 +100,7 @@ FragmentPlan::FragmentPlan(const Surfaces& surfaces, const View& view, const Exe
   frame_ = std::make_shared<Frame>(Frame{surfaces.clusters(execution),
                                          ScreenTransform(view),
                                          view,
+                                         FacingRule(view.culling, surfaces.placed().sides.get()),
                                          tiles_along(view.width),
                                          tiles_along(view.height),
                                          {}});
@@ -148,9 +148,7 @@ void FragmentPlan::take_apart(const Execution& execution) {
   for (const std::vector<ScreenTriangle>& part : parts) singles_.insert(singles_.end(), part.begin(), part.end());
 }
 
-bool FragmentPlan::is_drawn(ScreenTriangle& t) const {
-  return tiles_of(t, view()).count() > 0 && orient(t, view().culling);
-}
+bool FragmentPlan::is_drawn(ScreenTriangle& t) const { return tiles_of(t, view()).count() > 0 && orient(t, facing()); }
 
 ScreenTriangle FragmentPlan::snapped(const Cluster& cluster, std::size_t triangle) const {
   const std::size_t c = cluster.first_triangle + triangle;

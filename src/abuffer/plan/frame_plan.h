@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "surfaces/cluster_set.h"
+#include "view/facing_rule.h"
 #include "view/screen_transform.h"
 
 namespace frontmost::abuffer_detail {
@@ -57,7 +58,7 @@ struct ScreenTriangle {
 };
 
 /// Turns the area positive. \returns false when the triangle is culled, or has no area and so covers nothing.
-[[nodiscard]] bool orient(ScreenTriangle& triangle, Culling culling);
+[[nodiscard]] bool orient(ScreenTriangle& triangle, const FacingRule& facing);
 
 /// For every tile a list of numbers, one after another in one array.
 struct TileNumbers {
@@ -83,6 +84,7 @@ class FragmentPlan {
   [[nodiscard]] const ClusterSet& set() const { return frame_->set; }
   [[nodiscard]] const ScreenTransform& transform() const { return frame_->transform; }
   [[nodiscard]] const View& view() const { return frame_->view; }
+  [[nodiscard]] const FacingRule& facing() const { return frame_->facing; }
   [[nodiscard]] const ScreenClusters& screen() const { return frame_->screen; }
   [[nodiscard]] std::size_t tile_count() const { return std::size_t(frame_->tiles_x) * std::size_t(frame_->tiles_y); }
   [[nodiscard]] Rectangle tile(std::size_t number) const;
@@ -111,6 +113,7 @@ class FragmentPlan {
     const ClusterSet& set;
     ScreenTransform transform;
     View view;
+    FacingRule facing;
     int tiles_x, tiles_y;
     ScreenClusters screen;
   };

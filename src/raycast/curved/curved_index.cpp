@@ -24,10 +24,14 @@ Scene flat_part(const Scene& scene) {
   flat.name = scene.name;
   flat.instances = scene.instances;
   flat.meshes.resize(scene.meshes.size());
+  flat.materials.resize(scene.materials.size());  // of which the sides alone count
+  for (std::size_t i = 0; i < scene.materials.size(); ++i)
+    flat.materials[i].double_sided = scene.materials[i].double_sided;
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     if (scene.meshes[m].is_curved()) continue;
     flat.meshes[m].positions = scene.meshes[m].positions;
     flat.meshes[m].triangles = scene.meshes[m].triangles;
+    flat.meshes[m].material_ids = scene.meshes[m].material_ids;
   }
   return flat;
 }
@@ -59,9 +63,14 @@ void CurvedParts::place_all(const Scene& scene) {
     next += element_count_of(mesh);
     if (next > no_primitive - 1)
       throw Error(ErrorCode::limit_exceeded, scene.name + ": more than 4294967294 elements over all instances");
+    const std::size_t first_sphere = spheres.size(), first_piece = pieces.size();
     for (const Sphere& sphere : mesh.spheres)
       if (auto placed = place(sphere, instance.world_from_mesh, id++)) spheres.push_back(*placed);
     for (const BezierPatch& patch : mesh.patches) cut(patch, instance.world_from_mesh, id++, pieces);
+    const std::uint32_t material = mesh.material_of(0);
+    const bool is_double_sided = material < scene.materials.size() && scene.materials[material].double_sided;
+    for (std::size_t i = first_sphere; i < spheres.size(); ++i) spheres[i].is_double_sided = is_double_sided;
+    for (std::size_t i = first_piece; i < pieces.size(); ++i) pieces[i].is_double_sided = is_double_sided;
   }
   first_elements.push_back(PrimitiveId(next));
 }

@@ -18,10 +18,10 @@ struct DoubleRay {
   Culling culling = Culling::none;
 
   /// Whether a surface with this outward normal is looked at. Edge-on counts as front.
-  [[nodiscard]] bool keeps(const glm::dvec3& normal) const {
+  [[nodiscard]] bool keeps(const glm::dvec3& normal, bool is_double_sided) const {
     const bool is_front = glm::dot(normal, direction) <= 0;
-    return culling == Culling::none || (culling == Culling::back && is_front) ||
-           (culling == Culling::front && !is_front);
+    const Culling rule = culling != Culling::material ? culling : is_double_sided ? Culling::none : Culling::back;
+    return rule == Culling::none || (rule == Culling::back && is_front) || (rule == Culling::front && !is_front);
   }
 };
 

@@ -214,7 +214,7 @@ glm::dvec3 normal_at(const PatchPiece& piece, const glm::dvec2& at, const Double
 std::optional<RayMeeting> meeting_at(const PatchPiece& piece, const DoubleRay& ray, const glm::dvec2& at,
                                      double distance) {
   const glm::dvec3 normal = normal_at(piece, at, ray);
-  if (!ray.keeps(normal)) return std::nullopt;
+  if (!ray.keeps(normal, piece.is_double_sided)) return std::nullopt;
   const double t = std::max(distance / glm::length(ray.direction), ray.from);
   return RayMeeting{t, piece.low + piece.size * at, normal};
 }

@@ -22,6 +22,7 @@ struct PlacedSphere {
   glm::dmat3 unit_from_world;  ///< after moving the centre to the origin
   glm::dvec3 centre, reach;    ///< in world space: the middle and half the sides of the box around it
   PrimitiveId id = no_primitive;
+  bool is_double_sided = false;
 
   [[nodiscard]] DoubleBox bounds() const;
 };
@@ -43,6 +44,7 @@ struct PatchPiece {
   double scale = 0;            ///< the largest side of the box around the whole patch
   double outward = 1;          ///< -1 where the transform mirrors
   PrimitiveId id = no_primitive;
+  bool is_double_sided = false;
 
   [[nodiscard]] DoubleBox bounds() const;
 };

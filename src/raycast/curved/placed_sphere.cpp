@@ -71,7 +71,7 @@ std::optional<RayMeeting> meet(const PlacedSphere& sphere, const DoubleRay& ray)
     // From so far away that rounding leaves nothing of the radius, the ray passes through the centre.
     const glm::dvec3 unit = glm::normalize(point == glm::dvec3(0) ? through_centre : point);
     const glm::dvec3 normal = glm::normalize(unit * sphere.unit_from_world);  // by the inverse's transpose
-    if (ray.keeps(normal)) return RayMeeting{t, parameters_of(unit), normal};
+    if (ray.keeps(normal, sphere.is_double_sided)) return RayMeeting{t, parameters_of(unit), normal};
   }
   return std::nullopt;
 }

@@ -21,21 +21,21 @@ constexpr std::size_t kTrianglesPerPart = 16384;
 constexpr std::size_t kFew = 4096;
 
 /// Whether the triangle at `place` is the one before it with a higher id: what meets it meets that one as well, at the
-/// same depth, and of the two that one is seen.
-bool is_copy(const Buffer<RayLeaf>& leaves, std::size_t place) {
-  const RayLeaf &one = leaves[(place - 1) / kRayLanes], &again = leaves[place / kRayLanes];
+/// same depth, and of the two that one is seen. One that is seen from both sides is no copy of a one-sided triangle.
+bool is_copy(const RayTree& tree, std::size_t place) {
+  const RayLeaf &one = tree.leaves[(place - 1) / kRayLanes], &again = tree.leaves[place / kRayLanes];
   const std::size_t a = (place - 1) % kRayLanes, b = place % kRayLanes;
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (one.corner[k][axis][a] != again.corner[k][axis][b]) return false;
-  return one.id[a] < again.id[b];
+  return one.id[a] < again.id[b] && (tree.sides->is_double(one.id[a]) || !tree.sides->is_double(again.id[b]));
 }
 
 std::size_t count_copies(const RayTree& tree, const Execution& execution) {
   std::atomic<std::size_t> count{0};
   parallel_for(execution, tree.triangle_count, kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
     std::size_t here = 0;
-    for (std::size_t i = std::max<std::size_t>(begin, 1); i < end; ++i) here += is_copy(tree.leaves, i);
+    for (std::size_t i = std::max<std::size_t>(begin, 1); i < end; ++i) here += is_copy(tree, i);
     count += here;
   });
   return count;
@@ -74,7 +74,7 @@ std::shared_ptr<RayTree> take_copies(RayTree& tree, const Execution& execution) 
   copies->triangle_count = std::uint32_t(count);
   LeafFiller again(count), kept(tree.triangle_count - count);
   for (std::size_t i = 0; i < tree.triangle_count; ++i)
-    (i > 0 && is_copy(tree.leaves, i) ? again : kept).add(tree.leaves[i / kRayLanes], i % kRayLanes);
+    (i > 0 && is_copy(tree, i) ? again : kept).add(tree.leaves[i / kRayLanes], i % kRayLanes);
   copies->leaves = again.take();
   tree.leaves = kept.take();
   tree.triangle_count -= copies->triangle_count;

@@ -108,6 +108,7 @@ bool follow_instance(const Surfaces& surfaces, std::uint32_t instance, RayTree& 
   const PlacedScene& placed = surfaces.placed();
   TreeChange change(tree);
   tree.cutouts = placed.cutouts;
+  tree.sides = placed.sides;
   if (!(tree.placed.empty() ? follow_on_one_level : follow_on_two_levels)(placed, instance, tree)) return false;
   change.complete();
   return true;

@@ -119,12 +119,14 @@ void build_upper(RayTree& tree, const Execution& execution) {
   tree.bounds = upper.bounds;
 }
 
-/// Holes are looked up in the world: as many triangles with holes as all instances have together.
-std::shared_ptr<const Cutouts> cutouts_of(const Scene& scene) {
+/// Holes are looked up in the world: as many triangles with holes as all instances have together. Sides are told by
+/// instance as well.
+void set_materials(const Scene& scene, RayTree& tree) {
   std::vector<PrimitiveId> first = {0};
   for (const Instance& instance : scene.instances)
     first.push_back(first.back() + PrimitiveId(scene.meshes[instance.mesh].triangles.size()));
-  return Cutouts::of(scene, first);
+  tree.cutouts = Cutouts::of(scene, first);
+  tree.sides = MaterialSides::of(scene, first);
 }
 
 }  // namespace
@@ -162,7 +164,7 @@ RayTree make_placed_tree(const Scene& scene, const Execution& execution) {
     first += PrimitiveId(scene.meshes[instance.mesh].triangles.size());
   }
   forest.move_to(tree);
-  tree.cutouts = cutouts_of(scene);
+  set_materials(scene, tree);
   tree.mesh_nodes = std::uint32_t(tree.nodes.size());
   build_upper(tree, execution);
   report_progress(execution, "index", 1);
@@ -180,7 +182,7 @@ bool replace_instances(const Scene& scene, RayTree& tree, const Execution& execu
   check_transforms(scene);
   TreeChange change(tree);
   for (std::size_t i = 0; i < tree.placed.size(); ++i) place_instance(scene.instances[i], tree.placed[i]);
-  if (tree.cutouts) tree.cutouts = cutouts_of(scene);
+  if (tree.cutouts) set_materials(scene, tree);
   tree.links.reset();
   build_upper(tree, execution);
   change.complete();

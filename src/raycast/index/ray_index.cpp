@@ -25,6 +25,7 @@ std::size_t byte_count(const RayLinks& links) {
 std::size_t byte_count(const RayTree& tree) {
   return sizeof(RayTree) + tree.nodes.size() * sizeof(RayNode) + tree.leaves.size() * sizeof(RayLeaf) +
          tree.placed.size() * sizeof(PlacedRoot) + (tree.cutouts ? tree.cutouts->byte_count() : 0) +
+         (tree.sides ? tree.sides->bits.size() * sizeof(std::uint32_t) : 0) +
          (tree.copies ? byte_count(*tree.copies) : 0) + (tree.links ? byte_count(*tree.links) : 0);
 }
 
@@ -34,6 +35,7 @@ RayTree make_tree(const Surfaces& surfaces, RepeatedTriangles copies, const Exec
   const IeeeScope ieee;
   RayTree tree;
   tree.cutouts = surfaces.placed().cutouts;
+  tree.sides = surfaces.placed().sides;
   report_progress(execution, "index", 0);
   fill_leaves(surfaces, tree, execution);
   if (copies == RepeatedTriangles::apart) tree.copies = take_copies(tree, execution);

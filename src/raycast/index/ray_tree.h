@@ -17,6 +17,7 @@
 #include "frontmost/raycast.h"
 #include "surfaces/cutouts.h"
 #include "surfaces/holders.h"
+#include "surfaces/material_sides.h"
 
 namespace frontmost {
 
@@ -74,6 +75,7 @@ struct RayTree {
   std::uint32_t depth = 0;                 ///< nodes from the root to the deepest leaf, over both levels
   Box bounds;                              ///< on two levels, of the boxes; around those of the triangles otherwise
   std::shared_ptr<const Cutouts> cutouts;  ///< null where no triangle has holes
+  std::shared_ptr<const MaterialSides> sides;
   /// Triangles that are there again: each has the corners of one of this tree, in their order, and a higher id. So
   /// whoever asks what is nearest, or whether anything is met, does without them. Null: none were taken apart.
   std::shared_ptr<RayTree> copies;

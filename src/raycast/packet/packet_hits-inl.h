@@ -284,7 +284,7 @@ class PacketHits {
         if ((notes_[i].rays >> ray & 1) == 0) continue;
         const RayHit hit = meet(query, notes_[i].corners, notes_[i].id);
         const bool is_nearer = hit && (hit.t < nearest.t || (hit.t == nearest.t && hit.primitive < nearest.primitive));
-        if (is_nearer && !is_hole(tree_, query, hit)) nearest = hit;
+        if (is_nearer && !passes(tree_, query, hit)) nearest = hit;
       }
     }
     packet.primitive[ray] = nearest.primitive;

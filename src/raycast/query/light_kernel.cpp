@@ -19,6 +19,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/exact_vector.h"
 #include "raycast/index/placement.h"
 #include "raycast/query/queries.h"
 
@@ -69,8 +70,12 @@ HWY_INLINE std::uint32_t LaneBits(LM mask) { return std::uint32_t(frontmost::HWY
 
 class LightPacket {
  public:
-  LightPacket(const RayTree& tree, const glm::vec3& to_light)
-      : tree_(tree), to_light_(to_light), axes_(to_light), stack_(tree.stack_size() + kRayLanes) {
+  LightPacket(const RayTree& tree, const LightAim& light)
+      : tree_(tree),
+        to_light_(light.to_light),
+        is_one_way_(light.is_one_way),
+        axes_(light.to_light),
+        stack_(tree.stack_size() + kRayLanes) {
     const glm::vec3 far = glm::max(glm::abs(tree.bounds.low), glm::abs(tree.bounds.high));
     tree_size_ = std::max({far.x, far.y, far.z});
   }
@@ -367,22 +372,29 @@ class LightPacket {
   /// A triangle that certainly is passed through; a lifted point may be below its own.
   void Meet(const RayLeaf& leaf, std::size_t lane, std::size_t ray) {
     const TrianglePoint& point = points_[ray];
-    if ((point.lift == glm::vec3(0) || !is_own(leaf.corners_of(lane), point)) && !IsHole(leaf, lane, ray)) Darken(ray);
+    if ((point.lift == glm::vec3(0) || !is_own(leaf.corners_of(lane), point)) && !Passes(leaf, lane, ray)) Darken(ray);
   }
 
   HWY_NOINLINE void Decide(const RayLeaf& leaf, std::size_t lane, std::size_t ray) {
-    if (stands_before(leaf.corners_of(lane), points_[ray], to_light_) && !IsHole(leaf, lane, ray)) Darken(ray);
+    if (stands_before(leaf.corners_of(lane), points_[ray], to_light_) && !Passes(leaf, lane, ray)) Darken(ray);
   }
 
-  /// Whether the triangle has a hole where the ray passes.
-  [[nodiscard]] HWY_INLINE bool IsHole(const RayLeaf& leaf, std::size_t lane, std::size_t ray) const {
+  /// Whether light comes through the triangle where the ray passes: by a hole, or from behind.
+  [[nodiscard]] HWY_INLINE bool Passes(const RayLeaf& leaf, std::size_t lane, std::size_t ray) const {
+    if (is_one_way_ && !tree_.sides->is_double(leaf.id[lane]) && !FacesLight(leaf.corners_of(lane))) return true;
     const Cutouts* const cutouts = tree_.cutouts.get();
     if (!cutouts || !cutouts->has(leaf.id[lane])) return false;
     return (*cutouts)[leaf.id[lane]].is_hole_at(passed_point(leaf.corners_of(lane), points_[ray], to_light_));
   }
 
+  [[nodiscard]] HWY_NOINLINE bool FacesLight(const std::array<glm::vec3, 3>& corners) const {
+    const glm::dvec3 a(corners[0]), b(corners[1]), c(corners[2]);
+    return sign_of_determinant({b, a}, {c, a}, {glm::dvec3(to_light_)}) > 0;
+  }
+
   const RayTree& tree_;
   const glm::vec3 to_light_;
+  const bool is_one_way_;
   LightAxes axes_;
   std::vector<std::uint32_t> stack_;
   float tree_size_;
@@ -399,9 +411,9 @@ class LightPacket {
   std::size_t block_count_ = 0;
 };
 
-void FindLit(const RayTree& tree, std::span<const TrianglePoint> points, const glm::vec3& to_light,
+void FindLit(const RayTree& tree, std::span<const TrianglePoint> points, const LightAim& light,
              std::span<std::uint8_t> answers) {
-  LightPacket packet(tree, to_light);
+  LightPacket packet(tree, light);
   for (std::size_t first = 0; first < points.size(); first += kLightRays)
     packet.Find(points.subspan(first, std::min(kLightRays, points.size() - first)), answers.data() + first);
 }
@@ -415,14 +427,15 @@ namespace frontmost::raycast_detail {
 
 FRONTMOST_KERNELS(FindLit);
 
-void find_lit(const RayTree& tree, std::span<const TrianglePoint> points, const glm::vec3& to_light,
+void find_lit(const RayTree& tree, std::span<const TrianglePoint> points, const LightAim& light,
               std::span<std::uint8_t> answers, Isa isa) {
+  const glm::vec3& to_light = light.to_light;
   const bool is_direction =
       std::isfinite(to_light.x) && std::isfinite(to_light.y) && std::isfinite(to_light.z) && to_light != glm::vec3(0);
   if (tree.root == no_index || !is_direction)
     std::fill_n(answers.data(), answers.size(), std::uint8_t(1));
   else
-    kernel_for(FindLitKernels, isa)(tree, points, to_light, answers);
+    kernel_for(FindLitKernels, isa)(tree, points, light, answers);
 }
 
 }  // namespace frontmost::raycast_detail

@@ -110,7 +110,7 @@ void are_lit(const RayIndex& index, std::span<const TrianglePoint> points, const
              std::span<std::uint8_t> answers, const Execution& execution) {
   check_sizes(points.size(), answers.size());
   parallel_for(execution, points.size(), kQueriesPerPart, [&](std::size_t begin, std::size_t end) {
-    find_lit(index.tree(), points.subspan(begin, end - begin), to_light, answers.subspan(begin, end - begin),
+    find_lit(index.tree(), points.subspan(begin, end - begin), {to_light}, answers.subspan(begin, end - begin),
              execution.isa);
   });
 }

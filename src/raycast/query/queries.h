@@ -17,8 +17,9 @@
 
 namespace frontmost::raycast_detail {
 
-/// Whether what the query meets there is a hole of the triangle.
-[[nodiscard]] inline bool is_hole(const RayTree& tree, const Query& query, const RayHit& hit) {
+/// Whether the query goes on through the triangle that it meets there: by a hole, or from behind.
+[[nodiscard]] inline bool passes(const RayTree& tree, const Query& query, const RayHit& hit) {
+  if (query.is_one_way && !hit.is_front && !tree.sides->is_double(hit.primitive)) return true;
   const Cutouts* const cutouts = tree.cutouts.get();
   if (!cutouts || !cutouts->has(hit.primitive)) return false;
   const glm::dvec3 from(query.origin),
@@ -43,8 +44,14 @@ void walk_batch(const RayTree& tree, std::span<const Query> queries, Want want, 
 /// Rays that walk the tree together: four pixels by four of four samples.
 inline constexpr std::size_t kLightRays = 64;
 
+/// A light at infinity.
+struct LightAim {
+  glm::vec3 to_light;
+  bool is_one_way = false;  ///< Query::is_one_way, of rays that come from the light
+};
+
 /// are_lit() on this thread.
-void find_lit(const RayTree& tree, std::span<const TrianglePoint> points, const glm::vec3& to_light,
+void find_lit(const RayTree& tree, std::span<const TrianglePoint> points, const LightAim& light,
               std::span<std::uint8_t> answers, Isa isa);
 
 /// With room for the answers. \throws Error as validate(camera) does.

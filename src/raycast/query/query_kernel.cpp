@@ -170,7 +170,7 @@ class QueryWalker {
       alignas(64) float from[kQueryLanes], to[kQueryLanes];
       hn::Store(passes.from, d, from);
       hn::Store(passes.to, d, to);
-      if (!tree_.cutouts)
+      if (!tree_.cutouts && !q_.is_one_way)
         for (std::uint32_t bits = candidates.certain; bits != 0; bits &= bits - 1)
           EndAt(to[hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)]);
       for (std::uint32_t bits = candidates.possible; bits != 0; bits &= bits - 1) {
@@ -196,7 +196,7 @@ class QueryWalker {
       const Noted& note = notes_[i];
       if (note.from > axis_.place_of(end_)) continue;
       const RayHit hit = meet(q_, note.corners, note.id);
-      if (hit.primitive != no_primitive && !is_hole(tree_, q_, hit)) Keep(hit);
+      if (hit.primitive != no_primitive && !passes(tree_, q_, hit)) Keep(hit);
     }
     noted_ = 0;
   }
@@ -206,7 +206,7 @@ class QueryWalker {
     for (std::size_t first = 0; first < kRayLanes; first += kQueryLanes) {
       const Candidates candidates = CandidatesOf(axis_.Pass(leaf, first));
       // A hit of any kind is asked for; which one, and where, says nothing to whoever asks whether the way is clear.
-      if (want_ == Want::any && candidates.certain != 0 && !tree_.cutouts) {
+      if (want_ == Want::any && candidates.certain != 0 && !tree_.cutouts && !q_.is_one_way) {
         const std::size_t lane = first + hwy::Num0BitsBelowLS1Bit_Nonzero32(candidates.certain);
         hits_.push_back({leaf.id[lane], 0, false});
         return true;
@@ -215,7 +215,7 @@ class QueryWalker {
         const std::size_t lane = first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
         if (leaf.id[lane] == no_primitive) continue;
         const RayHit hit = meet(q_, leaf.corners_of(lane), leaf.id[lane]);
-        if (hit.primitive == no_primitive || is_hole(tree_, q_, hit)) continue;
+        if (hit.primitive == no_primitive || passes(tree_, q_, hit)) continue;
         met = true;
         Keep(hit);
       }

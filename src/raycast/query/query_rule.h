@@ -39,6 +39,7 @@ struct Query {
   glm::vec3 origin, end;  ///< `end` of segments only
   glm::vec3 direction;    ///< of segments: end - origin, rounded
   bool is_segment;
+  bool is_one_way = false;  ///< one-sided triangles are not met from behind, as in views with Culling::material
 };
 
 /// \returns false where nothing can be met: a coordinate that is not finite, or no direction.

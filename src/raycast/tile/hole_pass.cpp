@@ -33,7 +33,12 @@ struct Nearest {
 class HolePasser {
  public:
   HolePasser(const RayTree& tree, const View& view)
-      : tree_(tree), cutouts_(*tree.cutouts), view_(view), culling_(view.culling), transform_(view), rays_(view) {}
+      : tree_(tree),
+        cutouts_(*tree.cutouts),
+        view_(view),
+        facing_(view.culling, tree.sides.get()),
+        transform_(view),
+        rays_(view) {}
 
   [[nodiscard]] bool is_hole(PrimitiveId id, const SamplePlace& place) {
     if (!cutouts_.has(id)) return false;
@@ -120,7 +125,7 @@ class HolePasser {
 
   void meet(const SampleTriangle& triangle, PrimitiveId id, const SamplePlace& place) {
     const float sx = float(place.x - transform_.centre_x), sy = float(place.y - transform_.centre_y);
-    if (!keeps(culling_, facing(transform_, triangle.corners, sx, sy))) return;
+    if (!keeps(facing_, id, facing(transform_, triangle.corners, sx, sy))) return;
     // The tile is part of the definition of a key: sample_rule.h.
     const auto tile_centre = [](int pixel, std::int32_t image_centre) {
       return float((pixel / kTileSize * kTileSize + kTileSize / 2) * kSubPixels - image_centre);
@@ -138,7 +143,7 @@ class HolePasser {
   const RayTree& tree_;
   const Cutouts& cutouts_;
   const View& view_;
-  Culling culling_;
+  FacingRule facing_;
   ScreenTransform transform_;
   ScreenRays rays_;
   PrimitiveId id_ = no_primitive;  ///< that cutout_ is of

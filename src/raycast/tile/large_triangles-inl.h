@@ -86,7 +86,7 @@ struct LargeTriangle {
 class LargeRayTriangles {
  public:
   LargeRayTriangles(const RayTileInput& frame, const TilePlace& place, RayTileBuffer& buffer)
-      : t_(frame.transform), culling_(frame.view.culling), place_(place), buffer_(buffer) {}
+      : t_(frame.transform), facing_(frame.facing), place_(place), buffer_(buffer) {}
 
   template <class Corners>
   HWY_INLINE void Draw(const LargeTriangle<Corners>& large) {
@@ -103,7 +103,7 @@ class LargeRayTriangles {
       open &= ~Hidden(large.plane);
       Edges edges;
       if (hwy::PopCount(open) >= std::size_t(kClassifyFrom) && SetEdges(large.corners.all(), edges)) {
-        if (!keeps(culling_, edges.facing)) return;
+        if (!keeps(facing_, large.id, edges.facing)) return;
         const Classes classes = Classify(edges);
         open &= ~classes.outside;
         full = classes.full;
@@ -269,7 +269,7 @@ class LargeRayTriangles {
         if (plane.is_clipped)
           nearer = hn::And(nearer, hn::And(hn::Ge(raw, hn::Set(d, plane.cut)), hn::Le(raw, hn::Set(d, 1.0f))));
         if (hn::AllFalse(d, nearer)) continue;
-        if (!is_full) nearer = hn::And(nearer, Met(large.corners, vectors, sx, sy));
+        if (!is_full) nearer = hn::And(nearer, Met(large, vectors, sx, sy));
         hn::Store(hn::IfThenElse(nearer, key, old_key), d, keys);
         hn::Store(hn::IfThenElse(hn::RebindMask(du, nearer), id, old_id), du, ids);
         changed = true;
@@ -278,7 +278,8 @@ class LargeRayTriangles {
     });
   }
 
-  [[nodiscard]] HWY_INLINE MF Met(const SingleCorners& corners, const SingleVectors& c, VF sx, VF sy) const {
+  [[nodiscard]] HWY_INLINE MF Met(const LargeTriangle<SingleCorners>& large, const SingleVectors& c, VF sx,
+                                  VF sy) const {
     const DF d;
     VF x[3], y[3];
     for (int k = 0; k < 3; ++k) {
@@ -286,14 +287,17 @@ class LargeRayTriangles {
       y[k] = hn::Sub(c.y[k], hn::Mul(sy, c.w[k]));
     }
     const EdgeSides sides = SidesOf(x, y);
-    const MF met = Kept(culling_, sides);
+    const auto ids = [&]() HWY_ATTR { return hn::Set(DU(), large.id); };
+    const MF met = Kept(d, facing_, sides.front, sides.back, ids);
     if (HWY_LIKELY(hn::AllFalse(d, sides.doubtful))) return met;
-    return Resolve(met, sides.doubtful, sx, sy,
-                   [&](std::size_t, float px, float py) { return keeps(culling_, facing(t_, corners.all(), px, py)); });
+    return Resolve(met, sides.doubtful, sx, sy, [&](std::size_t, float px, float py) {
+      return keeps(facing_, large.id, facing(t_, large.corners.all(), px, py));
+    });
   }
 
   /// The same in doubles, whose products may be rounded: where two are equal, the exact rule decides.
-  [[nodiscard]] HWY_NOINLINE MF Met(const WideCorners& wide, const WideCorners&, VF sx, VF sy) const {
+  [[nodiscard]] HWY_NOINLINE MF Met(const LargeTriangle<WideCorners>& large, const WideCorners& wide, VF sx,
+                                    VF sy) const {
     const DF d;
     const DI di;
     const DD dd;
@@ -322,7 +326,7 @@ class LargeRayTriangles {
         const bool certain = closest[lane] > 0;
         const int sign = least[lane] > 0 ? 1 : most[lane] < 0 ? -1 : 0;
         answer[i + lane] =
-            keeps(culling_, certain ? sign : facing(t_, wide.corners, fx[i + lane], fy[i + lane])) ? -1 : 0;
+            keeps(facing_, large.id, certain ? sign : facing(t_, wide.corners, fx[i + lane], fy[i + lane])) ? -1 : 0;
       }
     }
     return hn::RebindMask(d, hn::MaskFromVec(hn::Load(di, answer)));
@@ -337,7 +341,7 @@ class LargeRayTriangles {
   }
 
   const ScreenTransform& t_;
-  Culling culling_;
+  const FacingRule facing_;  // a copy: it is asked in the inner loops
   const TilePlace& place_;
   RayTileBuffer& buffer_;
 };

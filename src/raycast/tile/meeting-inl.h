@@ -14,11 +14,13 @@
 #endif
 
 #include "raycast/tile/tile_buffer-inl.h"
+#include "view/facing-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::raycast_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using view_detail::HWY_NAMESPACE::Kept;
 
 /// Where the three determinants are certain: floats round products monotonically, so a difference has the right sign
 /// unless it is zero.
@@ -35,16 +37,6 @@ HWY_INLINE EdgeSides SidesOf(const VF (&x)[3], const VF (&y)[3]) {
   const VF least = hn::Min(hn::Min(u, v), w), most = hn::Max(hn::Max(u, v), w);
   const VF closest = hn::Min(hn::Min(hn::Abs(u), hn::Abs(v)), hn::Abs(w));
   return {hn::Lt(most, zero), hn::Gt(least, zero), hn::Eq(closest, zero)};
-}
-
-HWY_INLINE MF Kept(Culling culling, const EdgeSides& sides) {
-  switch (culling) {
-    case Culling::none: return hn::Or(sides.front, sides.back);
-    case Culling::back: return sides.front;
-    case Culling::front: return sides.back;
-    case Culling::both: break;
-  }
-  return hn::MaskFromVec(hn::Zero(DF()));
 }
 
 /// Asks `meets(lane, sx, sy)` about the doubtful lanes, one by one.

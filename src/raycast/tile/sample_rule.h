@@ -20,6 +20,7 @@
 #include <cmath>
 
 #include "base/exact_vector.h"
+#include "view/facing_rule.h"
 #include "view/screen_transform.h"
 
 namespace frontmost::raycast_detail {
@@ -103,15 +104,9 @@ inline int facing(const ScreenTransform& t, const std::array<SampleCorner, 3>& c
   return least >= 0 ? most : most <= 0 ? least : 0;
 }
 
-/// Whether culling leaves what a ray meets so; `facing` is that of facing().
-inline bool keeps(Culling culling, int facing) {
-  switch (culling) {
-    case Culling::none: return facing != 0;
-    case Culling::back: return facing < 0;
-    case Culling::front: return facing > 0;
-    case Culling::both: break;
-  }
-  return false;
+/// Whether culling leaves a triangle that a ray meets so; `facing` is that of facing().
+inline bool keeps(const FacingRule& rule, PrimitiveId id, int facing) {
+  return facing != 0 && rule.keeps(id, facing < 0);
 }
 
 inline float key_of_distance(const ScreenTransform& t, double d) {

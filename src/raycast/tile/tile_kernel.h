@@ -20,6 +20,7 @@ struct RayTileInput {
   const RayTree& tree;
   const ScreenTransform& transform;
   const View& view;
+  FacingRule facing;
   std::span<const glm::ivec2> samples;
   glm::vec3 reach;  ///< the greatest |position - eye| of any triangle, by axis
   PrimitiveId* primitives;

@@ -31,7 +31,7 @@ constexpr int kWalkLimit = 3;
 class RayTriangleQueue {
  public:
   RayTriangleQueue(const RayTileInput& frame, const TilePlace& place, RayTileBuffer& buffer, LargeRayTriangles& large)
-      : t_(frame.transform), culling_(frame.view.culling), place_(place), buffer_(buffer), large_(large) {}
+      : t_(frame.transform), facing_(frame.facing), place_(place), buffer_(buffer), large_(large) {}
 
   struct Batch {
     VF x[3], y[3], d[3];
@@ -163,11 +163,12 @@ class RayTriangleQueue {
         for (int k = 0; k < 3; ++k) x[k] = hn::Sub(cx[k], hn::Mul(sx, cw[k]));
         const EdgeSides sides = SidesOf(x, y);
         const MF here = hn::AndNot(hn::RebindMask(d, hn::Gt(hn::Set(du, column), rects.columns)), in_rows);
-        MF met = hn::And(Kept(culling_, sides), here);
+        const auto ids = [&]() HWY_ATTR { return hn::LoadU(du, id_ + from); };
+        MF met = hn::And(Kept(d, facing_, sides.front, hn::And(sides.back, here), ids), here);
         const MF doubtful = hn::And(sides.doubtful, here);
         if (HWY_UNLIKELY(!hn::AllFalse(d, doubtful)))
           met = Resolve(met, doubtful, sx, sy, [&](std::size_t lane, float px1, float py1) {
-            return keeps(culling_, facing(t_, Corners(from + lane).all(), px1, py1));
+            return keeps(facing_, id_[from + lane], facing(t_, Corners(from + lane).all(), px1, py1));
           });
         if (hn::AllFalse(d, met)) continue;
         const VF u_step = hn::Mul(hn::Sub(sx, hn::Set(d, place_.centre_x)), gx);
@@ -205,8 +206,10 @@ class RayTriangleQueue {
     if (large.rect.y1 - large.rect.y0 < kTileSize / 2 || !IsThereAlready(large)) large_.Draw(large);
   }
 
-  /// Whether it is the last one again, as where objects are placed twice or a million times: the lower id hides it.
+  /// Whether it is the last one again, as where objects are placed twice or a million times: the lower id hides it,
+  /// unless that one alone may be left out.
   [[nodiscard]] bool IsThereAlready(const LargeTriangle<SingleCorners>& large) {
+    if (facing_.culling() == Culling::material) return false;
     if (last_id_ < large.id && large.corners == last_) return true;
     last_ = large.corners;
     last_id_ = large.id;
@@ -214,7 +217,7 @@ class RayTriangleQueue {
   }
 
   const ScreenTransform& t_;
-  Culling culling_;
+  const FacingRule facing_;  // a copy: it is asked in the inner loops
   const TilePlace& place_;
   RayTileBuffer& buffer_;
   LargeRayTriangles& large_;

@@ -56,7 +56,7 @@ class BandHiders {
         canvas_(canvas),
         objects_(objects),
         first_(first_ranges(scene)),
-        target_(canvas.transform, canvas.view, isa),
+        target_(canvas.transform, canvas.view, scene.sides.get(), isa),
         plane_(std::size_t(canvas.view.width) * kBandRows, kNotCovered),
         columns_(std::size_t(canvas.view.width + kWordPixels - 1) / kWordPixels),
         fronts_(std::size_t(kBandRows) * kWordPixels) {}
@@ -100,8 +100,7 @@ class BandHiders {
     for (std::size_t i = 0; i < batch_.count; ++i) draw(batch_.record(i), rect);
     records_.clear();
     for (const std::uint32_t i : scratch_.apart)
-      append_polygon(polygon_of(target_, triangles, scratch_.vertices, i), canvas_.transform, triangles.first_id + i,
-                     canvas_.view, records_);
+      append_polygon(target_, polygon_of(target_, triangles, scratch_.vertices, i), triangles.first_id + i, records_);
     for (const TriangleRecord& record : records_) draw(record, rect);
   }
 

@@ -72,7 +72,10 @@ std::vector<std::size_t> first_ranges(const PlacedScene& scene) {
 }
 
 ObjectMask::ObjectMask(const PlacedScene& scene, const ObjectCanvas& canvas, Isa isa)
-    : scene_(scene), canvas_(canvas), target_(canvas.transform, canvas.view, isa), touched_(kNoPixels) {
+    : scene_(scene),
+      canvas_(canvas),
+      target_(canvas.transform, canvas.view, scene.sides.get(), isa),
+      touched_(kNoPixels) {
   const View& view = canvas.view;
   const auto stride = std::size_t(view.width + kWordPixels - 1) / kWordPixels;
   const std::size_t words = stride * std::size_t(view.height);
@@ -142,8 +145,7 @@ void ObjectMask::draw_triangles(const WorldTriangles& triangles) {
   for (const std::uint32_t i : scratch_.apart) {
     is_cut_by_near_ =
         is_cut_by_near_ || crosses_near(triangles.corners[i] - triangles.first_position, scratch_.vertices);
-    append_polygon(polygon_of(target_, triangles, scratch_.vertices, i), canvas_.transform, triangles.first_id + i,
-                   canvas_.view, large_);
+    append_polygon(target_, polygon_of(target_, triangles, scratch_.vertices, i), triangles.first_id + i, large_);
   }
   for (const TriangleRecord& record : large_) draw_large(record);
 }

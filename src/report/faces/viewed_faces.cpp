@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "surfaces/placed_scene.h"
+#include "view/facing_rule.h"
 
 namespace frontmost::faces_detail {
 namespace {
@@ -190,7 +191,7 @@ class FaceGatherer {
   /// `facing`: by primitive, 0 for those that are not there, or not whole.
   FaceGatherer(const PlacedScene& placed, const Eye& eye, Culling culling, const VerticesOfView& vertices,
                std::vector<std::int8_t>& facing)
-      : placed_(placed), eye_(eye), culling_(culling), vertices_(vertices), facing_(facing) {}
+      : placed_(placed), eye_(eye), rule_(culling, placed.sides.get()), vertices_(vertices), facing_(facing) {}
 
   void gather(const MeshRange& range) {
     const std::size_t first_point = vertices_.first(range.instance);
@@ -202,10 +203,8 @@ class FaceGatherer {
   [[nodiscard]] FacePart take() { return std::move(out_); }
 
  private:
-  [[nodiscard]] bool is_culled(int facing) const {
-    const bool is_front = (facing < 0) != is_mirrored_;
-    return culling_ == Culling::both || (culling_ == Culling::front && is_front) ||
-           (culling_ == Culling::back && !is_front);
+  [[nodiscard]] bool is_culled(PrimitiveId id, int facing) const {
+    return !rule_.keeps(id, (facing < 0) != is_mirrored_);
   }
 
   void add(PrimitiveId id, std::uint32_t instance, std::size_t first_point, const glm::uvec3& c) {
@@ -216,7 +215,7 @@ class FaceGatherer {
     if ((any & (kNearer | kFarther | kFarAway)) != 0) return add_clipped(id, instance, c);
     if ((all & (kLeft | kRight | kAbove | kBelow)) != 0) return;
     const int facing = facing_of(vertices_.points[x], vertices_.points[y], vertices_.points[z]);
-    if (facing == 0 || is_culled(facing)) return;
+    if (facing == 0 || is_culled(id, facing)) return;
     facing_[id] = std::int8_t(facing);
     out_.faces.push_back({{std::uint32_t(x), std::uint32_t(y), std::uint32_t(z)}, id});
   }
@@ -233,13 +232,13 @@ class FaceGatherer {
     for (std::uint32_t i = 2; i < polygon.size(); ++i) {
       const ScreenPoint* const p = out_.clipped.data() + first;
       const int facing = facing_of(p[0], p[i - 1], p[i]);
-      if (facing != 0 && !is_culled(facing)) out_.faces.push_back({{number, number + i - 1, number + i}, id});
+      if (facing != 0 && !is_culled(id, facing)) out_.faces.push_back({{number, number + i - 1, number + i}, id});
     }
   }
 
   const PlacedScene& placed_;
   const Eye& eye_;
-  Culling culling_;
+  FacingRule rule_;
   const VerticesOfView& vertices_;
   std::vector<std::int8_t>& facing_;
   bool is_mirrored_ = false;

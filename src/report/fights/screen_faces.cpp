@@ -154,9 +154,9 @@ bool FarthestSeen::hides(const PixelRect& rect, float high) const {
 std::vector<ScreenFace> screen_faces(const Surfaces& surfaces, const View& view, const KeyStep& step,
                                      const FarthestSeen& seen, const Execution& execution) {
   const ScreenTransform transform(view);
-  const PlaceTarget target(transform, view, execution.isa);
-  const PlaceErrors errors(transform, view);
   const PlacedScene& placed = surfaces.placed();
+  const PlaceTarget target(transform, view, placed.sides.get(), execution.isa);
+  const PlaceErrors errors(transform, view);
   const glm::ivec2 size(view.width * kSubPixels, view.height * kSubPixels);
   const auto finish = [&](const TriangleRecord& r, std::vector<ScreenFace>& faces) {
     const auto [x0, x1] = std::minmax({r.x[0], r.x[1], r.x[2]});
@@ -184,7 +184,7 @@ std::vector<ScreenFace> screen_faces(const Surfaces& surfaces, const View& view,
         const ClippedPolygon polygon = polygon_of(target, triangles, scratch->vertices, k);
         if (polygon.count == 0) continue;
         records.clear();
-        append_polygon(polygon, transform, PrimitiveId(triangles.first_id + k), view, records);
+        append_polygon(target, polygon, PrimitiveId(triangles.first_id + k), records);
         for (const TriangleRecord& record : records) finish(record, parts[i]);
       }
     }

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "view/facing_rule.h"
 
 namespace frontmost::why_detail {
 namespace {
@@ -47,7 +48,11 @@ struct FrustumScratch {
 class PlaceFinder {
  public:
   PlaceFinder(const PlacedScene& scene, const View& view, Isa isa)
-      : scene_(scene), frustum_(view), culling_(view.culling), isa_(isa), clear_(find_clear_materials(*scene.scene)) {
+      : scene_(scene),
+        frustum_(view),
+        facing_(view.culling, scene.sides.get()),
+        isa_(isa),
+        clear_(find_clear_materials(*scene.scene)) {
     is_any_clear_ = std::find(clear_.begin(), clear_.end(), 1) != clear_.end();
   }
 
@@ -60,6 +65,7 @@ class PlaceFinder {
     for (std::uint32_t k = 0; k < range.box_count(); ++k) {
       const std::size_t first = std::size_t(k) * MeshRange::triangles_in_box;
       WorldTriangles part = world;
+      part.first_id += PrimitiveId(first);
       part.corners = world.corners.subspan(
           first, std::min<std::size_t>(MeshRange::triangles_in_box, world.corners.size() - first));
       if (!needs_area && is_surely_in_view(scene_.boxes[range.first_box + k])) {
@@ -84,6 +90,7 @@ class PlaceFinder {
     const FrustumPoint* corners[3];
     glm::dvec3 normal;                      ///< twice as long as its area
     std::uint8_t any_outside, all_outside;  ///< of what a corner is outside, or all are
+    PrimitiveId id;
 
     [[nodiscard]] const PointAhead& at(int k) const { return corners[k]->at; }
     [[nodiscard]] FrustumPolygon polygon() const { return {{*corners[0], *corners[1], *corners[2]}, 3}; }
@@ -91,7 +98,7 @@ class PlaceFinder {
 
   /// Of all in a box but what is empty; what of it is clear need not be counted then.
   [[nodiscard]] bool is_surely_in_view(const Box& box) const {
-    return culling_ == Culling::none && !is_any_clear_ && frustum_.surely_holds(box);
+    return facing_.culling() == Culling::none && !is_any_clear_ && frustum_.surely_holds(box);
   }
 
   /// \returns whether it is in view.
@@ -115,7 +122,12 @@ class PlaceFinder {
       ++places.counts.empty;
       return false;
     }
-    return place({{&scratch.seen[c.x], &scratch.seen[c.y], &scratch.seen[c.z]}, normal, any, all}, needs_area, places);
+    return place({{&scratch.seen[c.x], &scratch.seen[c.y], &scratch.seen[c.z]},
+                  normal,
+                  any,
+                  all,
+                  world.first_id + PrimitiveId(i)},
+                 needs_area, places);
   }
 
   [[nodiscard]] std::uint8_t outside_of(const FrustumPoint& p, const glm::vec3& world) const {
@@ -126,7 +138,7 @@ class PlaceFinder {
   }
 
   [[nodiscard]] bool is_culled(const ViewedTriangle& t) const {
-    return culling_ != Culling::none && is_left_out(frustum_.facing(t.at(0), t.at(1), t.at(2)));
+    return facing_.culling() != Culling::none && is_left_out(t.id, frustum_.facing(t.at(0), t.at(1), t.at(2)));
   }
 
   /// \returns whether it is in view.
@@ -191,9 +203,8 @@ class PlaceFinder {
   }
 
   /// What is seen edge on covers nothing, and faces away where anything does.
-  [[nodiscard]] bool is_left_out(double facing) const {
-    return culling_ == Culling::both || (culling_ == Culling::back && facing <= 0) ||
-           (culling_ == Culling::front && facing >= 0);
+  [[nodiscard]] bool is_left_out(PrimitiveId id, double facing) const {
+    return !(facing > 0 && facing_.keeps(id, true)) && !(facing < 0 && facing_.keeps(id, false));
   }
 
   void note_in_view(const FrustumPolygon& polygon, ObjectPlaces& places) const {
@@ -214,7 +225,7 @@ class PlaceFinder {
 
   const PlacedScene& scene_;
   Frustum frustum_;
-  Culling culling_;
+  FacingRule facing_;
   Isa isa_;
   std::vector<std::uint8_t> clear_;
   bool is_any_clear_ = false;

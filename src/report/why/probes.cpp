@@ -92,7 +92,11 @@ class ProbeCaster {
  public:
   ProbeCaster(const PlacedScene& scene, const ObjectCanvas& canvas, const std::vector<SampleProbe>& probes,
               const ProbeGrid& grid, Isa isa)
-      : scene_(scene), canvas_(canvas), target_(canvas.transform, canvas.view, isa), probes_(probes), grid_(grid) {}
+      : scene_(scene),
+        canvas_(canvas),
+        target_(canvas.transform, canvas.view, scene.sides.get(), isa),
+        probes_(probes),
+        grid_(grid) {}
 
   void cast(const MeshRange& range, std::vector<ProbeHit>& hits) {
     const WorldTriangles triangles = world_triangles(scene_, range, target_.isa, scratch_);
@@ -103,8 +107,7 @@ class ProbeCaster {
     for (std::size_t i = 0; i < batch_.count; ++i) cast(range.instance, batch_.record(i), hits);
     records_.clear();
     for (const std::uint32_t i : scratch_.apart)
-      append_polygon(polygon_of(target_, triangles, scratch_.vertices, i), canvas_.transform, triangles.first_id + i,
-                     canvas_.view, records_);
+      append_polygon(target_, polygon_of(target_, triangles, scratch_.vertices, i), triangles.first_id + i, records_);
     for (const TriangleRecord& record : records_) cast(range.instance, record, hits);
   }
 

@@ -13,8 +13,9 @@ namespace {
 /// Of two views of lights, which are square.
 bool are_equal(const View& a, const View& b) {
   const Projection &p = a.projection, &q = b.projection;
-  return a.width == b.width && a.world_from_eye == b.world_from_eye && p.left == q.left && p.right == q.right &&
-         p.bottom == q.bottom && p.top == q.top && p.clip.near == q.clip.near && p.clip.far == q.clip.far;
+  return a.width == b.width && a.culling == b.culling && a.world_from_eye == b.world_from_eye && p.left == q.left &&
+         p.right == q.right && p.bottom == q.bottom && p.top == q.top && p.clip.near == q.clip.near &&
+         p.clip.far == q.clip.far;
 }
 
 /// What callers found of key_light_view(). \throws Error bad_argument.
@@ -146,7 +147,7 @@ void LightShadows::aim_rays(const ShadedPicture& picture, const Execution& execu
     if (!index_) index_.emplace(surfaces, execution);
     index = &*index_;
   }
-  rays_.emplace(*index, picture.samples, picture.input.visible.view.eye(), execution.isa);
+  rays_.emplace(*index, picture.samples, picture.input.visible.view, execution.isa);
   if (opaque_) rays_->forget_ids();
 }
 

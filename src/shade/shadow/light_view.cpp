@@ -90,10 +90,16 @@ LightExtent window_of(const LightExtent& seen, const LightExtent& all, int texel
   return window;
 }
 
+/// Light comes through one-sided triangles from behind where the eye sees through them; other culling is the eye's own.
+Culling culling_of_light(const View& picture) {
+  return picture.culling == Culling::material ? Culling::material : Culling::none;
+}
+
 /// Of a window told from `zero`.
-View view_of_window(const LightExtent& window, const glm::dmat3& axes, const glm::dvec3& zero, int texels) {
+View view_of_window(const LightExtent& window, const glm::dmat3& axes, const glm::dvec3& zero, const View& picture) {
   View view;
-  view.width = view.height = texels;
+  view.width = view.height = texels_for(picture);
+  view.culling = culling_of_light(picture);
   const double depth = std::max(window.high.z - window.low.z, 1e-6 * (window.high.x - window.low.x));
   view.world_from_eye = glm::dmat4(axes);
   view.world_from_eye[3] = glm::dvec4(zero + axes * glm::dvec3(0, 0, window.high.z + 0.01 * depth), 1);
@@ -128,7 +134,7 @@ std::optional<View> view_of_light(const SeenPoints& visible, const Box& bounds, 
   if (seen.is_empty() || bounds.is_empty()) return std::nullopt;
   const glm::dvec3 eye = visible.view.eye();
   const int texels = texels_for(visible.view);
-  return view_of_window(window_of(seen, extent_of_box(bounds, eye, axes), texels), axes, eye, texels);
+  return view_of_window(window_of(seen, extent_of_box(bounds, eye, axes), texels), axes, eye, visible.view);
 }
 
 std::optional<View> view_of_sun(const SeenPoints& visible, const Box& bounds, const Light& sun,
@@ -143,7 +149,7 @@ std::optional<View> view_of_sun(const SeenPoints& visible, const Box& bounds, co
   seen.high += eye;
   LightExtent window = window_of(seen, extent_of_box(bounds, zero, axes), texels);
   snap(window);
-  return view_of_window(window, axes, zero, texels);
+  return view_of_window(window, axes, zero, visible.view);
 }
 
 std::optional<View> view_of_spot(const View& picture, const Box& bounds, const Light& spot) {
@@ -151,6 +157,7 @@ std::optional<View> view_of_spot(const View& picture, const Box& bounds, const L
   constexpr double widest = 1.3089969389957472;  // 75 degrees
   View view;
   view.width = view.height = texels_for(picture);
+  view.culling = culling_of_light(picture);
   view.world_from_eye = spot.world_from_light;
   // As a float: the last bit of a tangent is not the same on all machines.
   const double half = double(float(std::tan(std::min(spot.outer_cone, widest)))) * (1 + 2 * kSpareTexels / view.width);

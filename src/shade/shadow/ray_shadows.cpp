@@ -25,8 +25,8 @@ class RayShadows::LightQuestions {
   /// Answers come in whole samples, which floats add exactly.
   void ask() {
     std::array<std::uint8_t, kAtOnce> is_lit;
-    raycast_detail::find_lit(shadows_.index_.tree(), {points_.data(), count_}, to_light_, {is_lit.data(), count_},
-                             shadows_.isa_);
+    raycast_detail::find_lit(shadows_.index_.tree(), {points_.data(), count_}, {to_light_, shadows_.is_one_way_},
+                             {is_lit.data(), count_}, shadows_.isa_);
     for (std::size_t k = 0; k < count_; ++k) batch_.shadow[fragments_[k]] += is_lit[k];
     count_ = 0;
   }
@@ -54,6 +54,7 @@ class RayShadows::LampQuestions {
     query.end = beside(raycast_detail::position_of(point), batch_.geometry.plane_normal.at(fragment));
     query.direction = query.end - query.origin;
     query.is_segment = true;
+    query.is_one_way = shadows_.is_one_way_;
     ids_[count_] = point.primitive;
     fragments_[count_] = fragment;
     if (++count_ == queries_.size()) ask();

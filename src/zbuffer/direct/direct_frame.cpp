@@ -57,7 +57,7 @@ class DirectFrame {
         execution_(execution),
         cutouts_(scene.cutouts.get()),
         transform_(view),
-        target_(transform_, view, execution.isa),
+        target_(transform_, view, scene.sides.get(), execution.isa),
         visible_{view, {}, {}},
         is_drawn_(Tile::count(view), 0),
         farthest_(is_drawn_.size() * BlockBounds::count, 0.0f) {}
@@ -165,8 +165,8 @@ class DirectFrame {
     scratch.apart.clear();
     place_triangles(target_, triangles, scratch.vertices, batch.small, scratch.apart);
     for (const std::uint32_t i : scratch.apart)
-      append_polygon(polygon_of(target_, triangles, scratch.vertices, i), transform_, triangles.first_id + i,
-                     visible_.view, batch.records);
+      append_polygon(target_, polygon_of(target_, triangles, scratch.vertices, i), triangles.first_id + i,
+                     batch.records);
   }
 
   void place(std::span<const Near> chosen) {

@@ -166,6 +166,11 @@ class Placer {
   [[nodiscard]] HWY_INLINE PixelRange RowsOf(const CoordinateRange& y) const {
     return PixelsOf(y, target_.low.y, target_.high.y, target_.view.height);
   }
+  [[nodiscard]] HWY_INLINE VU Ids() const {
+    const DI d;
+    const std::uint32_t first = triangles_.first_id + std::uint32_t(first_);
+    return hn::BitCast(DU(), hn::Add(hn::Iota(d, 0), hn::Set(d, std::int32_t(first))));
+  }
   HWY_INLINE void PutLarge(MI large) { others_ |= BitsOf(DI(), large); }
   HWY_INLINE void PutSmall(const PlacedPacket& placed) {
     const DI d;
@@ -183,8 +188,7 @@ class Placer {
       compact.Store(key, to.key[k] + at);
       nearest_ = hn::IfThenElse(placed.kept, hn::Max(nearest_, key), nearest_);
     }
-    const VI id = hn::Add(hn::Iota(d, 0), hn::Set(d, std::int32_t(triangles_.first_id + std::uint32_t(first_))));
-    compact.Store(hn::BitCast(DU(), id), to.id + at);
+    compact.Store(Ids(), to.id + at);
     compact.Store(hn::BitCast(DU(), tiles), to.tiles + at);
     batch_.count += compact.count();
   }
@@ -200,7 +204,7 @@ class Placer {
     MI live = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(count)));
     first_ = first;
     if (!vertices_.all_plain) live = hn::And(live, Plain(live, fetched));
-    SortOut(fetched, live, target_.view.culling, *this);
+    SortOut(fetched, live, target_.facing, *this);
     if (others_ != 0) PutApart();
   }
 
@@ -270,11 +274,6 @@ namespace frontmost::zbuffer_detail {
 
 FRONTMOST_KERNELS(SnapVertices);
 FRONTMOST_KERNELS(PlaceTriangles);
-
-PlaceTarget::PlaceTarget(const ScreenTransform& t, const View& v, Isa i)
-    : transform(t), view(v), low(kSubPixels), high(0), isa(i) {
-  for (const glm::ivec2& s : sample_offsets(v.samples)) low = glm::min(low, s), high = glm::max(high, s);
-}
 
 void snap_vertices(const PlaceTarget& target, std::span<const glm::vec3> positions, SnappedVertices& vertices) {
   kernel_for(SnapVerticesKernels, target.isa)(target, positions, vertices);

@@ -40,16 +40,6 @@ struct SnappedVertices {
   }
 };
 
-/// Where triangles are placed.
-struct PlaceTarget {
-  const ScreenTransform& transform;
-  const View& view;
-  glm::ivec2 low, high;  ///< of the sample offsets
-  Isa isa;
-
-  PlaceTarget(const ScreenTransform& t, const View& v, Isa i);
-};
-
 /// What placing needs of memory, one a thread.
 struct PlaceScratch : WorldScratch {
   SnappedVertices vertices;

@@ -41,7 +41,7 @@ void OrderedBatch::append_single(const PlaceTarget& target, const ClippedPolygon
     high = std::max(high, polygon.corners[std::size_t(i)].key);
   }
   for_each_of_fan(polygon, target.transform, id, [&](TriangleRecord& record) {
-    if (orient(record, target.view.culling)) singles_.push_back({record, low, high});
+    if (orient(record, target.facing)) singles_.push_back({record, low, high});
   });
 }
 

@@ -93,8 +93,8 @@ template <class Draw>
 void submit(const Surfaces& surfaces, const View& view, const PrimitiveRange& range, const Execution& execution,
             const Draw& draw) {
   const ScreenTransform transform(view);
-  const PlaceTarget target(transform, view, execution.isa);
   const PlacedScene& scene = surfaces.placed();
+  const PlaceTarget target(transform, view, scene.sides.get(), execution.isa);
   const std::vector<MeshRange> ranges = ranges_within(scene, range);
   const std::vector<BatchSource> sources = batch_sources(ranges);
   const std::size_t at_once = batches_at_once(view);

@@ -57,6 +57,7 @@ class TilePainter {
 
   [[nodiscard]] HWY_INLINE PixelRange ColumnsOf(const CoordinateRange& x) const { return small_.ColumnsOf(x); }
   [[nodiscard]] HWY_INLINE PixelRange RowsOf(const CoordinateRange& y) const { return small_.RowsOf(y); }
+  [[nodiscard]] HWY_INLINE VU Ids() const { return hn::LoadU(DU(), frame_.set.id.data() + first_); }
   HWY_NOINLINE void PutLarge(MI large) {
     ForEachBit(BitsOf(DI(), large), [&](std::size_t lane) {
       const std::size_t at = first_ + lane;
@@ -68,7 +69,7 @@ class TilePainter {
         record.y[k] = vertices_.y[numbers[k]];
         std::memcpy(&record.key[k], &vertices_.key[numbers[k]], sizeof(float));
       }
-      if (orient(record, frame_.view.culling)) large_.DrawOnce(record);
+      if (orient(record, frame_.facing)) large_.DrawOnce(record);
     });
   }
   HWY_INLINE void PutSmall(const PlacedPacket& placed) {
@@ -80,7 +81,7 @@ class TilePainter {
       compact.Store(placed.corners[k].y, queue.y[k] + n);
       compact.Store(LookUp64(vertices_.key, placed.corners[k].number), queue.key[k] + n);
     }
-    compact.Store(hn::LoadU(DU(), frame_.set.id.data() + first_), queue.id + n);
+    compact.Store(Ids(), queue.id + n);
     queue.count += compact.count();
   }
 
@@ -154,7 +155,7 @@ class TilePainter {
     first_ = cluster.first_triangle + first;
     const Corners corners[3] = {Fetch(frame_.set.i0, first_), Fetch(frame_.set.i1, first_),
                                 Fetch(frame_.set.i2, first_)};
-    SortOut(corners, AllLanes(), frame_.view.culling, *this);
+    SortOut(corners, AllLanes(), frame_.facing, *this);
   }
 
   const FrameInput& frame_;
