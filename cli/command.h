@@ -19,18 +19,19 @@ namespace frontmost::cli {
 
 struct Command {
   std::string_view name;
-  unsigned bit;  ///< the options it takes; 0: none
-  std::string_view
-      argument;  ///< as usage lines show it; "..." at its end: several may be given; in [ ]: it may be left out
+  unsigned bit;               ///< the options it takes; 0: none
+  std::string_view argument;  ///< as usage lines show it; "..." at its end: several may be given; in [ ]: it may be
+                              ///< left out; after a blank a second one, an object of the model
   std::string_view summary;
   std::string_view details;
   std::string_view examples;  ///< one a line: command, two blanks or more, what it does
   int (*run)(const Settings&);
 
   /// The argument's name alone.
-  [[nodiscard]] std::string_view argument_name() const { return argument.substr(0, argument.find("...")); }
+  [[nodiscard]] std::string_view argument_name() const { return argument.substr(0, argument.find_first_of(". ")); }
   [[nodiscard]] bool is_argument_needed() const { return !argument.empty() && argument.front() != '['; }
   [[nodiscard]] bool takes_several() const { return argument.ends_with("..."); }
+  [[nodiscard]] bool takes_object() const { return argument.ends_with(" OBJECT"); }
 };
 
 [[nodiscard]] std::span<const Command> commands();

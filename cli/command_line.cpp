@@ -61,6 +61,8 @@ void take_leftovers(const Command& command, const std::vector<std::string>& word
     if (word == "--") continue;  // it has done its work
     if (word.size() > 1 && word[0] == '-') complain_of_unknown(command, word);
     if (command.argument.empty()) throw UsageError(fmt::format("'{}' is one word too many", word));
+    if (command.takes_object())
+      throw UsageError(fmt::format("one object at a time: '{}' and '{}'", *settings.report.why, word));
     if (!command.takes_several())
       throw UsageError(fmt::format("one model at a time: '{}' and '{}'", settings.model, word));
     settings.more_models.push_back(word);
@@ -103,6 +105,8 @@ Settings parse_command_line(const Command& command, std::span<const char* const>
   app.allow_extras();
   Settings settings;
   if (!command.argument.empty()) app.add_option("model", settings.model);
+  std::string object;
+  if (command.takes_object()) app.add_option("object", object);
   std::vector<GivenOption> all;
   for_each_option([&](const Option& option) {
     if (option.commands & command.bit) all.push_back({&option, {}, false});
@@ -118,11 +122,15 @@ Settings parse_command_line(const Command& command, std::span<const char* const>
   } catch (const CLI::ParseError& error) {
     throw UsageError(error.what());
   }
+  if (command.takes_object()) settings.report.why = object;
   take_leftovers(command, app.remaining(), settings);
   for (const GivenOption& found : all) apply_found(command, found, settings);
   if (settings.model.empty() && command.is_argument_needed()) {
     throw UsageError(fmt::format("no {} given; see frontmost {} --help", command.argument_name(), command.name));
   }
+  if (command.takes_object() && object.empty())
+    throw UsageError(
+        fmt::format("no OBJECT given: its name or its number, as frontmost report {} lists them", settings.model));
   return settings;
 }
 

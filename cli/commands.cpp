@@ -67,6 +67,14 @@ constexpr Command table[] = {
      "frontmost report city.glb --resolution 640,480 --json\n"
      "frontmost report scene.glb -o report.html",
      run_report},
+    {"explain", for_explain, "MODEL OBJECT", "Say why an object is seen or not, and what to change.",
+     "One sentence: where the object is, or what hides it, and what would show it: other planes, another direction, a "
+     "larger picture, or objects to take away. OBJECT is the name of an object, or its number in frontmost report. "
+     "Through the camera that the view options of render make.",
+     "frontmost explain scene.glb bolt\n"
+     "frontmost explain scene.glb bolt --view top --resolution 640,480\n"
+     "frontmost explain city.glb 17 --json",
+     run_report},
     {"visible", for_visible, "MODEL", "List every face of which any part is seen, with its visible area.",
      "Exact areas in pixels, in scene units and as solid angles, however small the part that is seen, through the "
      "camera "

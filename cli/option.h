@@ -57,8 +57,9 @@ enum CommandBit : unsigned {
   for_report = 512,
   for_visible = 1024,
   for_batch_merge = 2048,
+  for_explain = 4096,
   for_every_model = for_render | for_info | for_camera | for_precision | for_sight | for_lidar | for_compare |
-                    for_lines | for_report | for_visible
+                    for_lines | for_report | for_visible | for_explain
 };
 
 /// The text given for an option, and the words it may be.

@@ -52,7 +52,7 @@ constexpr Option run_options[] = {
        s.run.threads = g.integer({0, 1024});
      }},
     {"isa", 0, "scalar|sse4|avx2|avx512", "Instruction set; the best by default.", Group::run,
-     for_render | for_sight | for_lidar | for_compare | for_report,
+     for_render | for_sight | for_lidar | for_compare | for_report | for_explain,
      [](Settings& s, const Given& g) { s.run.isa = isa_from(g); }},
     {"repeat", 0, "N", "Find what is visible N times, for timing.", Group::run, for_render,
      [](Settings& s, const Given& g) {

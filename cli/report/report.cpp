@@ -66,6 +66,28 @@ constexpr Option report_options[] = {
      Group::report, for_report, [](Settings& s, const Given& g) { s.report.why = g.string(); }},
 };
 
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result)
+    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+  return result;
+}
+
+/// What an unknown name may have meant: names that hold it, or the one that is nearest.
+std::string names_like(std::string_view wanted, const std::vector<std::string_view>& known) {
+  constexpr std::size_t most_named = 5;
+  std::vector<std::string> near;
+  for (const std::string_view one : known) {
+    const bool is_near = !wanted.empty() && lower(one).find(lower(wanted)) != std::string::npos;
+    const std::string name = printable_name(one);
+    if (is_near && near.size() < most_named && std::find(near.begin(), near.end(), name) == near.end())
+      near.push_back(name);
+  }
+  if (const std::string_view nearest = nearest_word(wanted, known); near.empty() && !nearest.empty())
+    near.push_back(printable_name(nearest));
+  return near.empty() ? "" : fmt::format("did you mean {}?", fmt::join(near, ", "));
+}
+
 std::vector<std::string> outputs_of(const ReportSettings& report) {
   std::vector<std::string> files;
   for (const auto& file : {report.page, report.coco})
@@ -111,14 +133,15 @@ std::vector<std::uint32_t> objects_asked_for(const Settings& settings, const Sce
     if (std::to_string(i) == *wanted) return {i};
   std::vector<std::string_view> names;
   for (const Instance& instance : scene.instances) names.emplace_back(instance.name);
-  complain_of_name("--why", settings, "no object", *wanted, names);
+  complain_of_name(settings.model, "no object", *wanted, names);
 }
 
-void complain_of_name(std::string_view option, const Settings& settings, std::string_view what, std::string_view name,
+void complain_of_name(const std::string& where, std::string_view what, std::string_view name,
                       const std::vector<std::string_view>& known) {
-  const std::string_view nearest = nearest_word(name, known);
-  throw UsageError(fmt::format("{}: {} has {} {}{}", option, settings.model, what, printable_name(name),
-                               nearest.empty() ? "" : fmt::format("; did you mean {}?", printable_name(nearest))));
+  std::string hint = names_like(name, known);
+  if (hint.empty())
+    hint = fmt::format("it has {} name{}, which frontmost report lists", known.size(), known.size() == 1 ? "" : "s");
+  throw UsageError(fmt::format("{} has {} {}; {}", where, what, printable_name(name), hint));
 }
 
 std::vector<std::string> hidden_asked_for(const Settings& settings, const Scene& scene) {

@@ -27,7 +27,7 @@ void DatasetFiles::begin(const Settings& settings, const Scene& scene) {
   for (const Category& category : scene.categories) names.emplace_back(category.name);
   for (const std::string& name : options_.leave_out)
     if (std::find(names.begin(), names.end(), name) == names.end())
-      complain_of_name("--leave-out", settings, "no object and no category", name, names);
+      complain_of_name("--leave-out: " + settings.model, "no object and no category", name, names);
   writing_.emplace();
   writer_.emplace(options_);
 }

@@ -34,9 +34,9 @@ struct ReportRun {
 
 /// Of every object, or of those that --why names: by number. \throws UsageError where it names none.
 [[nodiscard]] std::vector<std::uint32_t> objects_asked_for(const Settings& settings, const Scene& scene);
-/// Says that a model has none of what an option names, and which name is near. \throws UsageError always.
-[[noreturn]] void complain_of_name(std::string_view option, const Settings& settings, std::string_view what,
-                                   std::string_view name, const std::vector<std::string_view>& known);
+/// Says that `where`, a model, has none of what an option names, and which name is near. \throws UsageError always.
+[[noreturn]] void complain_of_name(const std::string& where, std::string_view what, std::string_view name,
+                                   const std::vector<std::string_view>& known);
 /// Names of the nodes that the model's file hides; with --why, only those of that name.
 [[nodiscard]] std::vector<std::string> hidden_asked_for(const Settings& settings, const Scene& scene);
 /// Numbers of objects, those that show most first, then those of which most is in frame, then by number.
