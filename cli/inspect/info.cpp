@@ -2,8 +2,11 @@
 // frontmost info: what is in a model, as text and as JSON, and what its unit of length may be.
 #include <fmt/format.h>
 #include <frontmost/report.h>
+#include <frontmost/rounds.h>
+#include <frontmost/surfaces.h>
 
 #include <algorithm>
+#include <glm/gtc/constants.hpp>
 #include <optional>
 #include <string>
 
@@ -23,6 +26,12 @@ struct ModelUnit {
   double metres;
   bool is_guess;
 };
+
+/// What find_rounds() finds. Holes are cylinders, too.
+struct CylinderCount {
+  std::size_t all = 0, holes = 0;
+};
+constexpr std::uint64_t most_for_cylinders = 500'000;  // triangles: half a second
 
 constexpr std::size_t lines_shown = 20;  // of objects, materials, cameras, lights; JSON has all
 constexpr std::string_view axis_names[] = {"+x", "+y", "+z", "-x", "-y", "-z"};
@@ -238,7 +247,27 @@ std::optional<ModelUnit> unit_of_model(const SceneReport& report, std::optional<
   return likely.size() == 1 ? std::optional(ModelUnit{likely.front(), true}) : std::nullopt;
 }
 
-Json info_json(const SceneReport& report, const std::optional<ModelUnit>& unit) {
+/// None of models that are too large for it.
+std::optional<CylinderCount> count_cylinders(const Scene& scene, const Execution& execution) {
+  if (triangle_count(scene) > most_for_cylinders) return std::nullopt;
+  constexpr double whole_turn = 2 * glm::pi<double>() - 0.01;
+  CylinderCount count;
+  for (const Round& round : find_rounds(Surfaces(scene, execution), execution).rounds) {
+    if (round.kind != RoundKind::cylinder) continue;
+    ++count.all;
+    count.holes += round.is_hollow && round.turn > whole_turn;
+  }
+  return count;
+}
+
+std::string cylinder_line(const std::optional<CylinderCount>& count) {
+  if (!count) return fmt::format("  cylinders  not counted in more than {} triangles\n", grouped(most_for_cylinders));
+  if (count->all == 0) return "";
+  return fmt::format("  cylinders  {}, {} of them holes\n", count->all, count->holes);
+}
+
+Json info_json(const SceneReport& report, const std::optional<ModelUnit>& unit,
+               const std::optional<CylinderCount>& cylinders) {
   Json json = {{"name", report.name},
                {"up", axis_names[int(report.up)]},
                {"triangles", report.triangles},
@@ -250,6 +279,8 @@ Json info_json(const SceneReport& report, const std::optional<ModelUnit>& unit) 
                {"area", report.area},
                {"volume", report.volume ? Json(*report.volume) : Json(nullptr)},
                {"unit", unit_json(unit)},
+               {"cylinders", cylinders ? Json(cylinders->all) : Json(nullptr)},
+               {"holes", cylinders ? Json(cylinders->holes) : Json(nullptr)},
                {"origin", to_json(report.origin)},
                {"rounding", report.rounding}};
   json["odd"] = odd_json(report.odd);
@@ -264,7 +295,8 @@ Json info_json(const SceneReport& report, const std::optional<ModelUnit>& unit) 
   return json;
 }
 
-std::string info_text(const SceneReport& report, const std::optional<ModelUnit>& unit) {
+std::string info_text(const SceneReport& report, const std::optional<ModelUnit>& unit,
+                      const std::optional<CylinderCount>& cylinders) {
   std::string text = fmt::format("{}\n  triangles  {}", printable_name(report.name), report.triangles);
   if (report.stored_triangles != report.triangles) text += fmt::format(" ({} stored)", report.stored_triangles);
   text += fmt::format("\n  vertices   {}\n  textures   {}\n  up         {}\n", report.vertices, report.texture_count,
@@ -283,7 +315,7 @@ std::string info_text(const SceneReport& report, const std::optional<ModelUnit>&
   }
   const std::size_t closed = std::size_t(
       std::count_if(report.meshes.begin(), report.meshes.end(), [](const MeshReport& mesh) { return mesh.closed; }));
-  text += fmt::format("  meshes     {}, {} closed\n", report.meshes.size(), closed);
+  text += fmt::format("  meshes     {}, {} closed\n", report.meshes.size(), closed) + cylinder_line(cylinders);
   text += section("objects", report.objects, [](const ObjectReport& object) {
     return fmt::format("{:24} {} triangles", printable_name(object.name), object.triangles);
   });
@@ -305,11 +337,12 @@ int run_info(const Settings& settings) {
   const Execution execution = execution_for(settings.run, progress);
   const Scene scene = load_model(settings, execution, progress);
   const SceneReport report = inspect(scene, execution);
+  const std::optional<CylinderCount> cylinders = count_cylinders(scene, execution);
   // Built-in scenes have no size in the world.
   const bool is_file = scene.source.format.has_value();
   const auto unit = is_file ? unit_of_model(report, scene.source.metres_per_unit) : std::nullopt;
   progress.clear();
-  print(settings.run.json ? dump(info_json(report, unit)) : info_text(report, unit));
+  print(settings.run.json ? dump(info_json(report, unit, cylinders)) : info_text(report, unit, cylinders));
   return exit_done;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <glm/glm.hpp>
+#include <sstream>
 
 #include "program.h"
 
@@ -12,6 +13,7 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 
 class Camera : public ProgramTest {
  protected:
@@ -144,6 +146,39 @@ TEST_F(Info, TheSizeIsSaid) {
   EXPECT_THAT(succeed("info flap.obj").out, HasSubstr("  size       120 x 60 x 30\n"));
   write("none.obj", "v 0 0 0\n");
   EXPECT_EQ(succeed("info none.obj --json").json()["size"], nullptr);
+}
+
+/// A tube along z of 24 sides, with a second, lower one beside it.
+std::string tubes_obj() {
+  constexpr int sides = 24;
+  std::ostringstream text;
+  int first = 1;
+  for (const double height : {3.0, 1.0}) {
+    for (const double z : {0.0, height})
+      for (const double radius : {2.0, 1.0})
+        for (int i = 0; i < sides; ++i)
+          text << "v " << 10 / height + radius * std::cos(i * 2 * 3.14159265358979 / sides) << ' '
+               << radius * std::sin(i * 2 * 3.14159265358979 / sides) << ' ' << z << '\n';
+    const auto quad = [&](int ring_a, int ring_b, int i) {
+      const int a = first + ring_a * sides, b = first + ring_b * sides, next = (i + 1) % sides;
+      text << "f " << a + i << ' ' << a + next << ' ' << b + next << ' ' << b + i << '\n';
+    };
+    for (int i = 0; i < sides; ++i) quad(0, 2, i), quad(3, 1, i), quad(2, 3, i), quad(1, 0, i);
+    first += 4 * sides;
+  }
+  return text.str();
+}
+
+TEST_F(Info, CylindersAndHolesAreCounted) {
+  write("tubes.obj", tubes_obj());
+  const json info = succeed("info tubes.obj --json").json();
+  EXPECT_EQ(info["odd"]["boundary_edges"], 0);
+  EXPECT_EQ(info["cylinders"], 4);
+  EXPECT_EQ(info["holes"], 2);
+  EXPECT_THAT(succeed("info tubes.obj").out, HasSubstr("  cylinders  4, 2 of them holes\n"));
+  write("cube.stl", cube_stl());
+  EXPECT_EQ(succeed("info cube.stl --json").json()["holes"], 0);
+  EXPECT_THAT(succeed("info cube.stl").out, Not(HasSubstr("cylinders")));
 }
 
 TEST_F(Info, TheUnitIsTheFilesOrAGuess) {
