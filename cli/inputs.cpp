@@ -12,6 +12,7 @@
 
 #include "cli/console.h"
 #include "cli/failure.h"
+#include "cli/view/up_axis.h"
 #include "cli/view/view_options.h"
 
 namespace frontmost::cli {
@@ -99,7 +100,9 @@ void show_warnings(const std::vector<std::string>& warnings, const RunSettings& 
 }
 
 void show_framing_warning(const Settings& settings, const Surfaces& surfaces, Progress& progress) {
-  if (const auto warning = framing_warning(settings.view, surfaces)) show_warnings({*warning}, settings.run, progress);
+  for (const auto& warning :
+       {framing_warning(settings.view, surfaces), up_warning(settings.view, settings.load, surfaces)})
+    if (warning) show_warnings({*warning}, settings.run, progress);
 }
 
 std::optional<Scene> tessellated(const Scene& scene, const ViewSettings& settings, const View& view) {

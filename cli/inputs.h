@@ -46,7 +46,8 @@ void refuse_outputs_beside(const std::vector<std::filesystem::path>& used, const
                                const std::vector<std::string>& outputs = {});
 /// The same of warnings alone.
 void show_warnings(const std::vector<std::string>& warnings, const RunSettings& run, Progress& progress);
-/// The same of objects that reach out of the picture, where there are any: framing_warning().
+/// The same of objects that reach out of the picture, and of a model that lies on its back: framing_warning(),
+/// up_warning().
 void show_framing_warning(const Settings& settings, const Surfaces& surfaces, Progress& progress);
 /// The scene with its curved meshes cut for `view`, where --tessellation-error says how finely; none otherwise.
 [[nodiscard]] std::optional<Scene> tessellated(const Scene& scene, const ViewSettings& settings, const View& view);

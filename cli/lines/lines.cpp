@@ -15,6 +15,7 @@
 #include "cli/outputs.h"
 #include "cli/settings.h"
 #include "cli/stopwatch.h"
+#include "cli/view/up_axis.h"
 #include "cli/view/view_options.h"
 
 namespace frontmost::cli {
@@ -132,6 +133,7 @@ std::vector<std::string> open_outlines(const Sheet& sheet) {
 void warn_of(const Sheet& sheet, const Surfaces& surfaces, const Settings& settings, Progress& progress) {
   const auto warn = [&](const std::vector<std::string>& texts) { show_warnings(texts, settings.run, progress); };
   if (sheet.is_empty) warn({"nothing is seen; the drawing is empty"});
+  if (const auto lying = up_warning(settings.view, settings.load, surfaces)) warn({*lying});
   if (const auto hint = unit_hint(settings.drawing, surfaces, sheet.scale.value_or(0))) warn({*hint});
   warn(open_outlines(sheet));
   if (sheet.left_out > 0)

@@ -18,6 +18,7 @@
 #include "cli/render/render_view.h"
 #include "cli/render/shard.h"
 #include "cli/stopwatch.h"
+#include "cli/view/up_axis.h"
 #include "cli/view/view_options.h"
 
 namespace frontmost::cli {
@@ -163,12 +164,12 @@ void report(const Settings& settings, const ModelFacts& model, const std::vector
 }
 
 /// What the reader says, and once, for whichever views, what their framing and their lights leave out.
-std::vector<std::string> model_warnings(const std::vector<Job>& jobs, const Surfaces& surfaces, const RunSettings& run,
-                                        Progress& progress) {
+std::vector<std::string> model_warnings(const std::vector<Job>& jobs, const Surfaces& surfaces,
+                                        const Settings& settings, Progress& progress) {
   std::vector<std::string> warnings = surfaces.scene().warnings;
   const auto tell_once = [&](const std::optional<std::string>& warning) {
     if (!warning) return false;
-    show_warnings({*warning}, run, progress);
+    show_warnings({*warning}, settings.run, progress);
     warnings.push_back(*warning);
     return true;
   };
@@ -178,6 +179,9 @@ std::vector<std::string> model_warnings(const std::vector<Job>& jobs, const Surf
   if (fitted != jobs.end()) tell_once(framing_warning(fitted->view, surfaces));
   for (const Job& job : jobs)
     if (tell_once(lights_warning(surfaces.scene(), job))) break;
+  // Whichever view it is, the model lies.
+  const auto upright = std::find_if(jobs.begin(), jobs.end(), [](const Job& job) { return depends_on_up(job.view); });
+  if (upright != jobs.end()) tell_once(up_warning(upright->view, settings.load, surfaces));
   return warnings;
 }
 
@@ -192,7 +196,7 @@ int render_whole(Run& run) {
   run.choose_jobs(scene.source.files);
   watch = {};
   const Surfaces surfaces(scene, execution);
-  const std::vector<std::string> warnings = model_warnings(run.jobs, surfaces, settings.run, progress);
+  const std::vector<std::string> warnings = model_warnings(run.jobs, surfaces, settings, progress);
   const bool is_often = is_drawn_often(run);
   if (is_often) (void)surfaces.clusters(execution);
   timings.surfaces = watch.milliseconds();

@@ -178,7 +178,7 @@ int run_report(const Settings& settings) {
   (void)objects_asked_for(settings, scene);
   std::optional<Surfaces> surfaces(std::in_place, scene, execution);
   const View view = resolve_view(settings.view, *surfaces);
-  if (const auto warning = framing_warning(settings.view, *surfaces)) show_warnings({*warning}, settings.run, progress);
+  show_framing_warning(settings, *surfaces, progress);
   const std::optional<Scene> cut = tessellated(scene, settings.view, view);
   if (cut) surfaces.emplace(*cut, execution);
   const Visible visible = zbuffer(*surfaces, view, execution);

@@ -2,6 +2,9 @@
 // What pictures are fitted to, and what is said of objects that reach out of them.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <sstream>
+
 #include "program.h"
 
 namespace frontmost::test {
@@ -83,6 +86,41 @@ TEST_F(Framing, WhatContradictsItIsRefused) {
   write("views.json", R"({"views": [{"view": "front"}, {"frame": "subject"}], "outputs": {"output": "{view}.png"}})");
   expect_failure("render a.stl --stream --batch views.json", cli::exit_usage,
                  "views[1]: --stream fits all objects into the picture, as --frame all does");
+}
+
+/// A cone, whose base lies in the plane of two axes.
+std::string cone(const std::string& order) {
+  constexpr int sides = 16;
+  std::ostringstream text;
+  const auto vertex = [&](double across, double along, double up) {
+    text << 'v';
+    for (const char axis : order) text << ' ' << (axis == 'a' ? across : axis == 'b' ? along : up);
+    text << '\n';
+  };
+  for (int i = 0; i < sides; ++i) vertex(std::cos(i * 6.283185307 / sides), std::sin(i * 6.283185307 / sides), 0);
+  vertex(0, 0, 2);
+  text << 'f';
+  for (int i = sides; i > 0; --i) text << ' ' << i;
+  for (int i = 0; i < sides; ++i) text << "\nf " << i + 1 << ' ' << (i + 1) % sides + 1 << ' ' << sides + 1;
+  text << '\n';
+  return text.str();
+}
+
+TEST_F(Framing, AModelThatLiesOnItsBackIsToldHowToStand) {
+  constexpr const char* lies =
+      "the model may lie on its back: its flat base is across z, and y is taken for up; --up +z";
+  write("lying.obj", cone("abu"));
+  write("standing.obj", cone("bua"));
+  for (const std::string command :
+       {"camera lying.obj", "report lying.obj --resolution 16,16", "visible lying.obj --resolution 16,16",
+        "lines lying.obj -o a.svg", "render lying.obj -o a.png --resolution 16,16"})
+    EXPECT_THAT(succeed(command).err, HasSubstr(lies)) << command;
+  const json told = succeed("render lying.obj -o a.png --resolution 16,16 --json").json();
+  EXPECT_THAT(told["warnings"].dump(), HasSubstr(lies));
+  for (const std::string command : {"camera lying.obj --up z", "camera standing.obj",
+                                    "camera lying.obj --camera-position 0,0,9 --camera-direction 0,0,-1"})
+    EXPECT_THAT(succeed(command).err, IsEmpty()) << command;
+  EXPECT_THAT(succeed("camera standing.obj --up y").err, IsEmpty());
 }
 
 }  // namespace

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// What stands has a flat base: triangles in the lowest plane of its bounds that face down. So where that is the only
+// flat one of the six sides, and along the other axis that files are made with, the model lies:
+//
+//          up         .-.                      up
+//           |        /   \                      |      ___
+//           |        |   |                      |   .-'   |  <- flat, and nothing else is
+//           |        |___|  <- flat             |   '-.___|
+//
+// Plates are flat on both sides, and boxes everywhere: nothing is said of them.
+#include "cli/view/up_axis.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace frontmost::cli {
+namespace {
+
+/// What part of a side of the bounds is covered by triangles that lie in it and face outwards.
+struct FlatSides {
+  double low = 0, high = 0;
+};
+
+constexpr PrimitiveId most_asked = 1'000'000;
+
+std::array<FlatSides, 3> find_flat_sides(const Surfaces& surfaces) {
+  constexpr double thin = 0.01;  // of the extent along the axis: bases of scans are uneven
+  const Box& bounds = surfaces.bounds();
+  const glm::dvec3 low(bounds.low), size = glm::dvec3(bounds.high) - low;
+  const PrimitiveId step = surfaces.primitive_count() / most_asked + 1;
+  std::array<FlatSides, 3> sides;
+  for (PrimitiveId id = 0; id < surfaces.primitive_count(); id += step) {
+    std::array<glm::vec3, 3> c = surfaces.corners(id);
+    if (surfaces.is_mirrored(surfaces.source(id).instance)) std::swap(c[1], c[2]);
+    if (!is_finite(c[0]) || !is_finite(c[1]) || !is_finite(c[2])) continue;
+    const glm::dvec3 doubled_area = glm::cross(glm::dvec3(c[1] - c[0]), glm::dvec3(c[2] - c[0]));
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto [least, most] = std::minmax({c[0][axis], c[1][axis], c[2][axis]});
+      const double area = double(step) * 0.5 * std::abs(doubled_area[axis]);
+      FlatSides& found = sides[std::size_t(axis)];
+      if (doubled_area[axis] < 0 && double(most) - low[axis] <= thin * size[axis]) found.low += area;
+      if (doubled_area[axis] > 0 && double(bounds.high[axis]) - double(least) <= thin * size[axis]) found.high += area;
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const double whole = size[(axis + 1) % 3] * size[(axis + 2) % 3];
+    sides[std::size_t(axis)].low /= whole;
+    sides[std::size_t(axis)].high /= whole;
+  }
+  return sides;
+}
+
+/// Formats whose specification says which axis is up are believed.
+bool leaves_up_open(const SceneSource& source) {
+  return source.format == ModelFormat::stl || source.format == ModelFormat::ply || source.format == ModelFormat::obj ||
+         source.format == ModelFormat::off;
+}
+
+}  // namespace
+
+bool depends_on_up(const ViewSettings& view) {
+  return !view.position && !view.pose && !view.camera_index && !view.direction;
+}
+
+std::optional<std::string> up_warning(const ViewSettings& view, const LoadOptions& load, const Surfaces& surfaces) {
+  const Scene& scene = surfaces.scene();
+  if (!depends_on_up(view) || load.up || !leaves_up_open(scene.source)) return std::nullopt;
+  const int up = scene.up == Axis::y ? 1 : 2, other = 3 - up;
+  const glm::dvec3 size = glm::dvec3(surfaces.bounds().high) - glm::dvec3(surfaces.bounds().low);
+  // Parts of the sides: of models that stand 0.06 (the Armadillo's feet) and more at the base, below 0.02 elsewhere.
+  constexpr double base = 0.05, none = 0.02, least_height = 0.25;
+  constexpr PrimitiveId fewest = 24;  // of fewer nothing can be told
+  if (surfaces.primitive_count() < fewest) return std::nullopt;
+  if (!(size.x > 0 && size.y > 0 && size.z > 0) || size[other] < least_height * std::max({size.x, size.y, size.z}))
+    return std::nullopt;
+  const std::array<FlatSides, 3> sides = find_flat_sides(surfaces);
+  const FlatSides& lies_on = sides[std::size_t(other)];
+  if (lies_on.low < base || lies_on.high > none) return std::nullopt;
+  for (const int axis : {0, up})
+    if (std::max(sides[std::size_t(axis)].low, sides[std::size_t(axis)].high) > none) return std::nullopt;
+  const char* const names = "xyz";
+  return fmt::format(
+      "the model may lie on its back: its flat base is across {}, and {} is taken for up; --up +{} stands "
+      "it up",
+      names[other], names[up], names[other]);
+}
+
+}  // namespace frontmost::cli
