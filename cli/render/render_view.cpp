@@ -121,6 +121,30 @@ void warn_if_blank(const Sights& sights, const RenderContext& context, ViewResul
   result.warnings.push_back("nothing is in view: " + reason);
 }
 
+/// Models seen from their edge, and long ones in small pictures: hardly wider than a pixel.
+void warn_if_thread(const Sights& sights, ViewResult& result) {
+  constexpr double thinnest = 2.5;  // pixels, on average
+  constexpr int shortest = 32;
+  const Visible& visible = sights.pixels    ? sights.pixels->first
+                           : sights.picture ? sights.picture->visible
+                                            : sights.maps->visible;
+  std::size_t count = 0;
+  int left = visible.view.width, right = -1, top = visible.view.height, bottom = -1;
+  for (int y = 0; y < visible.view.height; ++y)
+    for (int x = 0; x < visible.view.width; ++x) {
+      if (visible.primitives[visible.index(x, y)] == no_primitive) continue;
+      ++count;
+      left = std::min(left, x), right = std::max(right, x);
+      top = std::min(top, y), bottom = y;
+    }
+  const int length = std::max(right - left, bottom - top) + 1;
+  if (length < shortest || double(count) >= thinnest * length) return;
+  result.warnings.push_back(
+      fmt::format("what is seen is a thread, {} pixels long and {:.1f} wide on average: another --view, or a larger "
+                  "--resolution, shows more of it",
+                  length, double(count) / length));
+}
+
 /// 64 sub-samples are the A-buffer's; what is visible has one.
 bool is_fine(const Job& job) { return job.view.samples == 64; }
 
@@ -213,6 +237,7 @@ ShadeOptions shade_options(const Job& job, const RenderContext& context) {
 void finish_view(const Job& job, const RenderContext& context, const Sights& sights, ViewResult& result) {
   if (job.output.hash || context.run.json) result.seen = summary(context.surfaces, sights);
   warn_if_blank(sights, context, result);
+  warn_if_thread(sights, result);
   const ShadeOptions options = shade_options(job, context);
   const auto input = [&] { return sights.shade_input(context.index); };
   const Image* picture = nullptr;

@@ -14,6 +14,7 @@ using nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// Squares of size 2 in z = 0 as objects of an OBJ file, around their middles.
 std::string squares(const std::vector<std::pair<std::string, double>>& objects) {
@@ -121,6 +122,18 @@ TEST_F(Framing, AModelThatLiesOnItsBackIsToldHowToStand) {
                                     "camera lying.obj --camera-position 0,0,9 --camera-direction 0,0,-1"})
     EXPECT_THAT(succeed(command).err, IsEmpty()) << command;
   EXPECT_THAT(succeed("camera standing.obj --up y").err, IsEmpty());
+}
+
+TEST_F(Framing, AThreadOfPixelsIsSaidToBeOne) {
+  const std::string bar = "v 0 0 0\nv 90 0 0\nv 90 1 0\nv 0 1 0\nf 1 2 3 4\n";
+  write("bar.obj", bar);
+  const std::string view = " --view front --camera-orthographic -o a.png --resolution ";
+  EXPECT_THAT(succeed("render bar.obj" + view + "100,100").err,
+              HasSubstr("warning: what is seen is a thread, 90 pixels long and 1.0 wide on average: another --view, or "
+                        "a larger --resolution, shows more of it"));
+  EXPECT_THAT(succeed("render bar.obj --json" + view + "100,100").json()["warnings"].dump(), HasSubstr("a thread"));
+  EXPECT_THAT(succeed("render bar.obj" + view + "600,100").err, IsEmpty());
+  EXPECT_THAT(succeed("render bar.obj" + view + "30,30").err, Not(HasSubstr("thread"))) << "as short as a dot";
 }
 
 }  // namespace

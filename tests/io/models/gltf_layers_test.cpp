@@ -275,5 +275,19 @@ TEST(GltfLayers, WhatIsNotDoneIsNamedOnce) {
   EXPECT_THAT(scene.warnings[1], HasSubstr("KHR_materials_iridescence"));
 }
 
+TEST(GltfLayers, WhatIsBlackWithoutIridescenceIsNamed) {
+  const std::string film = R"("extensions":{"KHR_materials_iridescence":{"iridescenceFactor":1}})";
+  const std::string black = R"("pbrMetallicRoughness":{"baseColorFactor":[0,0,0.01,1]},)";
+  GltfMaker maker = layered_maker(1);
+  maker.add("materials", R"({"name":"beetle",)" + black + film + "}");
+  maker.add("materials", "{" + film + "}");
+  maker.add("materials", R"({"emissiveFactor":[1,0,0],)" + black + film + "}");
+  maker.add("materials", "{" + black + R"("extensions":{"KHR_materials_iridescence":{}}})");
+  const Scene scene = load_glb(maker);
+  ASSERT_THAT(scene.warnings, SizeIs(1));
+  EXPECT_THAT(scene.warnings[0], HasSubstr("(beetle): is drawn black: its colours are those of "
+                                           "KHR_materials_iridescence, which is not read"));
+}
+
 }  // namespace
 }  // namespace frontmost

@@ -32,6 +32,7 @@ class MaterialReader {
     material.unlit = json.extension("KHR_materials_unlit").has_value();
     read_layers(json, uses_, material);
     bring_into_range(json, material);
+    warn_if_black_without_iridescence(json, material);
     return material;
   }
 
@@ -45,6 +46,17 @@ class MaterialReader {
       told = number.name;
       *number.value = number.in_range();
     }
+  }
+
+  /// Thin films that colour what is black by itself, as soap and beetles.
+  void warn_if_black_without_iridescence(const JsonValue& json, const Material& m) {
+    constexpr float black = 0.02f;  // 38 of 255 steps
+    const auto iridescence = json.extension("KHR_materials_iridescence");
+    if (!iridescence || iridescence->number_or("iridescenceFactor", 0) <= 0) return;
+    const glm::vec3 shown = glm::max(glm::vec3(m.base_color), glm::max(m.emissive, m.sheen.color));
+    if (std::max({shown.r, shown.g, shown.b}) > black || m.transmission.factor > 0) return;
+    warnings_.push_back(described(json) +
+                        ": is drawn black: its colours are those of KHR_materials_iridescence, which is not read");
   }
 
   void read_metallic_roughness(const JsonValue& json, Material& material) {
