@@ -99,6 +99,17 @@ TEST(Obj, FacesMayComeBeforeTheirVertices) {
   EXPECT_EQ(triangle_count(scene), 3u);
 }
 
+TEST(Obj, CloudsOfPointsAreCounted) {
+  const Scene vertices = load_text("v 0 0 0\nv 1 0 0 1 0 0\nv 2 0 0\n");
+  EXPECT_THAT(vertices.warnings, ElementsAre("model: the file holds no triangles; its 3 points have no surface that "
+                                             "hides anything"));
+  EXPECT_EQ(vertices.meshes.at(0).colors.values.at(1), glm::vec4(1, 0, 0, 1));
+  const Scene points = load_text("o cloud\nv 0 0 0\nv 1 0 0\np 1\np 2\n");
+  EXPECT_THAT(points.warnings, ElementsAre(HasSubstr("statements \"p\" are passed over"), HasSubstr("its 2 points")));
+  EXPECT_EQ(points.instances.at(0).name, "cloud");
+  EXPECT_THAT(load_text("vt 0 0\n").warnings, ElementsAre("model: the file holds no triangles"));
+}
+
 TEST(Obj, LinesGoOnAfterABackslashAndCommentsEndThem) {
   const Scene scene = load_text("v 0 0 \\\n 0\r\nv 1 0 0#1\nv 0 1 0 # c\nf 1 2 \\\r\n 3\nl 1 2\nl 2 3\n# f 1 2 3\n");
   EXPECT_EQ(triangle_count(scene), 1u);

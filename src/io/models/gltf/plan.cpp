@@ -126,7 +126,10 @@ class Planner {
       primitive.indices = decoded->indices;
     else if (const auto indices = json.find("indices"))
       primitive.indices = read_indices(*indices);
-    if (mode < 4) return skip(json, mode == 0 ? "points are not drawn" : "lines are not drawn");
+    const std::size_t points =
+        primitive.indices == no_index ? primitive.vertex_count : data_.accessor(primitive.indices).count;
+    if (mode == 0) return skip(json, "its " + std::to_string(points) + " points are not drawn");
+    if (mode < 4) return skip(json, "lines are not drawn");
     if (mode > 6) return skip(json, "mode " + std::to_string(mode) + " is unknown");
     primitive.mode = decoded ? Mode::triangles : Mode(mode);  // of strips, too, Draco keeps a list
     if (primitive.vertices.base.position == no_index) return skip(json, "has no POSITION, nothing to draw");

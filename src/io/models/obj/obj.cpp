@@ -240,6 +240,9 @@ class ObjReader {
     check_greatest(vertices_, pool_.positions.size());
     check_greatest(uvs_, pool_.texcoords.size());
     check_greatest(normals_, pool_.normals.size());
+    // Points, and lines: their places stay, as those of PLY files do, so that somebody can be told how many there are.
+    if (scene_.meshes.empty() && !pool_.positions.empty())
+      builder_.begin(add_object(scene_, group_, source_, text_.place()));
     builder_.finish(scene_, std::move(pool_));
     materials_.finish();
   }
