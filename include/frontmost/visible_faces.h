@@ -43,10 +43,11 @@ struct VisibleFaces {
 /// The picture is divided into cells, where something ends in them into smaller ones. (J. Warnock. A Hidden Surface
 /// Algorithm for Computer Generated Halftone Pictures. 1969.) In a cell in which no surface ends and the nearest one
 /// lies before all others, what is seen is known without cutting anything; in the smallest the triangles are cut by
-/// each other. Near-linear in meshes; where n triangles lie upon each other in one place and none of them hides the
-/// others whole, time goes with n squared there. About 150 bytes a triangle, 350 where they share no vertices. The same
-/// for any number of threads and every instruction set. \throws Error as validate(view) does, and limit_exceeded for a
-/// mesh of more than 2^29 triangles.
+/// each other. Near-linear in meshes and in stacks of parallel sheets; where n triangles pass through each other in one
+/// place and none of them hides the others whole, time goes with n squared there. About 150 bytes a triangle, 350 where
+/// they share no vertices. The same for any number of threads and every instruction set. \throws Error as
+/// validate(view) does, and limit_exceeded for a mesh of more than 2^29 triangles, or more than about 2^31 looks at a
+/// face, a hundred times as many as a city takes.
 [[nodiscard]] VisibleFaces visible_faces(const Surfaces& surfaces, const View& view, const Execution& execution = {});
 
 /// A triangle that is seen in one of several views.

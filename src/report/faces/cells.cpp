@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <memory>
+#include <numeric>
+#include <string>
 #include <utility>
 
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "base/work_limit.h"
 #include "report/faces/cell_lists.h"
 
 namespace frontmost::faces_detail {
@@ -24,6 +28,13 @@ constexpr std::size_t kManyFaces = 256;
 constexpr std::size_t kManyListed = 500;
 /// Cells with more faces are divided into 4 x 4 at once.
 constexpr std::size_t kCrowd = 300;
+
+/// Cells with more faces than this, which stay as many in its parts, are not divided at any size.
+constexpr std::size_t kManySides = 1024;
+/// What it takes to put a face into the list of a cell, and the list in order, in steps of about ten nanoseconds.
+constexpr std::uint64_t kStepsInCell = 8;
+/// So many faces that cover a cell and are not told apart by the ranges of their keys are told apart by their planes.
+constexpr std::size_t kManyCovers = 32;
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();  ///< a key that nothing lies behind
 
@@ -61,11 +72,14 @@ class FaceMarks {
 /// Looks at one of the largest cells after the other.
 class CellSolver {
  public:
-  CellSolver(const FacesOfView& faces, FaceMarks& marks) : screen_(faces.screen), marks_(marks), cutter_(faces) {}
+  CellSolver(const FacesOfView& faces, FaceMarks& marks, const std::function<void(std::uint64_t)>& tell)
+      : screen_(faces.screen), marks_(marks), cutter_(faces, tell) {}
 
   void solve(const CellLists& lists, std::size_t cell, const View& view);
 
   void clip(const ToldPart& part, std::vector<SeenPart>& seen) { cutter_.clip(part.box, part.face, seen); }
+  /// Tells what of the work was not told yet.
+  void tell_rest() { cutter_.tell_rest(); }
 
   std::vector<SeenPart> parts;
   std::vector<ToldPart> told;
@@ -103,7 +117,8 @@ class CellSolver {
   [[nodiscard]] bool reaches_into(const CellBox& box, FaceInBox& face) const;
   void divide(const CellBox& box, std::size_t first, double removed);
   [[nodiscard]] bool divide_further(const CellBox& box, std::size_t first, double removed);
-  void divide_crowd(const CellBox& box, std::size_t first, double removed);
+  [[nodiscard]] bool divide_crowd(const CellBox& box, std::size_t first, double removed);
+  [[nodiscard]] double drop_covered(const CellBox& box, std::size_t first);
   void leave_out_copies(std::size_t first);
   [[nodiscard]] Sorted sort(const CellBox& box, std::size_t first, double removed);
   [[nodiscard]] int count_at(const glm::dvec2& place, std::size_t first, std::size_t last) const;
@@ -270,6 +285,7 @@ bool CellSolver::reaches_into(const CellBox& box, FaceInBox& found) const {
 /// Finishes the cell whose list begins at `first`, and takes its list away. Nothing that was left out of the list is
 /// nearer than `removed`.
 void CellSolver::divide(const CellBox& box, std::size_t first, double removed) {
+  cutter_.count(kStepsInCell * (list_.size() - first));
   const Sorted sorted = sort(box, first, removed);
   drop(first + sorted.kept);
   if (sorted.is_told)
@@ -286,24 +302,25 @@ bool CellSolver::divide_further(const CellBox& box, std::size_t first, double re
   const double size = std::max(box.right - box.left, box.bottom - box.top);
   if (size <= kSmallestCell) return false;
   const std::size_t last = list_.size(), count = last - first;
-  if (count > kCrowd && size > 4) {
-    divide_crowd(box, first, removed);
-    return true;
-  }
+  if (count > kCrowd && size > 4 && divide_crowd(box, first, removed)) return true;
   const double middle_x = 0.5 * (box.left + box.right), middle_y = 0.5 * (box.top + box.bottom);
   const CellBox parts_of_box[4] = {{box.left, box.top, middle_x, middle_y},
                                    {middle_x, box.top, box.right, middle_y},
                                    {box.left, middle_y, middle_x, box.bottom},
                                    {middle_x, middle_y, box.right, box.bottom}};
-  std::size_t begins[4], left_out = 0;
+  std::size_t begins[4], left_out = 0, pairs = 0;
   double nearest[4];  // of what is left out
   for (std::size_t k = 0; k < 4; ++k) {
     begins[k] = list_.size();
     std::size_t end = count;
     nearest[k] = add_nearest(parts_of_box[k], removed, end, [&](std::size_t i) { return first + i; });
     left_out = std::max(left_out, count - end);
+    if (count > kManySides) nearest[k] = std::max(nearest[k], drop_covered(parts_of_box[k], begins[k]));
+    pairs += (list_.size() - begins[k]) * (list_.size() - begins[k]);
   }
-  if (list_.size() - last >= 3 * count && (count <= kManyFaces || size <= 1)) {
+  // Where sides lie along a line, very small cells hold as many of them as the larger one.
+  const bool helps = count > kManyFaces ? pairs < count * count : list_.size() - last < 3 * count;
+  if (!helps && (count <= kManyFaces || count > kManySides || size <= 1)) {
     list_.resize(last);
     return false;
   }
@@ -312,8 +329,8 @@ bool CellSolver::divide_further(const CellBox& box, std::size_t first, double re
   return true;
 }
 
-/// Divides a cell into 4 x 4, by the boxes of its faces first.
-void CellSolver::divide_crowd(const CellBox& box, std::size_t first, double removed) {
+/// Divides a cell into 4 x 4, by the boxes of its faces first. \returns false where very many of these meet all parts.
+bool CellSolver::divide_crowd(const CellBox& box, std::size_t first, double removed) {
   constexpr int kAlong = 4;
   const double width = (box.right - box.left) / kAlong, height = (box.bottom - box.top) / kAlong;
   const auto at = [](double place, double start, double size) {
@@ -331,6 +348,8 @@ void CellSolver::divide_crowd(const CellBox& box, std::size_t first, double remo
   std::array<std::size_t, kAlong * kAlong + 1> ends{};
   const std::size_t begin = members_.size(), last = list_.size();
   visit([&](std::size_t part, std::size_t) { ++ends[part + 1]; });
+  const std::size_t count = last - first, meetings = std::accumulate(ends.begin(), ends.end(), std::size_t(0));
+  if (count > kManySides && meetings > count * kAlong * kAlong / 2) return false;
   ends[0] = begin;
   for (std::size_t k = 1; k < ends.size(); ++k) ends[k] += ends[k - 1];
   members_.resize(ends.back());
@@ -344,6 +363,19 @@ void CellSolver::divide_crowd(const CellBox& box, std::size_t first, double remo
     divide(part, last, nearest);
   }
   members_.resize(begin);
+  return true;
+}
+
+/// Drops what a face that covers the cell hides, where very many cover it. \returns the nearest key of what is dropped.
+double CellSolver::drop_covered(const CellBox& box, std::size_t first) {
+  const std::span<FaceInBox> list = std::span(list_).subspan(first);
+  const auto covers = [](const FaceInBox& face) { return face.is_all; };
+  if (std::size_t(std::count_if(list.begin(), list.end(), covers)) <= kManyCovers) return kNever;
+  const std::size_t kept = cutter_.leave_out_covered(box, list, gathered_);
+  double nearest = kNever;
+  for (const FaceInBox& face : list.subspan(kept)) nearest = std::max(nearest, face.nearest);
+  drop(first + kept);
+  return nearest;
 }
 
 /// Brings the list into the order of its nearest keys, and tells what that tells.
@@ -358,6 +390,7 @@ CellSolver::Sorted CellSolver::sort(const CellBox& box, std::size_t first, doubl
         std::stable_partition(begin, list_.end(), [&](const FaceInBox& face) { return !(face.nearest < covered); });
     for (auto face = hidden; face != list_.end(); ++face) removed = std::max(removed, face->nearest);
     drop(std::size_t(hidden - list_.begin()));
+    removed = std::max(removed, drop_covered(box, first));
   }
   sort_nearly_sorted(begin, list_.end(), [&](const FaceInBox& a, const FaceInBox& b) {
     return a.nearest != b.nearest ? a.nearest > b.nearest : gathered_[a.number].face < gathered_[b.number].face;
@@ -438,6 +471,21 @@ void CellSolver::show_all(const CellBox& box, std::size_t first) {
   }
 }
 
+/// Where most faces lie over one of the largest cells.
+std::string too_many_faces(const CellLists& lists, const FacesOfView& faces, const View& view) {
+  std::size_t fullest = 0;
+  for (std::size_t cell = 0; cell < lists.size(); ++cell)
+    if (lists[cell].size() > lists[fullest].size()) fullest = cell;
+  const CellBox box = lists.box(fullest, view);
+  const Surfaces& surfaces = faces.surfaces;
+  const PrimitiveId id = faces.screen.faces[face_of(lists[fullest].front())].id;
+  return "visible faces: too many faces lie over each other to be cut by each other: most of them, " +
+         std::to_string(lists[fullest].size()) + ", in the pixels from " + std::to_string(int(box.left)) + "," +
+         std::to_string(int(box.top)) + " to " + std::to_string(int(box.right)) + "," +
+         std::to_string(int(box.bottom)) + ", among them face " + std::to_string(surfaces.source(id).triangle) +
+         " of object " + std::to_string(surfaces.source(id).instance) + "; leave out what lies there many times";
+}
+
 }  // namespace
 
 SeenParts seen_parts(const FacesOfView& faces, const View& view, const Execution& execution) {
@@ -445,19 +493,22 @@ SeenParts seen_parts(const FacesOfView& faces, const View& view, const Execution
   const CellLists lists(faces.screen, view);
   FaceMarks marks(faces.screen.faces.size());
   for (const std::uint32_t face : lists.beyond_picture()) marks.set_partial(face);
+  WorkLimit work(execution, faces.most_steps);
+  const auto tell = [&](std::uint64_t steps) { work.add(steps, [&] { return too_many_faces(lists, faces, view); }); };
   const std::size_t chunks = (lists.size() + kCellsAtOnce - 1) / kCellsAtOnce;
   SeenParts seen;
   seen.parts.resize(chunks);
   std::vector<std::vector<ToldPart>> told(chunks);
   Pool<CellSolver> solvers;
   parallel_for(execution, lists.size(), kCellsAtOnce, [&](std::size_t begin, std::size_t end) {
-    const auto solver = solvers.borrow([&] { return std::make_unique<CellSolver>(faces, marks); });
+    const auto solver = solvers.borrow([&] { return std::make_unique<CellSolver>(faces, marks, tell); });
     for (std::size_t cell = begin; cell < end; ++cell) solver->solve(lists, cell, view);
+    solver->tell_rest();
     seen.parts[begin / kCellsAtOnce] = std::exchange(solver->parts, {});
     told[begin / kCellsAtOnce] = std::exchange(solver->told, {});
   });
   parallel_for(execution, chunks, 1, [&](std::size_t chunk, std::size_t) {
-    const auto solver = solvers.borrow([&] { return std::make_unique<CellSolver>(faces, marks); });
+    const auto solver = solvers.borrow([&] { return std::make_unique<CellSolver>(faces, marks, tell); });
     for (const ToldPart& part : told[chunk])
       if (marks.is_partial(part.face)) solver->clip(part, seen.parts[chunk]);
   });

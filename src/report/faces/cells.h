@@ -19,6 +19,7 @@ struct SeenParts {
 };
 
 /// All that is seen in the view. The same for any number of threads. O(faces + cells in which surfaces end).
+/// \throws Error limit_exceeded where that takes more than FacesOfView::most_steps.
 [[nodiscard]] SeenParts seen_parts(const FacesOfView& faces, const View& view, const Execution& execution);
 
 }  // namespace frontmost::faces_detail

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "base/exact_vector.h"
 
@@ -11,6 +12,12 @@ namespace {
 
 /// Keys that differ by no more than this share of themselves may be equal: doubles put them to some 2^-45.
 constexpr double kAlike = 1.0 / (1ll << 36);
+/// More faces than this are cut in an order of their own: it takes time to find, and pays where most overlap.
+constexpr std::size_t kManyFaces = 128;
+
+/// Steps that things take, of about ten nanoseconds: to look at a face for a piece, to cut by it or to tell what is
+/// nearer, to find by exact signs whether it lies in a plane, and to keep what is seen.
+constexpr std::uint64_t kStepsOfLook = 1, kStepsOfCut = 8, kStepsOfPlane = 32, kStepsOfPart = 64;
 
 CellBox box_of(const ConvexPiece& polygon) {
   const glm::dvec2& first = *polygon.begin();
@@ -53,7 +60,8 @@ PieceCutter::Candidate PieceCutter::candidate(std::uint32_t face, const ScreenPo
           key.low,
           key.high,
           range_of(a.x, b.x, c.x),
-          range_of(a.y, b.y, c.y)};
+          range_of(a.y, b.y, c.y),
+          no_index};
 }
 
 void PieceCutter::cut(const CellBox& box, std::span<const FaceInBox> list, std::span<const GatheredFace> gathered,
@@ -63,14 +71,106 @@ void PieceCutter::cut(const CellBox& box, std::span<const FaceInBox> list, std::
   for (const FaceInBox& face : list) {
     const GatheredFace& found = gathered[face.number];
     candidates_.push_back(candidate(found.face, found.corners, face.farthest));
+    candidates_.back().plane_number = std::uint32_t(reaches_.size());
     reaches_.push_back({found.x, found.y, face.nearest});
   }
+  if (candidates_.size() > kManyFaces) order_by_planes(box);
   pieces_.emplace_back(box);
   while (!pieces_.empty()) {
     Piece piece = pieces_.back();
     pieces_.pop_back();
     finish(piece, seen);
   }
+}
+
+/// Measures all keys from the plane of the first face, and orders the faces anew: keys of sheets that lie close behind
+/// each other differ by much more from end to end of a slanted box than from sheet to sheet. Faces in one plane follow
+/// each other by their ids, so that each hides those after it.
+void PieceCutter::order_by_planes(const CellBox& box) {
+  count(kStepsOfPlane * candidates_.size());
+  const AffineKey first = candidates_.front().plane;
+  const ConvexPiece corners(box);
+  struct Ordered {
+    double nearest;
+    std::uint32_t number, plane;
+    PrimitiveId id;
+  };
+  std::vector<Ordered> order;
+  for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
+    double nearest = -std::numeric_limits<double>::infinity(), farthest = -nearest;
+    for (const glm::dvec2& p : corners) {
+      const double key = candidates_[i].plane.at(p), origin = first.at(p);
+      const double narrow = kAlike * std::max(std::abs(key), std::abs(origin));
+      nearest = std::max(nearest, key - origin + narrow);
+      farthest = std::min(farthest, key - origin - narrow);
+    }
+    candidates_[i].farthest = farthest;
+    order.push_back({nearest, i, 0, faces_.screen.faces[candidates_[i].face].id});
+  }
+  std::sort(order.begin(), order.end(), [](const Ordered& a, const Ordered& b) {
+    return a.nearest != b.nearest ? a.nearest > b.nearest : a.number < b.number;
+  });
+  plane_ends_.clear();
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    if (i == 0 || !lie_in_one_plane(faces_.surfaces.corners(order[i - 1].id), faces_.surfaces.corners(order[i].id)))
+      plane_ends_.push_back(i);
+    else
+      order[i].nearest = order[i - 1].nearest;
+    order[i].plane = std::uint32_t(plane_ends_.size() - 1);
+    plane_ends_.back() = i + 1;
+  }
+  std::sort(order.begin(), order.end(), [](const Ordered& a, const Ordered& b) {
+    return a.plane != b.plane ? a.plane < b.plane : a.id != b.id ? a.id < b.id : a.number < b.number;
+  });
+  const std::vector<Candidate> candidates = std::exchange(candidates_, {});
+  const std::vector<Reach> reaches = std::exchange(reaches_, {});
+  for (const Ordered& face : order) {
+    candidates_.push_back(candidates[face.number]);
+    candidates_.back().plane_number = face.plane;
+    reaches_.push_back(reaches[face.number]);
+    reaches_.back().nearest = face.nearest;
+  }
+}
+
+std::size_t PieceCutter::leave_out_covered(const CellBox& box, std::span<FaceInBox> list,
+                                           std::span<const GatheredFace> gathered) {
+  const ConvexPiece corners(box);
+  const glm::dvec2 middle(0.5 * (box.left + box.right), 0.5 * (box.top + box.bottom));
+  const auto plane_of = [&](std::uint32_t number) {
+    const ScreenPoint* const p = gathered[number].corners;
+    return AffineKey(p[0], p[1], p[2]);
+  };
+  const auto id_of = [&](std::uint32_t number) { return faces_.screen.faces[gathered[number].face].id; };
+  std::uint32_t cover = no_index;
+  double nearest = -std::numeric_limits<double>::infinity();
+  for (const FaceInBox& face : list) {
+    if (!face.is_all) continue;
+    const double key = plane_of(face.number).at(middle), narrow = kAlike * std::abs(key);
+    if (cover != no_index && !(key > nearest + narrow) &&
+        !(key >= nearest - narrow && id_of(face.number) < id_of(cover)))
+      continue;
+    nearest = key;
+    cover = face.number;
+  }
+  count(kStepsOfCut * list.size());
+  if (cover == no_index) return list.size();
+  const AffineKey front = plane_of(cover);
+  const PrimitiveId id = id_of(cover);
+  const auto cover_corners = faces_.surfaces.corners(id);
+  const auto is_hidden = [&](const FaceInBox& face) {
+    if (face.number == cover) return false;
+    const AffineKey plane = plane_of(face.number);
+    bool is_behind = true, is_alike = id_of(face.number) > id;
+    for (const glm::dvec2& p : corners) {
+      const double key = front.at(p), before = plane.at(p) - key, narrow = kAlike * std::abs(key);
+      is_behind = is_behind && before < -narrow;
+      is_alike = is_alike && std::abs(before) <= narrow;
+    }
+    if (is_alike) count(kStepsOfPlane);
+    return is_behind || (is_alike && lie_in_one_plane(cover_corners, faces_.surfaces.corners(id_of(face.number))));
+  };
+  const auto end = std::stable_partition(list.begin(), list.end(), [&](const FaceInBox& f) { return !is_hidden(f); });
+  return std::size_t(end - list.begin());
 }
 
 void PieceCutter::clip(const CellBox& box, std::uint32_t face, std::vector<SeenPart>& seen) {
@@ -89,13 +189,19 @@ void PieceCutter::finish(Piece& piece, std::vector<SeenPart>& seen) {
   if (piece.front != no_index) farthest = candidates_[piece.front].farthest;
   for (; piece.next < candidates_.size(); ++piece.next) {
     const Reach& reach = reaches_[piece.next];
+    count(kStepsOfLook);
     if (reach.nearest < farthest) break;  // and so are all after it
+    if (piece.front != no_index && candidates_[piece.front].plane_number == candidates_[piece.next].plane_number) {
+      piece.next = plane_ends_[candidates_[piece.next].plane_number] - 1;  // all of its plane have greater ids
+      continue;
+    }
     const CellBox& around = piece.around;
     if (reach.x.high <= around.left || reach.x.low >= around.right || reach.y.high <= around.top ||
         reach.y.low >= around.bottom)
       continue;
     const Candidate& face = candidates_[piece.next];
     if (piece.front != no_index && lies_behind(face, candidates_[piece.front], piece.polygon)) continue;
+    count(kStepsOfCut);
     if (piece.polygon.is_full())
       put_aside(piece.front, piece.next, [&](ConvexPiece& half) { half = piece.polygon.halve(); });
     if (!cut_to(face, piece)) continue;
@@ -203,7 +309,8 @@ void PieceCutter::choose_nearer(std::uint32_t number, Piece& piece) {
 
 /// Of two faces that doubles do not tell apart: the lower id where they lie in one plane, else the one that seems
 /// nearer.
-bool PieceCutter::is_preferred(const Candidate& face, const Candidate& front, const LineDistances& nearer) const {
+bool PieceCutter::is_preferred(const Candidate& face, const Candidate& front, const LineDistances& nearer) {
+  count(kStepsOfPlane);
   const PrimitiveId id = faces_.screen.faces[face.face].id, front_id = faces_.screen.faces[front.face].id;
   if (lie_in_one_plane(faces_.surfaces.corners(front_id), faces_.surfaces.corners(id))) return id < front_id;
   const double sum = std::accumulate(nearer.at.begin(), nearer.at.begin() + nearer.size, 0.0);
@@ -211,6 +318,7 @@ bool PieceCutter::is_preferred(const Candidate& face, const Candidate& front, co
 }
 
 void PieceCutter::emit(const ConvexPiece& polygon, const Candidate& face, std::vector<SeenPart>& seen) {
+  count(kStepsOfPart);
   std::array<ScreenPoint, ConvexPiece::most_corners> corners;
   std::size_t count = 0;
   for (const glm::dvec2& p : polygon)

@@ -6,7 +6,9 @@
 //    |_________|        |____|____|       |__|_|_|__|     where that is nearer: every place is in one piece
 #pragma once
 
+#include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "report/faces/polygon.h"
@@ -40,6 +42,7 @@ struct FacesOfView {
   const Surfaces& surfaces;
   const ViewedFaces& screen;
   AreaRule rule;
+  std::uint64_t most_steps;  ///< of about ten nanoseconds each, before the work is given up
 };
 
 /// The key of a face's plane, affine over the screen.
@@ -53,12 +56,25 @@ struct AffineKey {
 /// Cuts boxes, one after the other; keeps its memory.
 class PieceCutter {
  public:
-  explicit PieceCutter(const FacesOfView& faces) : faces_(faces) {}
+  /// `tell(steps)` is called when many steps were taken, of about ten nanoseconds each.
+  PieceCutter(const FacesOfView& faces, std::function<void(std::uint64_t)> tell)
+      : faces_(faces), tell_(std::move(tell)) {}
+
+  void count(std::uint64_t steps) {
+    constexpr std::uint64_t kTold = 1 << 16;
+    if ((steps_ += steps) >= kTold) tell_(std::exchange(steps_, 0));
+  }
+  /// Tells what was not told yet.
+  void tell_rest() { tell_(std::exchange(steps_, 0)); }
 
   /// Appends what is seen in `box` of `list`, which has all faces that may be seen there, in the order of their nearest
   /// keys, the nearest first.
   void cut(const CellBox& box, std::span<const FaceInBox> list, std::span<const GatheredFace> gathered,
            std::vector<SeenPart>& seen);
+  /// Looks for the nearest of the faces that cover all of `box`, and brings those that lie behind it there, or in its
+  /// plane with a greater id, to the end of `list`. \returns how many are left.
+  [[nodiscard]] std::size_t leave_out_covered(const CellBox& box, std::span<FaceInBox> list,
+                                              std::span<const GatheredFace> gathered);
   /// Appends what of a face lies within `box`, all of it being seen there.
   void clip(const CellBox& box, std::uint32_t face, std::vector<SeenPart>& seen);
 
@@ -70,6 +86,7 @@ class PieceCutter {
     AffineKey plane;
     double least, most;  ///< keys of its corners
     Range x, y;
+    std::uint32_t plane_number;  ///< the same for candidates that are known to lie in one plane
   };
   /// What is asked of a candidate first.
   struct Reach {
@@ -87,19 +104,23 @@ class PieceCutter {
   };
 
   [[nodiscard]] static Candidate candidate(std::uint32_t face, const ScreenPoint* corners, double farthest);
+  void order_by_planes(const CellBox& box);
   void finish(Piece& piece, std::vector<SeenPart>& seen);
   [[nodiscard]] bool lies_behind(const Candidate& face, const Candidate& front, const ConvexPiece& polygon) const;
   template <class Make>
   bool put_aside(std::uint32_t front, std::uint32_t next, const Make& make);
   [[nodiscard]] bool cut_to(const Candidate& face, Piece& piece);
   void choose_nearer(std::uint32_t number, Piece& piece);
-  [[nodiscard]] bool is_preferred(const Candidate& face, const Candidate& front, const LineDistances& nearer) const;
+  [[nodiscard]] bool is_preferred(const Candidate& face, const Candidate& front, const LineDistances& nearer);
   void emit(const ConvexPiece& polygon, const Candidate& face, std::vector<SeenPart>& seen);
 
   const FacesOfView& faces_;
+  std::function<void(std::uint64_t)> tell_;
+  std::uint64_t steps_ = 0;  ///< that were not told yet
   std::vector<Candidate> candidates_;
-  std::vector<Reach> reaches_;  ///< by candidate
-  std::vector<Piece> pieces_;   ///< still to be looked at
+  std::vector<Reach> reaches_;             ///< by candidate
+  std::vector<std::uint32_t> plane_ends_;  ///< by number of plane: behind its last candidate
+  std::vector<Piece> pieces_;              ///< still to be looked at
 };
 
 }  // namespace frontmost::faces_detail

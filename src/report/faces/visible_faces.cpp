@@ -15,12 +15,17 @@ using faces_detail::Areas;
 using faces_detail::MeshSides;
 using faces_detail::SeenPart;
 
+/// Fifteen times what the most crowded of the models takes that it was tried on, and more for larger ones.
+std::uint64_t most_steps_of(const faces_detail::ViewedFaces& screen) {
+  return (std::uint64_t(1) << 31) + 64 * std::uint64_t(screen.faces.size());
+}
+
 /// By id, ascending.
 std::vector<VisibleFace> find_faces(const Surfaces& surfaces, const View& view, const std::vector<MeshSides>& sides,
                                     const Execution& execution) {
   constexpr std::size_t kFacesAtOnce = 4096;
   const faces_detail::ViewedFaces screen = faces_detail::viewed_faces(surfaces, view, sides, execution);
-  const faces_detail::FacesOfView faces{surfaces, screen, faces_detail::AreaRule(view)};
+  const faces_detail::FacesOfView faces{surfaces, screen, faces_detail::AreaRule(view), most_steps_of(screen)};
   const faces_detail::SeenParts found = faces_detail::seen_parts(faces, view, execution);
   std::vector<Areas> areas(screen.faces.size());
   parallel_for(execution, areas.size(), kFacesAtOnce, [&](std::size_t begin, std::size_t end) {

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Small meshes of which a method that holds every two triangles against each other takes minutes.
+#pragma once
+
+#include "support/meshes.h"
+
+namespace frontmost::test {
+
+/// Triangles in one plane, turned about their common centre: all overlap in the middle.
+inline Mesh turned_triangles(int count) {
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const auto corner = [&](int k) {
+      const double turn = 2.0943951023931953 * (k + double(i) / count);
+      return glm::vec3(std::cos(turn), std::sin(turn), 0);
+    };
+    add_triangle(mesh, corner(0), corner(1), corner(2));
+  }
+  return mesh;
+}
+
+/// Equal squares, each `gap` nearer to +z than the one before.
+inline Mesh parallel_sheets(int count, double gap) {
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) add_square(mesh, 1, float(i * gap));
+  return mesh;
+}
+
+/// Squares in one plane about one centre, each larger than the one before.
+inline Mesh nested_sheets(int count) {
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) add_square(mesh, 0.1f + 0.9f * float(i) / float(count), 0);
+  return mesh;
+}
+
+/// Very thin triangles of length 2 through one point, in all directions of space.
+inline Mesh slivers_through_point(int count) {
+  Random random(3);
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const glm::vec3 along = glm::normalize(random.point(1) + glm::vec3(1e-3f, 0, 0));
+    const glm::vec3 aside = 1e-4f * glm::normalize(glm::cross(along, glm::vec3(0.36f, 0.48f, 0.8f)));
+    add_triangle(mesh, -along - aside, -along + aside, along);
+  }
+  return mesh;
+}
+
+}  // namespace frontmost::test
