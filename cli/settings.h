@@ -203,7 +203,7 @@ struct ReportSettings {
   std::optional<std::string> categories;  ///< a file that says which object has which
   std::optional<std::string> bop;         ///< a folder
   std::optional<BopVisible> bop_visible;
-  std::vector<std::string> leave_out;  ///< names of objects or categories, of the three above
+  std::vector<std::string> leave_out;  ///< names of objects or categories that these three leave out
   std::optional<std::string> why;      ///< the name or number of the objects of which alone something is said
   std::optional<std::string> views;    ///< a batch file
 };

@@ -58,6 +58,7 @@ std::vector<std::string> write_views(DatasetOptions options, const py::object& s
     });
     ++number;
   }
+  if (!names.is_none() && name != py::iterator::sentinel()) throw py::value_error("names: more than there are views");
   return writer.finish();
 }
 

@@ -31,7 +31,7 @@ struct ModelUnit {
 struct CylinderCount {
   std::size_t all = 0, holes = 0;
 };
-constexpr std::uint64_t most_for_cylinders = 500'000;  // triangles: half a second
+constexpr std::uint64_t most_for_cylinders = 200'000;  // triangles: a fifth of a second
 
 constexpr std::size_t lines_shown = 20;  // of objects, materials, cameras, lights; JSON has all
 constexpr std::string_view axis_names[] = {"+x", "+y", "+z", "-x", "-y", "-z"};

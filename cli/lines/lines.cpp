@@ -144,7 +144,7 @@ void warn_of(const Sheet& sheet, const Surfaces& surfaces, const Settings& setti
         {fmt::format("cylinders without a diameter, because no line of theirs is drawn: {}{}", sheet.undrawn,
                      settings.drawing.sheet.hidden == HiddenLines::none ? "; --hidden dashed draws hidden ones" : "")});
   if (sheet.prisms > 0)
-    warn({fmt::format("cylinders without a diameter, because they have fewer than 18 sides and count as polygons: {}",
+    warn({fmt::format("cylinders of 7 to 17 sides, which have no diameter because they count as polygons: {}",
                       sheet.prisms)});
 }
 

@@ -130,13 +130,16 @@ void warn_if_thread(const Sights& sights, ViewResult& result) {
                                             : sights.maps->visible;
   std::size_t count = 0;
   int left = visible.view.width, right = -1, top = visible.view.height, bottom = -1;
-  for (int y = 0; y < visible.view.height; ++y)
+  const double most = thinnest * std::max(visible.view.width, visible.view.height);
+  for (int y = 0; y < visible.view.height; ++y) {
+    if (double(count) >= most) return;
     for (int x = 0; x < visible.view.width; ++x) {
       if (visible.primitives[visible.index(x, y)] == no_primitive) continue;
       ++count;
       left = std::min(left, x), right = std::max(right, x);
       top = std::min(top, y), bottom = y;
     }
+  }
   const int length = std::max(right - left, bottom - top) + 1;
   if (length < shortest || double(count) >= thinnest * length) return;
   result.warnings.push_back(

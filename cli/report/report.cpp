@@ -140,7 +140,8 @@ void complain_of_name(const std::string& where, std::string_view what, std::stri
                       const std::vector<std::string_view>& known) {
   std::string hint = names_like(name, known);
   if (hint.empty())
-    hint = fmt::format("it has {} name{}, which frontmost report lists", known.size(), known.size() == 1 ? "" : "s");
+    hint = fmt::format("frontmost report lists {}",
+                       known.size() == 1 ? "the one that it has" : fmt::format("all {}", known.size()));
   throw UsageError(fmt::format("{} has {} {}; {}", where, what, printable_name(name), hint));
 }
 
@@ -176,6 +177,7 @@ int run_report(const Settings& settings) {
   const Execution execution = execution_for(settings.run, progress);
   const Scene scene = load_model(settings, execution, progress, outputs);
   (void)objects_asked_for(settings, scene);
+  datasets.begin(settings, scene);
   std::optional<Surfaces> surfaces(std::in_place, scene, execution);
   const View view = resolve_view(settings.view, *surfaces);
   show_framing_warning(settings, *surfaces, progress);
@@ -191,7 +193,6 @@ int run_report(const Settings& settings) {
     write_report_page(run, *page, execution);
     run.files.push_back(*page);
   }
-  datasets.begin(settings, scene);
   datasets.add(run, std::nullopt, execution);
   for (std::string& file : datasets.finish()) run.files.push_back(std::move(file));
   progress.clear();

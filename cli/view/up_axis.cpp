@@ -32,8 +32,7 @@ std::array<FlatSides, 3> find_flat_sides(const Surfaces& surfaces) {
   const PrimitiveId step = surfaces.primitive_count() / most_asked + 1;
   std::array<FlatSides, 3> sides;
   for (PrimitiveId id = 0; id < surfaces.primitive_count(); id += step) {
-    std::array<glm::vec3, 3> c = surfaces.corners(id);
-    if (surfaces.is_mirrored(surfaces.source(id).instance)) std::swap(c[1], c[2]);
+    const std::array<glm::vec3, 3> c = surfaces.corners(id);  // formats that leave up open mirror nothing
     if (!is_finite(c[0]) || !is_finite(c[1]) || !is_finite(c[2])) continue;
     const glm::dvec3 doubled_area = glm::cross(glm::dvec3(c[1] - c[0]), glm::dvec3(c[2] - c[0]));
     for (int axis = 0; axis < 3; ++axis) {
@@ -82,8 +81,7 @@ std::optional<std::string> up_warning(const ViewSettings& view, const LoadOption
     if (std::max(sides[std::size_t(axis)].low, sides[std::size_t(axis)].high) > none) return std::nullopt;
   const char* const names = "xyz";
   return fmt::format(
-      "the model may lie on its back: its flat base is across {}, and {} is taken for up; --up +{} stands "
-      "it up",
+      "the model may lie on its back: its only flat side faces -{}, but {} is taken for up; --up +{} stands it up",
       names[other], names[up], names[other]);
 }
 

@@ -46,7 +46,7 @@ struct DatasetView {
 /// files are written into a hidden folder and moved when all views are there; COCO's text is kept until then.
 class DatasetWriter {
  public:
-  /// \throws Error file_unwritable.
+  /// Makes the folders. \throws Error file_unwritable where one cannot be made.
   explicit DatasetWriter(const DatasetOptions& options);
   ~DatasetWriter();
   DatasetWriter(const DatasetWriter&) = delete;
@@ -55,9 +55,11 @@ class DatasetWriter {
   /// Views count from 0, in this order; `picture` is COCO's file_name. Views may be of several scenes.
   /// \throws Error file_unwritable; unsupported for BOP of a parallel view, or of an object that is stretched or
   /// mirrored; bad_argument as named_objects() does, for more samples than one, and for two categories of one number.
+  /// After an error only the destructor may be called.
   void add(const DatasetView& view, const std::string& picture, const Execution& execution = {});
 
-  /// Moves the files to their places, and removes masks and depths that an earlier writer left in the same folders.
+  /// Moves the files to their places, and removes masks and depths that an earlier writer left in the same folders:
+  /// files of the same kinds of names.
   /// \returns the paths of all files. \throws Error file_unwritable. Call once.
   std::vector<std::string> finish();
 

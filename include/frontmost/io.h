@@ -14,9 +14,9 @@
 
 namespace frontmost {
 
-/// Decodes the images of textures in place of load(): formats that it does not know, or PNG and JPEG in a build without
-/// libraries for them. Called from several threads at once. What it throws as Error becomes a warning of the scene, and
-/// the texture is left out.
+/// Decodes the images of textures in place of load(): formats that it does not know, or PNG, JPEG and WebP in a build
+/// without libraries for them. Called from several threads at once. What it throws as Error becomes a warning of the
+/// scene, and the texture is left out.
 class ImageDecoder {
  public:
   virtual ~ImageDecoder() = default;
@@ -29,7 +29,7 @@ class ImageDecoder {
 struct LoadOptions {
   std::optional<ModelFormat> format;  ///< none: by suffix and, for memory and standard input, by content
   std::optional<Axis> up;             ///< none: the format's (z for STL and 3MF, y for the others) or the scene file's
-  const ImageDecoder* image_decoder = nullptr;  ///< borrowed while it loads; none: PNG and JPEG by the library itself
+  const ImageDecoder* image_decoder = nullptr;  ///< borrowed while it loads; none: PNG, JPEG and WebP
   /// Folders in which, or below which, scene files may name models and poses, besides their own folder.
   std::vector<std::string> allow_outside{};
 };

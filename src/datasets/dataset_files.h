@@ -6,7 +6,6 @@
 //                                                     --> MaskFolder     masks, staged
 #pragma once
 
-#include <initializer_list>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -32,15 +31,25 @@ struct ObjectInFrame {
 /// A number as file names have it: "000042".
 [[nodiscard]] std::string six_digits(std::size_t number);
 
+/// What the names of numbered files are: 000001.png, 000001_000002.png, or 000002_visible.png and
+/// 000001_000002_amodal.png.
+enum class FileNames : std::uint8_t { one_number, two_numbers, parts_of_masks };
+
 /// A folder of files, all of which are there after finish(), or none.
 class DatasetFolder {
  public:
-  /// `within` are the folders in it that hold files. \throws Error file_unwritable.
-  DatasetFolder(const std::string& folder, std::initializer_list<const char*> within);
+  /// A folder in it that holds numbered files; the name is "" for the folder itself.
+  struct Within {
+    std::string name;
+    FileNames files;
+  };
+
+  /// \throws Error file_unwritable.
+  DatasetFolder(const std::string& folder, std::vector<Within> within);
 
   void add(const std::string& name, const Image& image, const SaveOptions& options, const Execution& execution);
   void add(const std::string& name, const std::string& text);
-  /// Moves the files to their places. Masks, and depths, beside them that are not among them go. \returns their paths.
+  /// Moves the files to their places, and removes other numbered files from the folders within. \returns the paths.
   [[nodiscard]] std::vector<std::string> finish();
 
  private:
@@ -50,7 +59,8 @@ class DatasetFolder {
   std::string folder_;
   MadeFolder made_;
   StagedFolder staged_;
-  std::vector<std::string> within_, names_;
+  std::vector<Within> within_;
+  std::vector<std::string> names_;
 };
 
 /// Annotations of what is seen: https://cocodataset.org/#format-data, and beside them what is hidden.
@@ -81,7 +91,10 @@ class CocoFile {
 class BopFolder {
  public:
   BopFolder(const std::string& folder, BopVisible visible)
-      : folder_(folder, {"depth", "mask", "mask_visib"}), visible_(visible) {}
+      : folder_(folder, {{"depth", FileNames::one_number},
+                         {"mask", FileNames::two_numbers},
+                         {"mask_visib", FileNames::two_numbers}}),
+        visible_(visible) {}
 
   /// \throws Error unsupported for parallel views.
   void begin_view(const DatasetView& view, const Execution& execution);
@@ -106,7 +119,8 @@ class BopFolder {
 ///    000012_000003_visible.png  000012_000003_amodal.png      of object 3 in view 12, if views are numbered
 class MaskFolder {
  public:
-  MaskFolder(const std::string& folder, bool is_numbered) : folder_(folder, {}), is_numbered_(is_numbered) {}
+  MaskFolder(const std::string& folder, bool is_numbered)
+      : folder_(folder, {{"", FileNames::parts_of_masks}}), is_numbered_(is_numbered) {}
 
   void add(const DatasetView& view, std::size_t number, const ObjectInFrame& object, const Execution& execution);
   [[nodiscard]] std::vector<std::string> finish() { return folder_.finish(); }

@@ -16,32 +16,37 @@ bool is_six_digits(std::string_view text) {
   return text.size() == 6 && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Whether a file has a name as files of a data set have: numbers of six digits, and for masks also which part.
-bool is_numbered_name(std::string_view name) {
+bool has_name(std::string_view name, FileNames names) {
   if (!name.ends_with(".png")) return false;
   name.remove_suffix(4);
-  for (std::size_t count = 0;; ++count) {
-    const std::size_t end = std::min(name.find('_'), name.size());
-    const std::string_view part = name.substr(0, end);
-    if (!is_six_digits(part)) return count > 0 && end == name.size() && (part == "visible" || part == "amodal");
-    if (end == name.size()) return true;
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const std::size_t end = name.find('_');
+    parts.push_back(name.substr(0, end));
+    if (end == name.npos) break;
     name.remove_prefix(end + 1);
   }
+  std::size_t numbers = parts.size();
+  if (names == FileNames::parts_of_masks) {
+    if (parts.back() != "visible" && parts.back() != "amodal") return false;
+    --numbers;
+  }
+  const std::size_t most = names == FileNames::one_number ? 1 : 2, least = names == FileNames::two_numbers ? 2 : 1;
+  return numbers >= least && numbers <= most &&
+         std::all_of(parts.begin(), parts.begin() + std::ptrdiff_t(numbers), is_six_digits);
 }
 
-/// Removes files of an earlier data set from folders that hold files of this one: readers would take them for this
-/// one's.
-void remove_stale(const fs::path& folder, const std::vector<std::string>& names) {
-  std::set<fs::path> written, folders;
-  for (const std::string& name : names) {
-    written.insert(folder / name);
-    if (is_numbered_name(fs::path(name).filename().string())) folders.insert((folder / name).parent_path());
-  }
+/// Removes numbered files of an earlier data set: readers would take them for this one's.
+void remove_stale(const fs::path& folder, const std::vector<DatasetFolder::Within>& within,
+                  const std::vector<std::string>& names) {
+  std::set<fs::path> written;
+  for (const std::string& name : names) written.insert(folder / name);
   std::error_code ignored;
-  for (const fs::path& place : folders) {
+  for (const auto& [name, files] : within) {
+    const fs::path place = name.empty() ? folder : folder / name;
     std::vector<fs::path> stale;
     for (const fs::directory_entry& entry : fs::directory_iterator(place, ignored))
-      if (is_numbered_name(entry.path().filename().string()) && !written.contains(entry.path()))
+      if (has_name(entry.path().filename().string(), files) && !written.contains(entry.path()))
         stale.push_back(entry.path());
     for (const fs::path& path : stale) fs::remove(path, ignored);
   }
@@ -49,27 +54,15 @@ void remove_stale(const fs::path& folder, const std::vector<std::string>& names)
 
 }  // namespace
 
-Image mask_image(const PixelMask& mask, MaskPart part, const View& view) {
-  Buffer<float> values(view.pixel_count(), 0.0f);
-  for (int y = mask.box.y; y < mask.box.y + mask.box.height; ++y)
-    for (int x = mask.box.x; x < mask.box.x + mask.box.width; ++x) {
-      const MaskPixel pixel = mask.at(x, y);
-      if (pixel == MaskPixel::visible || (part == MaskPart::whole && pixel == MaskPixel::hidden))
-        values[std::size_t(y) * std::size_t(view.width) + std::size_t(x)] = 1;
-    }
-  Image image{view.width, view.height, {}};
-  image.channels.push_back({"Y", std::move(values)});
-  return image;
-}
-
 std::string six_digits(std::size_t number) {
   const std::string digits = std::to_string(number);
   return std::string(6 - std::min<std::size_t>(6, digits.size()), '0') + digits;
 }
 
-DatasetFolder::DatasetFolder(const std::string& folder, std::initializer_list<const char*> within)
-    : folder_(folder), made_(folder), staged_(folder), within_(within.begin(), within.end()) {
-  for (const std::string& made : within_) fs::create_directory(staged_.path(made));
+DatasetFolder::DatasetFolder(const std::string& folder, std::vector<Within> within)
+    : folder_(folder), made_(folder), staged_(folder), within_(std::move(within)) {
+  for (const Within& made : within_)
+    if (!made.name.empty()) fs::create_directory(staged_.path(made.name));
 }
 
 template <class Write>
@@ -92,12 +85,12 @@ void DatasetFolder::add(const std::string& name, const std::string& text) {
 }
 
 std::vector<std::string> DatasetFolder::finish() {
-  for (const std::string& made : within_)
-    if (const fs::path path = fs::path(folder_) / made; fs::exists(path) && !fs::is_directory(path))
-      throw Error(ErrorCode::file_unwritable, path.string() + ": is no folder");
-  for (const std::string& made : within_) fs::create_directories(fs::path(folder_) / made);
+  for (const Within& made : within_)
+    if (const fs::path path = fs::path(folder_) / made.name; fs::exists(path) && !fs::is_directory(path))
+      throw Error(ErrorCode::file_unwritable, path.string() + ": not a folder");
+  for (const Within& made : within_) fs::create_directories(fs::path(folder_) / made.name);
   staged_.commit(names_);
-  remove_stale(folder_, names_);
+  remove_stale(folder_, within_, names_);
   for (std::string& name : names_) name = (fs::path(folder_) / name).string();
   return std::move(names_);
 }

@@ -10,13 +10,6 @@ namespace frontmost {
 
 using namespace datasets;
 
-void MaskFolder::add(const DatasetView& view, std::size_t number, const ObjectInFrame& object,
-                     const Execution& execution) {
-  const std::string begin = (is_numbered_ ? six_digits(number) + "_" : "") + six_digits(object.number);
-  for (const auto& [part, word] : {std::pair(MaskPart::visible, "_visible.png"), {MaskPart::whole, "_amodal.png"}})
-    folder_.add(begin + word, mask_image(object.mask, part, view.visible.view), {}, execution);
-}
-
 std::vector<bool> named_objects(const Scene& scene, const std::vector<std::string>& names) {
   std::vector<bool> named(scene.instances.size());
   for (const std::string& name : names) {
@@ -78,10 +71,12 @@ std::vector<std::string> DatasetWriter::finish() {
     std::move(more.begin(), more.end(), std::back_inserter(files));
   };
   Parts& parts = *parts_;
-  if (parts.coco) files.push_back(*parts.options.coco);
+  if (parts.coco) {
+    save_text(parts.coco->text(), *parts.options.coco);
+    files.push_back(*parts.options.coco);
+  }
   if (parts.bop) add(parts.bop->finish());
   if (parts.masks) add(parts.masks->finish());
-  if (parts.coco) save_text(parts.coco->text(), *parts.options.coco);
   return files;
 }
 

@@ -22,7 +22,7 @@ struct OccluderPart {
   std::uint32_t first_vertex = 0, vertex_count = 0;
   bool is_whole = true;   ///< all triangles of the mesh's part are there: none hides nothing
   bool is_closed = true;  ///< every side of a triangle has a neighbour
-  bool has_double_sided = false, has_one_sided = false;  ///< materials of all triangles of the mesh's part
+  bool has_double_sided = false, has_one_sided = false;  ///< whether the mesh's part has triangles of such materials
   Box bounds;                      ///< of all triangles of the mesh's part, and of those that touch it and hide
   std::vector<std::uint32_t> own;  ///< its triangles, as numbers in the mesh: those with finite corners
 };

@@ -13,10 +13,6 @@ struct SidesFound {
   [[nodiscard]] bool are_mixed() const { return is_any_double && is_any_single; }
 };
 
-bool is_double_sided(const Scene& scene, std::uint32_t material) {
-  return material < scene.materials.size() && scene.materials[material].double_sided;
-}
-
 SidesFound sides_of(const Scene& scene, const Mesh& mesh) {
   SidesFound found;
   const auto add = [&](std::uint32_t material) {
@@ -30,6 +26,10 @@ SidesFound sides_of(const Scene& scene, const Mesh& mesh) {
 }
 
 }  // namespace
+
+bool is_double_sided(const Scene& scene, std::uint32_t material) {
+  return material < scene.materials.size() && scene.materials[material].double_sided;
+}
 
 std::shared_ptr<const MaterialSides> MaterialSides::of(const Scene& scene,
                                                        const std::vector<PrimitiveId>& first_primitives) {

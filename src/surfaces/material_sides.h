@@ -11,8 +11,11 @@
 
 namespace frontmost {
 
+/// Whether triangles of a material are seen from both sides. Without a material they are not.
+[[nodiscard]] bool is_double_sided(const Scene& scene, std::uint32_t material);
+
 struct MaterialSides {
-  bool are_all_double = false;      ///< every triangle is double-sided; means nothing where there are bits
+  bool are_all_double = false;      ///< every triangle is double-sided; ignored unless `bits` is empty
   std::vector<std::uint32_t> bits;  ///< by primitive, 32 a word: it is double-sided; empty where all are alike
 
   [[nodiscard]] bool is_double(PrimitiveId id) const {

@@ -18,8 +18,8 @@ namespace frontmost::view_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Of the `asked` lanes those whose triangles are double-sided. `ids`: of all lanes; others than the asked ones may be
-/// anything.
+/// The lanes of `asked` whose triangles are double-sided. `ids` has a value for each lane; those that are not asked for
+/// may have any.
 template <class D, class Ids>
 HWY_NOINLINE hn::Mask<D> DoubleSided(D d, const FacingRule& rule, hn::Mask<D> asked, Ids ids) {
   const hn::RebindToSigned<D> di;

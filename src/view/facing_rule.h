@@ -21,8 +21,6 @@ class FacingRule {
 
   /// Culling::material only where materials of both kinds occur.
   [[nodiscard]] Culling culling() const { return culling_; }
-  /// A bit for each primitive, 32 a word. Null unless culling() is Culling::material.
-  [[nodiscard]] const std::uint32_t* double_sided() const { return double_sided_; }
   /// Whether a triangle that is seen from this side is left.
   [[nodiscard]] bool keeps(PrimitiveId id, bool is_front) const {
     switch (culling_) {

@@ -65,6 +65,9 @@ TEST_F(Datasets, ASceneOfBopHasAnImageForEachView) {
   succeed("report squares.obj --bop scene" + view_of(0));
   EXPECT_FALSE(exists("scene/depth/000001.png"));
   EXPECT_FALSE(exists("scene/mask/000001_000000.png"));
+  EXPECT_TRUE(exists("scene/mask/000000_000000.png"));
+  succeed("report squares.obj --resolution 9,9 --camera-position 0,0,9 --camera-focal-point 0,0,20 --bop scene");
+  EXPECT_FALSE(exists("scene/mask/000000_000000.png")) << "nothing is in view";
 }
 
 TEST_F(Datasets, AnnotationsOfCocoNameTheImageOfTheirView) {
@@ -102,7 +105,9 @@ TEST_F(Datasets, MasksHaveTheNumbersOfTheirViews) {
       EXPECT_EQ(bytes("masks/00000" + std::to_string(i) + "_" + file.substr(alone.size() + 1)), bytes(file)) << file;
   }
   write("views.json", R"({"views": [{}]})");
+  write("masks/000042.png", "a picture"), write("masks/000001_000002.png", "another one");
   succeed(std::string("report squares.obj --views views.json --masks masks") + view);
+  EXPECT_EQ(bytes("masks/000042.png") + bytes("masks/000001_000002.png"), "a pictureanother one");
   EXPECT_TRUE(exists("masks/000000_000000_amodal.png"));
   EXPECT_FALSE(exists("masks/000001_000000_amodal.png")) << "of an earlier report";
 }

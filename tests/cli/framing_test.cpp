@@ -109,7 +109,7 @@ std::string cone(const std::string& order) {
 
 TEST_F(Framing, AModelThatLiesOnItsBackIsToldHowToStand) {
   constexpr const char* lies =
-      "the model may lie on its back: its flat base is across z, and y is taken for up; --up +z";
+      "the model may lie on its back: its only flat side faces -z, but y is taken for up; --up +z";
   write("lying.obj", cone("abu"));
   write("standing.obj", cone("bua"));
   for (const std::string command :

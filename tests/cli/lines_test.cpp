@@ -219,9 +219,9 @@ TEST_F(LinesCommand, SheetsHaveDimensionsWhereTheyAreAskedFor) {
       HasSubstr("warning: cylinders without a diameter, because no line of theirs is drawn: 1; --hidden dashed"));
   EXPECT_EQ(succeed(pegs + " --hidden dashed").err, "");
   write("low.obj", peg_obj(5, 20, 12));
-  EXPECT_THAT(succeed("lines low.obj --up +z --views front,top --dimensions -o a.svg").err,
-              HasSubstr("warning: cylinders without a diameter, because they have fewer than 18 sides and count as "
-                        "polygons: 1\n"));
+  EXPECT_THAT(
+      succeed("lines low.obj --up +z --views front,top --dimensions -o a.svg").err,
+      HasSubstr("warning: cylinders of 7 to 17 sides, which have no diameter because they count as polygons: 1\n"));
 }
 
 TEST_F(LinesCommand, ViewsStandInLine) {

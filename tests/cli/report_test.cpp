@@ -67,8 +67,7 @@ TEST_F(Report, SaysWhyObjectsAreSeenOrNot) {
   far_view.replace(far_view.find("--near 1 "), 9, "--near 11 ");
   const json near = succeed("report squares.obj --json --why far" + far_view).json()["objects"][0];
   EXPECT_EQ(near["why"]["remedy"], (json{{"kind", "set_near"}, {"value", 9.9}}));
-  expect_failure(command + "--why wall", 2,
-                 "squares.obj has no object wall; it has 3 names, which frontmost report lists");
+  expect_failure(command + "--why wall", 2, "squares.obj has no object wall; frontmost report lists all 3");
   expect_failure(command + "--why fat", 2, "; did you mean far?");
 }
 
@@ -82,7 +81,7 @@ TEST_F(Report, ExplainIsACommandThatSaysTheSame) {
   expect_failure("explain squares.obj", 2, "no OBJECT given: its name or its number");
   expect_failure("explain", 2, "no MODEL given");
   expect_failure("explain squares.obj far near", 2, "one object at a time: 'far' and 'near'");
-  expect_failure("explain squares.obj 3", 2, "squares.obj has no object 3; it has 3 names");
+  expect_failure("explain squares.obj 3", 2, "squares.obj has no object 3; frontmost report lists all 3");
   expect_failure("explain squares.obj EA", 2, "squares.obj has no object EA; did you mean near?");
   expect_failure("explain squares.obj far --canvas 2", 2, "--canvas does not belong to 'frontmost explain'");
   EXPECT_THAT(succeed("explain --help").out, testing::HasSubstr("frontmost explain MODEL OBJECT [options]"));

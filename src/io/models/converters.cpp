@@ -46,7 +46,7 @@ struct ForeignExtension {
   std::string_view name;
   const Converter& converter;
 };
-/// The first one that a file has decides: the program decodes those behind it anyway.
+/// The first of these that a file has chooses the command, which also decodes the later ones.
 constexpr ForeignExtension foreign_extensions[] = {{"KHR_texture_basisu", ktx_to_png},
                                                    {"EXT_texture_webp", webp_to_png},
                                                    {"KHR_draco_mesh_compression", decompress},

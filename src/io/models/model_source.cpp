@@ -64,7 +64,8 @@ void ModelSource::allow_outside(const std::vector<std::string>& folders) {
     std::error_code error;
     allowed_->push_back(fs::canonical(folder, error));
     if (error || !fs::is_directory(allowed_->back(), error))
-      throw Error(ErrorCode::file_unreadable, folder + ": is no folder, which --allow-outside wants");
+      throw Error(ErrorCode::file_unreadable,
+                  folder + ": not a folder; --allow-outside (LoadOptions::allow_outside) takes folders");
   }
 }
 

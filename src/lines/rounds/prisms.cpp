@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cylinders of so few sides that they count as polygons: two rims of corners on one circle each, about one axis.
 //
-// A rim is a closed chain of sharp edges. Rims are sorted by where their axes pass zero, along a direction in which
-// nobody lays out holes, so that the other rim of a cylinder is among the next ones.
+// A rim is a closed chain of sharp edges. Rims are sorted by where their axes pass zero, along a direction
+// that is parallel to no usual row of holes, so that the other rim of a cylinder is among the next ones.
 #include <algorithm>
 #include <numbers>
 

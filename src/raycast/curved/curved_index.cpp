@@ -67,10 +67,9 @@ void CurvedParts::place_all(const Scene& scene) {
     for (const Sphere& sphere : mesh.spheres)
       if (auto placed = place(sphere, instance.world_from_mesh, id++)) spheres.push_back(*placed);
     for (const BezierPatch& patch : mesh.patches) cut(patch, instance.world_from_mesh, id++, pieces);
-    const std::uint32_t material = mesh.material_of(0);
-    const bool is_double_sided = material < scene.materials.size() && scene.materials[material].double_sided;
-    for (std::size_t i = first_sphere; i < spheres.size(); ++i) spheres[i].is_double_sided = is_double_sided;
-    for (std::size_t i = first_piece; i < pieces.size(); ++i) pieces[i].is_double_sided = is_double_sided;
+    const bool is_double = is_double_sided(scene, mesh.material_of(0));
+    for (std::size_t i = first_sphere; i < spheres.size(); ++i) spheres[i].is_double_sided = is_double;
+    for (std::size_t i = first_piece; i < pieces.size(); ++i) pieces[i].is_double_sided = is_double;
   }
   first_elements.push_back(PrimitiveId(next));
 }

@@ -511,6 +511,7 @@ SeenParts seen_parts(const FacesOfView& faces, const View& view, const Execution
     const auto solver = solvers.borrow([&] { return std::make_unique<CellSolver>(faces, marks, tell); });
     for (const ToldPart& part : told[chunk])
       if (marks.is_partial(part.face)) solver->clip(part, seen.parts[chunk]);
+    solver->tell_rest();
   });
   seen.is_whole = Buffer<std::uint8_t>(faces.screen.faces.size());
   for (std::uint32_t i = 0; i < seen.is_whole.size(); ++i) seen.is_whole[i] = marks.is_whole(i);

@@ -6,9 +6,23 @@
 #include <bit>
 #include <cmath>
 
+#include "raycast/index/ray_tree.h"
 #include "raycast/query/queries.h"
+#include "view/facing_rule.h"
 
 namespace frontmost::shading {
+namespace {
+
+/// Whether light goes through some triangle from behind.
+bool lets_light_through(const View& view, const RayIndex& index) {
+  return view.culling == Culling::material &&
+         FacingRule(view.culling, index.tree().sides.get()).culling() != Culling::none;
+}
+
+}  // namespace
+
+RayShadows::RayShadows(const RayIndex& index, std::span<const glm::ivec2> samples, const View& view, Isa isa)
+    : index_(index), eye_(view.eye()), is_one_way_(lets_light_through(view, index)), isa_(isa), samples_(samples) {}
 
 /// Points that wait to be asked about together, and the fragments that they are of.
 class RayShadows::LightQuestions {

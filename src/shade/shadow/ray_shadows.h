@@ -30,8 +30,7 @@ class RayShadows {
  public:
   /// Borrows both. The index holds what throws shadows; `samples` of a pixel are in 1/256 of it. The view is that of
   /// the picture, or a pinhole where the picture is a scan.
-  RayShadows(const RayIndex& index, std::span<const glm::ivec2> samples, const View& view, Isa isa)
-      : index_(index), eye_(view.eye()), is_one_way_(view.culling == Culling::material), isa_(isa), samples_(samples) {}
+  RayShadows(const RayIndex& index, std::span<const glm::ivec2> samples, const View& view, Isa isa);
 
   /// The ids of the index are not those of what is shaded. Slower: a triangle is then known by its corners.
   void forget_ids() { knows_ids_ = false; }

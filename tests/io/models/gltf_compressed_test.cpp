@@ -167,7 +167,16 @@ TEST_F(GltfDraco, CountsAreCheckedBeforeMemoryIsAskedFor) {
   for (std::size_t i = 0; i < sizeof counts; ++i)
     box.binary.insert(box.binary.begin() + std::ptrdiff_t(12 + i), std::byte(counts[i]));
   box.text["buffers"][0]["byteLength"] = box.text["bufferViews"][0]["byteLength"] = box.binary.size();
-  EXPECT_THAT(box.error(), HasSubstr("of Draco data state more than so few should make"));
+  EXPECT_THAT(box.error(), HasSubstr("of Draco data ask for more memory than 256 MiB"));
+}
+
+TEST_F(GltfDraco, DataMayHaveNoAttributes) {
+  // Version 2.2, a mesh, sequential; one triangle of three vertices as bytes; no attributes.
+  const unsigned char data[] = {'D', 'R', 'A', 'C', 'O', 2, 2, 1, 0, 0, 0, 1, 3, 1, 0, 1, 2, 0, 0, 0};
+  box.binary.resize(sizeof data);
+  std::memcpy(box.binary.data(), data, sizeof data);
+  box.text["buffers"][0]["byteLength"] = box.text["bufferViews"][0]["byteLength"] = sizeof data;
+  EXPECT_THAT(box.error(), HasSubstr("the Draco data have no attribute 0"));
 }
 
 TEST_F(GltfDraco, EveryPrefixIsAnError) {

@@ -68,7 +68,7 @@ constexpr Known known_files[] = {
     {"loader/assimp-obj/multiple_spaces.obj", 1, 4, 1},
     {"loader/assimp-obj/only_a_part_of_vertexcolors.obj", 3, 5, 1},
     {"loader/assimp-obj/regr_3429812.obj", 4, 10, 3},
-    {"loader/assimp-obj/testline.obj", 0, 0, 0},
+    {"loader/assimp-obj/testline.obj", 0, 8, 1},
     {"loader/assimp-obj/testpoints.obj", 0, 0, 0},
     {"loader/assimp-invalid/malformed2.obj", 10, 8, 1},
     {"loader/assimp-ply/cube.ply", 12, 8, 1},

@@ -153,7 +153,7 @@ TEST(SceneErrors, OtherFoldersAreReadFromWhereTheyAreAllowed) {
   }
   EXPECT_THAT(error("../parts/link.off", {folder.file("parts")}), HasSubstr("lies outside the scene file's folder"));
   EXPECT_THAT(error("../partsonly.off", {folder.file("parts")}), HasSubstr("lies outside the scene file's folder"));
-  EXPECT_THAT(error(relative, {folder.file("absent")}), HasSubstr("absent: is no folder, which --allow-outside wants"));
+  EXPECT_THAT(error(relative, {folder.file("absent")}), HasSubstr("absent: not a folder; --allow-outside"));
   // Other formats name files by themselves, whoever wrote them: the option is not for them.
   folder.write("scenes/m.obj", "mtllib ../pair.mtl\nv 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");
   LoadOptions options;

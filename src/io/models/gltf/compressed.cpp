@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the compressing extensions say, and where decoded arrays go. The decoders themselves are in files of their own.
+// Reads the extensions for compression, and adds the decoded arrays to the file's accessors. The decoders have files of
+// their own.
 #include "io/models/gltf/compressed.h"
 
 namespace frontmost::gltf {

@@ -48,7 +48,7 @@ class BoundedDecoder : public Decoder {
  protected:
   bool DecodeAllAttributes() override {
     const draco::PointCloud& cloud = *this->point_cloud();
-    std::uint64_t size = bytes_of_value * std::uint64_t(this->num_attributes_decoders());
+    std::uint64_t size = bytes_of_value * (1 + std::uint64_t(this->num_attributes_decoders()));  // there may be none
     for (int i = 0; i < cloud.num_attributes(); ++i)
       size += bytes_of_value + 3 * std::uint64_t(cloud.attribute(i)->byte_stride());
     return memory_.take(cloud.num_points(), size) && Decoder::DecodeAllAttributes();
@@ -141,8 +141,9 @@ DracoMesh decode_draco(const JsonValue& json, Bytes compressed) {
                                    ? EdgebreakerDecoder(memory).Decode(options, &buffer, &mesh)
                                    : SequentialDecoder(memory).Decode(options, &buffer, &mesh);
   if (memory.is_exceeded())
-    json.source().fail_limit(json.place(), std::to_string(compressed.size()) + " bytes of Draco data state more than " +
-                                               "so few should make");
+    json.source().fail_limit(json.place(), std::to_string(compressed.size()) +
+                                               " bytes of Draco data ask for more memory than " +
+                                               "256 MiB and 1024 bytes for each of them");
   if (!status.ok()) json.fail("the Draco data are damaged: " + printable(status.error_msg_string()));
   return converted(mesh);
 }

@@ -92,7 +92,7 @@ void check_extensions(const JsonValue& root, std::vector<std::string>& warnings)
     for (const std::string& name : required) {
       list += (list.empty() ? "" : ", ") + name;
       if (const OptionalExtension* known = optional_extension(name))
-        absent = std::string("; this Frontmost was built without ") + known->part;
+        absent += (absent.empty() ? "; this Frontmost was built without " : " and ") + std::string(known->part);
     }
     const std::optional<std::string> advice = conversion_of_extensions(required, root.source().name());
     throw Error(ErrorCode::unsupported, root.source().name() + ": extensionsRequired: " + printable(list) +

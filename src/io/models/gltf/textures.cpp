@@ -31,6 +31,7 @@ std::string lack_of_image(const JsonValue& texture) {
     const auto advice = conversion_of_extensions({"KHR_texture_basisu"}, texture.source().name());
     return ": its image is KTX2, which is not read (" + advice.value_or("") + ")";
   }
+  if (texture.extension("EXT_texture_webp")) return ": its image is WebP, and this Frontmost was built without libwebp";
   return ": has no PNG, JPEG or WebP image";
 }
 
