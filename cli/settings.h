@@ -161,8 +161,11 @@ struct SightSettings {
 struct LidarSettings {
   std::optional<glm::dvec3> from, forward;
   std::optional<int> rings, steps;
-  std::optional<glm::dvec2> elevations;  ///< lowest and highest, degrees
+  std::optional<glm::dvec2> elevations;       ///< lowest and highest, degrees
+  std::vector<double> ring_elevations;        ///< degrees; empty: rings are spread
+  std::optional<glm::dvec2> azimuths, range;  ///< degrees; least and greatest
   std::optional<std::string> directions;
+  bool robot_axes = false;
   std::vector<std::string> outputs;
 };
 

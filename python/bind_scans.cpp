@@ -40,20 +40,39 @@ RayCamera camera_of(Model model, const py::object& pose, const std::string& conv
   return camera;
 }
 
-RayCamera lidar_of(const py::object& elevations, int steps, const py::object& pose, const std::string& convention) {
+/// Two numbers.
+glm::dvec2 pair_of(const py::object& given, const std::string& name) {
+  const auto ends = numbers<double>(given, name, {2});
+  return {ends.data()[0], ends.data()[1]};
+}
+
+RayCamera within(RayCamera camera, const py::object& ranges) {
+  const glm::dvec2 ends = pair_of(ranges, "ranges");
+  camera.nearest = ends.x;
+  camera.farthest = ends.y;
+  validate(camera);
+  return camera;
+}
+
+RayCamera lidar_of(const py::object& elevations, int steps, const py::object& azimuths, const py::object& ranges,
+                   const py::object& pose, const std::string& convention) {
   const auto given = numbers<double>(elevations, "elevations", {-1});
   Lidar lidar;
   lidar.steps = steps;
   for (py::ssize_t i = 0; i < given.size(); ++i) lidar.elevations.push_back(glm::radians(given.data()[i]));
-  return camera_of(std::move(lidar), pose, convention, 1);
+  const glm::dvec2 ends = glm::radians(pair_of(azimuths, "azimuths"));
+  lidar.first_azimuth = ends.x;
+  lidar.last_azimuth = ends.y;
+  return within(camera_of(std::move(lidar), pose, convention, 1), ranges);
 }
 
-RayCamera pattern_of(const py::object& directions, const py::object& pose, const std::string& convention) {
+RayCamera pattern_of(const py::object& directions, const py::object& ranges, const py::object& pose,
+                     const std::string& convention) {
   const auto given = numbers<float>(directions, "directions", {-1, 3});
   RayPattern pattern;
   for (py::ssize_t i = 0; i < given.shape(0); ++i)
     pattern.directions.emplace_back(given.at(i, 0), given.at(i, 1), given.at(i, 2));
-  return camera_of(std::move(pattern), pose, convention, 1);
+  return within(camera_of(std::move(pattern), pose, convention, 1), ranges);
 }
 
 HeldScan scan_of(const std::shared_ptr<HeldRayIndex>& held, const RayCamera& camera, int threads,
@@ -65,15 +84,16 @@ HeldScan scan_of(const std::shared_ptr<HeldRayIndex>& held, const RayCamera& cam
           })};
 }
 
-/// (height, width, 3): where rays meet something, NaN elsewhere.
-Array<double> points_of(const HeldScan& held) {
+/// (height, width, 3): where rays meet something, in the space that `out_from_world` leads to; NaN elsewhere.
+Array<double> points_of(const HeldScan& held, const glm::dmat4& out_from_world) {
   Array<double> points(ArrayShape{held.scan->height, held.scan->width, 3});
   double* out = points.mutable_data();
   run(1, py::none(), [&](const Execution&) {
     for (int y = 0; y < held.scan->height; ++y)
       for (int x = 0; x < held.scan->width; ++x, out += 3) {
         const bool met = held.scan->primitives[held.scan->index(x, y)] != no_primitive;
-        const glm::dvec3 at = met ? point_of(*held.scan, x, y) : glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+        glm::dvec3 at(std::numeric_limits<double>::quiet_NaN());
+        if (met) at = glm::dvec3(out_from_world * glm::dvec4(point_of(*held.scan, x, y), 1));
         std::memcpy(out, &at.x, 3 * sizeof(double));
       }
   });
@@ -88,6 +108,15 @@ py::object scan_ids(const HeldScan& held, IdKind kind) {
   return plane_array(std::move(image.channels[0]), image.width, image.height);
 }
 
+py::object incidences_of(const HeldScan& held) {
+  held.by->check_current();
+  auto angles = run(0, py::none(), [&](const Execution& execution) {
+    const std::shared_lock moving(held.by->of->scene->reading), lock(held.by->reading);
+    return incidence_angles(*held.scan, held.by->of->surfaces, execution);
+  });
+  return owned(std::move(angles), held.plane());
+}
+
 Image shaded_scan(const HeldScan& held, const ShadeOptions& options, int threads, const py::object& progress) {
   held.by->check_current();
   return run(threads, progress, [&](const Execution& execution) {
@@ -97,6 +126,7 @@ Image shaded_scan(const HeldScan& held, const ShadeOptions& options, int threads
 }
 
 void bind_cameras(py::module_& m) {
+  const py::tuple any_range = py::make_tuple(0.0, std::numeric_limits<double>::infinity());
   py::class_<RayCamera>(m, "RayCamera", doc("RayCamera"))
       .def_static(
           "panorama",
@@ -112,9 +142,10 @@ void bind_cameras(py::module_& m) {
           },
           "width"_a = 1024, "height"_a = 1024, py::kw_only(), "fov"_a = 180.0, "pose"_a = py::none(),
           "convention"_a = "opengl", "samples"_a = 1, doc("RayCamera.fisheye"))
-      .def_static("lidar", &lidar_of, "elevations"_a, "steps"_a = 1024, py::kw_only(), "pose"_a = py::none(),
+      .def_static("lidar", &lidar_of, "elevations"_a, "steps"_a = 1024, py::kw_only(),
+                  "azimuths"_a = py::make_tuple(0.0, 360.0), "ranges"_a = any_range, "pose"_a = py::none(),
                   "convention"_a = "opengl", doc("RayCamera.lidar"))
-      .def_static("pattern", &pattern_of, "directions"_a, py::kw_only(), "pose"_a = py::none(),
+      .def_static("pattern", &pattern_of, "directions"_a, py::kw_only(), "ranges"_a = any_range, "pose"_a = py::none(),
                   "convention"_a = "opengl", doc("RayCamera.pattern"))
       .def(
           "looking",
@@ -170,7 +201,15 @@ void bind_scans(py::module_& m) {
             return owned(std::move(planes), s.plane());
           },
           doc("RangeScan.depth"))
-      .def_property_readonly("points", &points_of, doc("RangeScan.points"))
+      .def_property_readonly(
+          "points", [](const HeldScan& s) { return points_of(s, glm::dmat4(1.0)); }, doc("RangeScan.points"))
+      .def_property_readonly(
+          "robot_points",
+          [](const HeldScan& s) {
+            return points_of(s, pose_of(s.scan->camera.world_from_eye, PoseConvention::robot_world_to_camera));
+          },
+          doc("RangeScan.robot_points"))
+      .def_property_readonly("incidence", &incidences_of, doc("RangeScan.incidence"))
       .def("__repr__", [](const HeldScan& s) {
         return "RangeScan of " + std::to_string(s.scan->width) + "x" + std::to_string(s.scan->height) + " rays";
       });

@@ -243,6 +243,7 @@ void bind_numbers(py::class_<View>& view) {
 PoseConvention pose_convention_of(const std::string& word) {
   if (word == "opencv") return PoseConvention::opencv_world_to_camera;
   if (word == "opengl") return PoseConvention::opengl_camera_to_world;
+  if (word == "robot") return PoseConvention::robot_camera_to_world;
   return value_of<PoseConvention>(word);
 }
 

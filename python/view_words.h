@@ -19,7 +19,9 @@ FRONTMOST_WORDS(frontmost::PoseConvention, "convention",
                 {{frontmost::PoseConvention::opengl_camera_to_world, "opengl_camera_to_world"},
                  {frontmost::PoseConvention::opengl_world_to_camera, "opengl_world_to_camera"},
                  {frontmost::PoseConvention::opencv_camera_to_world, "opencv_camera_to_world"},
-                 {frontmost::PoseConvention::opencv_world_to_camera, "opencv_world_to_camera"}});
+                 {frontmost::PoseConvention::opencv_world_to_camera, "opencv_world_to_camera"},
+                 {frontmost::PoseConvention::robot_camera_to_world, "robot_camera_to_world"},
+                 {frontmost::PoseConvention::robot_world_to_camera, "robot_world_to_camera"}});
 FRONTMOST_WORDS(frontmost::NamedView, "direction",
                 {{frontmost::NamedView::front, "front"},
                  {frontmost::NamedView::back, "back"},
@@ -34,8 +36,8 @@ FRONTMOST_WORDS(frontmost::FramedObjects, "objects",
 
 namespace frontmost::python {
 
-/// The library's words of poses, and two short ones: "opencv" is opencv_world_to_camera, the calibrations of OpenCV,
-/// "opengl" is opengl_camera_to_world, the cameras of OpenGL.
+/// The library's words of poses, and three short ones: "opencv" is opencv_world_to_camera, the calibrations of OpenCV,
+/// "opengl" is opengl_camera_to_world, the cameras of OpenGL, "robot" is robot_camera_to_world, the transforms of ROS.
 [[nodiscard]] PoseConvention pose_convention_of(const std::string& word);
 
 }  // namespace frontmost::python

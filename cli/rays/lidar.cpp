@@ -19,10 +19,23 @@
 namespace frontmost::cli {
 namespace {
 
-glm::dvec2 elevations_from(const Given& given) {
-  const std::vector<double> ends = parse_numbers(given.text, 2, {-90, 90});
-  if (ends[0] > ends[1]) throw UsageError("the lowest comes first");
+/// Two numbers within limits, or `what` is wrong with their order.
+glm::dvec2 ordered_pair(const Given& given, const NumberLimits& limits, const char* what) {
+  const std::vector<double> ends = parse_numbers(given.text, 2, limits);
+  if (ends[0] > ends[1]) throw UsageError(what);
   return {ends[0], ends[1]};
+}
+
+glm::dvec2 azimuths_from(const Given& given) {
+  const std::vector<double> ends = parse_numbers(given.text, 2, {-360, 360});
+  if (std::abs(ends[1] - ends[0]) > 360) throw UsageError("that is more than a whole turn");
+  return {ends[0], ends[1]};
+}
+
+std::vector<double> ring_elevations_from(const Given& given) {
+  const std::size_t count = split(given.text, ',').size();
+  if (count > 16384) throw UsageError("more than 16384 rings");
+  return parse_numbers(given.text, count, {-90, 90});
 }
 
 constexpr Option lidar_options[] = {
@@ -35,13 +48,31 @@ constexpr Option lidar_options[] = {
        s.lidar.rings = g.integer({1, 16384});
      }},
     {"elevations", 0, "LOW,HIGH", "Degrees above the horizon between which rings are spread; -15,15 by default.",
-     Group::lidar, for_lidar, [](Settings& s, const Given& g) { s.lidar.elevations = elevations_from(g); }},
+     Group::lidar, for_lidar,
+     [](Settings& s, const Given& g) {
+       s.lidar.elevations = ordered_pair(g, {-90, 90}, "the lowest comes first");
+     }},
+    {"ring-elevations", 0, "DEGREES,...", "The elevation of each ring, one or more, in the order of the rows.",
+     Group::lidar, for_lidar, [](Settings& s, const Given& g) { s.lidar.ring_elevations = ring_elevations_from(g); }},
     {"steps", 0, "N", "Rays of a ring, turning to the right; 1 to 16384; 1024 by default.", Group::lidar, for_lidar,
      [](Settings& s, const Given& g) {
        s.lidar.steps = g.integer({1, 16384});
      }},
+    {"azimuths", 0, "FROM,TO",
+     "Degrees to the right of ahead, of a ring's first ray and of its last; to the left where TO is less. 0,360 by "
+     "default: a whole turn repeats no ray.",
+     Group::lidar, for_lidar, [](Settings& s, const Given& g) { s.lidar.azimuths = azimuths_from(g); }},
+    {"range", 0, "MIN,MAX",
+     "Ranges in the model's units; what a ray meets nearer or farther is not written, but hides what is behind it.",
+     Group::lidar, for_lidar,
+     [](Settings& s, const Given& g) {
+       s.lidar.range = ordered_pair(g, {0, 1e30}, "the least comes first");
+     }},
     {"directions", 0, "FILE", "Instead of rings: three numbers a line, x right, y up, z behind; # starts a comment.",
      Group::lidar, for_lidar, [](Settings& s, const Given& g) { s.lidar.directions = g.file_name(); }},
+    {"robot-axes", 0, "",
+     "Read directions, and write points, in the scanner's own axes as robots have them: x ahead, y left, z up.",
+     Group::lidar, for_lidar, [](Settings& s, const Given&) { s.lidar.robot_axes = true; }},
     {"output", 'o', "FILE", "Points (.ply), or a range image with a row for each ring (.exr, .npy: ranges alone).",
      Group::output, for_lidar | may_repeat,
      [](Settings& s, const Given& g) { s.lidar.outputs.push_back(g.file_name()); }},
@@ -50,12 +81,13 @@ constexpr Option lidar_options[] = {
 constexpr int default_rings = 16, default_steps = 1024;
 constexpr glm::dvec2 default_elevations{-15, 15};
 
-RayPattern read_directions(const std::string& path) {
+RayPattern read_directions(const std::string& path, bool robot_axes) {
   RayPattern pattern;
   const std::vector<double> n = read_number_lines(path, {3, "three numbers make a direction"});
   pattern.directions.reserve(n.size() / 3);
   for (std::size_t i = 0; i < n.size(); i += 3) {
-    const glm::vec3& direction = pattern.directions.emplace_back(glm::dvec3(n[i], n[i + 1], n[i + 2]));
+    const glm::vec3& direction = pattern.directions.emplace_back(robot_axes ? glm::dvec3(-n[i + 1], n[i + 2], -n[i])
+                                                                            : glm::dvec3(n[i], n[i + 1], n[i + 2]));
     if (direction == glm::vec3(0))
       throw Error(ErrorCode::file_malformed,
                   fmt::format("{}: number {} of its directions has no length", path, i / 3 + 1));
@@ -67,8 +99,12 @@ RayPattern read_directions(const std::string& path) {
 void check(const Settings& settings) {
   const LidarSettings& s = settings.lidar;
   if (!s.from) throw UsageError("give --from X,Y,Z, where the scanner stands");
-  if (s.directions && (s.rings || s.steps || s.elevations))
-    throw UsageError("--directions and --rings, --steps, --elevations are two ways to say it");
+  const bool has_list = !s.ring_elevations.empty();
+  if (s.directions && (s.rings || s.steps || s.elevations || s.azimuths || has_list))
+    throw UsageError(
+        "--directions and --rings, --steps, --azimuths, --elevations, --ring-elevations are two ways to say it");
+  if (has_list && (s.rings || s.elevations))
+    throw UsageError("--ring-elevations and --rings, --elevations are two ways to say it");
   if (s.outputs.empty() && !settings.run.json) throw UsageError("nothing to do: give -o FILE or --json");
   for (const std::string& path : s.outputs) {
     const std::string suffix = std::filesystem::path(path).extension().string();
@@ -78,11 +114,31 @@ void check(const Settings& settings) {
   check_outputs(s.outputs, input_files(settings));
 }
 
+Lidar rings_of(const LidarSettings& s) {
+  Lidar lidar;
+  lidar.steps = s.steps.value_or(default_steps);
+  const glm::dvec2 ends = glm::radians(s.elevations.value_or(default_elevations));
+  if (s.ring_elevations.empty()) lidar.elevations = ring_elevations(s.rings.value_or(default_rings), ends.x, ends.y);
+  for (const double elevation : s.ring_elevations) lidar.elevations.push_back(glm::radians(elevation));
+  if (s.azimuths) {
+    lidar.first_azimuth = glm::radians(s.azimuths->x);
+    lidar.last_azimuth = glm::radians(s.azimuths->y);
+  }
+  return lidar;
+}
+
 /// The rays, in the scanner's own axes.
 RayCamera rays_of(const LidarSettings& s) {
-  if (s.directions) return {read_directions(*s.directions)};
-  const glm::dvec2 ends = glm::radians(s.elevations.value_or(default_elevations));
-  return {Lidar{ring_elevations(s.rings.value_or(default_rings), ends.x, ends.y), s.steps.value_or(default_steps)}};
+  RayCamera camera;
+  if (s.directions)
+    camera.model = read_directions(*s.directions, s.robot_axes);
+  else
+    camera.model = rings_of(s);
+  if (s.range) {
+    camera.nearest = s.range->x;
+    camera.farthest = s.range->y;
+  }
+  return camera;
 }
 
 /// Upright in the model.
@@ -95,10 +151,11 @@ glm::dmat4 pose_of(const LidarSettings& s, const Surfaces& surfaces) {
   return pose;
 }
 
-Image range_image(const RangeScan& scan, const RayScene& rays, bool with_ids) {
+Image range_image(const RangeScan& scan, const RayScene& rays, const Buffer<float>* incidences) {
   Image image{scan.width, scan.height, {}};
   image.channels.push_back({"distance", scan.ranges});
-  if (!with_ids) return image;
+  if (incidences == nullptr) return image;
+  image.channels.push_back({"incidence", *incidences});
   for (const IdKind kind : {IdKind::primitive, IdKind::object}) {
     Image ids = rays.ids(scan, kind);
     image.channels.push_back(std::move(ids.channels.front()));
@@ -106,12 +163,15 @@ Image range_image(const RangeScan& scan, const RayScene& rays, bool with_ids) {
   return image;
 }
 
-void write(const std::string& path, const RangeScan& scan, const RayScene& rays, const Execution& execution) {
+void write(const std::string& path, const CurvedScan& met, const RayScene& rays, const LidarSettings& settings,
+           const Execution& execution) {
   stop_if_interrupted();
   const WritingFiles writing;
   const std::string suffix = std::filesystem::path(path).extension().string();
-  if (suffix == ".ply") return save_text(points_ply(scan, rays), path);
-  save(range_image(scan, rays, suffix == ".exr"), path, {}, execution);
+  if (suffix == ".npy") return save(range_image(met.scan, rays, nullptr), path, {}, execution);
+  const Buffer<float> incidences = rays.incidences(met, execution);
+  if (suffix == ".ply") return save_text(points_ply({met.scan, rays, incidences, settings.robot_axes}), path);
+  save(range_image(met.scan, rays, &incidences), path, {}, execution);
 }
 
 /// What was met, in all and by object.
@@ -155,12 +215,12 @@ int run_lidar(const Settings& settings) {
   const RayScene rays = index.get();
   const double index_time = watch.milliseconds();
   watch = {};
-  const RangeScan result = rays.scan(camera, execution).scan;
+  const CurvedScan result = rays.scan(camera, execution);
   const double scan_time = watch.milliseconds();
   progress.clear();
-  for (const std::string& path : settings.lidar.outputs) write(path, result, rays, execution);
+  for (const std::string& path : settings.lidar.outputs) write(path, result, rays, settings.lidar, execution);
   if (!settings.run.json) return exit_done;
-  Json json = report(settings, result, rays);
+  Json json = report(settings, result.scan, rays);
   json["timings_ms"] = {{"index", index_time}, {"visible", scan_time}};
   print(dump(json));
   return exit_done;

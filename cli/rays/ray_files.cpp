@@ -34,7 +34,7 @@ std::string_view take_word(std::string_view& line) {
   return word;
 }
 
-constexpr std::size_t bytes_of_point = 44;  // at most
+constexpr std::size_t bytes_of_point = 48;  // at most
 
 void append(std::string& bytes, std::uint32_t word) {
   // PLY's "little endian", whatever the machine's.
@@ -96,23 +96,29 @@ std::vector<double> read_number_lines(const std::string& path, const LineRule& r
   return numbers;
 }
 
-std::string points_ply(const RangeScan& scan, const RayScene& rays) {
+std::string points_ply(const ScanPoints& points) {
+  const RangeScan& scan = points.scan;
+  const RayScene& rays = points.rays;
   const auto missed = std::count(scan.primitives.begin(), scan.primitives.end(), no_primitive);
-  const std::size_t points = scan.primitives.size() - std::size_t(missed);
-  const glm::dvec3& origin = rays.scene().origin;
+  const std::size_t count = scan.primitives.size() - std::size_t(missed);
+  const glm::dvec3 origin = points.robot_axes ? glm::dvec3(0) : rays.scene().origin;
+  const glm::dmat4 out_from_world =
+      points.robot_axes ? pose_of(scan.camera.world_from_eye, PoseConvention::robot_world_to_camera) : glm::dmat4(1.0);
   const char* const type = origin == glm::dvec3(0) ? "float" : "double";
   std::string bytes = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment rays {} by {}\nelement vertex {}\n"
       "property {} x\nproperty {} y\nproperty {} z\nproperty float range\n"
-      "property uint object\nproperty uint triangle\nproperty uint ring\nproperty uint step\nend_header\n",
-      scan.width, scan.height, points, type, type, type);
-  bytes.reserve(bytes.size() + points * bytes_of_point);
+      "property uint object\nproperty uint triangle\nproperty uint ring\nproperty uint step\nproperty float incidence\n"
+      "end_header\n",
+      scan.width, scan.height, count, type, type, type);
+  bytes.reserve(bytes.size() + count * bytes_of_point);
   for (int y = 0; y < scan.height; ++y)
     for (int x = 0; x < scan.width; ++x) {
       const PrimitiveId id = scan.primitives[scan.index(x, y)];
       if (id == no_primitive) continue;
-      append_place(bytes, point_of(scan, x, y), origin);
+      append_place(bytes, glm::dvec3(out_from_world * glm::dvec4(point_of(scan, x, y), 1)), origin);
       append_ids(bytes, scan, {x, y}, rays.source(id));
+      append(bytes, points.incidences[scan.index(x, y)]);
     }
   return bytes;
 }

@@ -23,9 +23,17 @@ struct LineRule {
 /// lines.
 [[nodiscard]] std::vector<double> read_number_lines(const std::string& path, const LineRule& rule);
 
+/// Points of a scan, and what goes with them.
+struct ScanPoints {
+  const RangeScan& scan;
+  const RayScene& rays;
+  const Buffer<float>& incidences;
+  bool robot_axes = false;  ///< x ahead, y left, z up of the scanner; else the model's own coordinates
+};
+
 /// A binary PLY with a vertex for every ray that meets something, by rings and then by steps: x, y, z and range
-/// (floats, in the model's own coordinates; where they lie far from zero x, y and z are doubles), object, triangle
-/// (within its object; of a curved one its sphere or patch), ring and step (32 bits).
-[[nodiscard]] std::string points_ply(const RangeScan& scan, const RayScene& rays);
+/// (floats; in the coordinates of a model that lies far from zero x, y and z are doubles), object, triangle (within its
+/// object; of a curved one its sphere or patch), ring and step (32 bits), and the incidence (a float, degrees).
+[[nodiscard]] std::string points_ply(const ScanPoints& points);
 
 }  // namespace frontmost::cli

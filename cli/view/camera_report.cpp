@@ -50,6 +50,8 @@ Json poses_json(const glm::dmat4& world_from_eye) {
   poses["opengl"]["camera_from_world"] = to_json(pose_of(world_from_eye, PoseConvention::opengl_world_to_camera));
   poses["opencv"]["world_from_camera"] = to_json(pose_of(world_from_eye, PoseConvention::opencv_camera_to_world));
   poses["opencv"]["camera_from_world"] = to_json(pose_of(world_from_eye, PoseConvention::opencv_world_to_camera));
+  poses["robot"]["world_from_camera"] = to_json(pose_of(world_from_eye, PoseConvention::robot_camera_to_world));
+  poses["robot"]["camera_from_world"] = to_json(pose_of(world_from_eye, PoseConvention::robot_world_to_camera));
   return poses;
 }
 

@@ -80,6 +80,10 @@ Image RayScene::ids(const RangeScan& scan, IdKind kind) const {
       scene(), [&](PrimitiveId id) { return source(id); }, {scan.width, scan.height}, primitives, kind);
 }
 
+Buffer<float> RayScene::incidences(const CurvedScan& scan, const Execution& execution) const {
+  return curved ? incidence_angles(scan, execution) : incidence_angles(scan.scan, surfaces, execution);
+}
+
 OwnRayScene::OwnRayScene(const Surfaces& surfaces, const Execution& execution) : surfaces_(surfaces) {
   if (has_curved(surfaces.scene()))
     curved_.emplace(surfaces.scene(), execution);

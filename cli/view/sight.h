@@ -52,6 +52,7 @@ struct RayScene {
   [[nodiscard]] PrimitiveSource source(PrimitiveId id) const;
   [[nodiscard]] RayElement element(PrimitiveId id) const;
   [[nodiscard]] Image ids(const RangeScan& scan, IdKind kind) const;
+  [[nodiscard]] Buffer<float> incidences(const CurvedScan& scan, const Execution& execution) const;
 };
 
 /// The index of whatever the scene has, for single rays.

@@ -113,9 +113,12 @@ constexpr Option view_options[] = {
     {"pose", 0, "FILE", "Camera pose: 16 numbers row by row, or a file that holds them. Needs --pose-convention.",
      Group::vision, for_views, [](Settings& s, const Given& g) { set_pose(s.view, g); }},
     {"pose-convention", 0,
-     "opengl-camera-to-world|opengl-world-to-camera|opencv-camera-to-world|opencv-world-to-camera",
-     "What the pose maps, and its axes: opengl looks down -z with y up, opencv down +z with y down.", Group::vision,
-     for_views, [](Settings& s, const Given& g) { s.view.pose_convention = g.choice<PoseConvention>(); }},
+     "opengl-camera-to-world|opengl-world-to-camera|opencv-camera-to-world|opencv-world-to-camera|"
+     "robot-camera-to-world|robot-world-to-camera",
+     "What the pose maps, and its axes: opengl looks down -z with y up, opencv down +z with y down, robot down +x with "
+     "z up.",
+     Group::vision, for_views,
+     [](Settings& s, const Given& g) { s.view.pose_convention = g.choice<PoseConvention>(); }},
 
     {"resolution", 0, "W,H", "Pixels, 1 to 16384 each; 1920,1080 by default.", Group::grid, for_views,
      [](Settings& s, const Given& g) { s.view.resolution = resolution_from(g.text); }},

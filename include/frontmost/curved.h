@@ -85,6 +85,9 @@ struct CurvedScan {
 /// As scan() of a RayIndex. \throws Error as validate(camera) does.
 [[nodiscard]] CurvedScan scan(const CurvedIndex& index, const RayCamera& camera, const Execution& execution = {});
 
+/// As incidence_angles() of a RangeScan, to the surfaces' own normals.
+[[nodiscard]] Buffer<float> incidence_angles(const CurvedScan& scan, const Execution& execution = {});
+
 /// What the rays of a view meet, and where on the curved primitives.
 struct CurvedVisible {
   Visible visible;  ///< ids are those of the index's elements

@@ -29,11 +29,15 @@ struct Fisheye {
   double fov = 3.14159265358979323846;  ///< radians, above 0; at most a full turn, where the rim is straight behind
 };
 
-/// A scanner that turns about its up axis, to the right: column k looks at azimuth k / steps of a full turn, exactly
-/// ahead in column 0; row r has the elevation of ring r.
+/// A scanner that turns about its up axis: column k of n looks at azimuth first + k (last - first) / (n - 1), so that
+/// both ends are looked at, and at the first alone where n is 1. A full turn (to 1e-9) does not repeat its first ray:
+/// there column k is at first + k (last - first) / n. Where `last` is below `first` it turns to the left. Row r is ring
+/// r.
 struct Lidar {
   std::vector<double> elevations;  ///< of each ring, in radians, -pi/2 to pi/2
-  int steps = 1024;                ///< azimuths of a turn, at least 1
+  int steps = 1024;                ///< azimuths, at least 1
+  /// Radians to the right of ahead, -2 pi to 2 pi, at most a full turn apart.
+  double first_azimuth = 0, last_azimuth = 2 * 3.14159265358979323846;
 };
 
 /// Any rays from one point, as a single row: other lenses, risley scanners, sampling patterns.
@@ -46,6 +50,9 @@ struct RayCamera {
   std::variant<Panorama, Fisheye, Lidar, RayPattern> model;
   glm::dmat4 world_from_eye{1.0};  ///< a rotation and a translation, about Scene::origin as a View's is
   int samples = 1;                 ///< of panoramas and fisheyes, per pixel: 1, 2, 4, 8 or 16, as sample_offsets()
+  /// Least and greatest range, both allowed. What is met elsewhere counts as nothing, and still hides what is behind
+  /// it.
+  double nearest = 0, farthest = std::numeric_limits<double>::infinity();
 };
 
 /// Elevations of `rings` rings, evenly from `highest` down to `lowest`; the middle of both for a single ring.
@@ -75,10 +82,10 @@ struct RangeScan {
   }
 };
 
-/// The nearest surface along every ray, as closest_hits() answers: both sides of every triangle are seen, nothing is
-/// too near or too far. The same bits for any number of threads and any instruction set. O(log n) a ray. Neighbours on
-/// the grid are cast together where they look nearly the same way, five to fifteen times as fast as one by one.
-/// (I. Wald, P. Slusallek, C. Benthin, M. Wagner. Interactive Rendering with Coherent Ray Tracing. 2001.)
+/// The nearest surface along every ray, as closest_hits() answers, where its range is one that the camera allows: both
+/// sides of every triangle are seen. The same bits for any number of threads and any instruction set. O(log n) a ray.
+/// Neighbours on the grid are cast together where they look nearly the same way, five to fifteen times as fast as one
+/// by one. (I. Wald, P. Slusallek, C. Benthin, M. Wagner. Interactive Rendering with Coherent Ray Tracing. 2001.)
 /// \throws Error as validate(camera) does.
 [[nodiscard]] RangeScan scan(const RayIndex& index, const RayCamera& camera, const Execution& execution = {});
 
@@ -89,5 +96,11 @@ struct RangeScan {
 /// +inf where nothing is met, and for rays that do not lead ahead, at 90 degrees from the axis and more, for which
 /// there is no such distance.
 [[nodiscard]] Buffer<float> planar_depths(const RangeScan& scan, const Execution& execution = {});
+
+/// Of every sample, in their order: the angle between its ray and the normal of the triangle that it meets, in degrees:
+/// 0 head-on, nearly 90 where it grazes; from either side. NaN where nothing is met. Precondition: the scan is one of
+/// these surfaces, as they still are.
+[[nodiscard]] Buffer<float> incidence_angles(const RangeScan& scan, const Surfaces& surfaces,
+                                             const Execution& execution = {});
 
 }  // namespace frontmost

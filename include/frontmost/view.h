@@ -84,6 +84,8 @@ enum class PoseConvention : std::uint8_t {
   opengl_world_to_camera,
   opencv_camera_to_world,  ///< x right, y down, looks down +z
   opencv_world_to_camera,
+  robot_camera_to_world,  ///< of sensors on robots (REP 103): x ahead, y left, z up
+  robot_world_to_camera,
 };
 /// \throws Error singular_camera when the pose is not a rotation and a translation (to 1e-4).
 [[nodiscard]] glm::dmat4 world_from_eye(const glm::dmat4& pose, PoseConvention convention);

@@ -14,7 +14,7 @@ Path = Union[str, os.PathLike[str]]
 Up = Literal["x", "y", "z", "-x", "-y", "-z"]
 Format = Literal["stl", "ply", "obj", "off", "gltf", "3mf", "scene"]
 Convention = Literal["opencv", "opengl", "opencv_world_to_camera", "opencv_camera_to_world", "opengl_camera_to_world",
-                     "opengl_world_to_camera"]
+                     "opengl_world_to_camera", "robot", "robot_camera_to_world", "robot_world_to_camera"]
 PixelRule = Literal["centre_at_integer", "centre_at_half"]
 Culling = Literal["none", "back", "front", "both", "material"]
 Direction = Literal["front", "back", "left", "right", "top", "bottom", "iso", "three_quarter"]
@@ -218,8 +218,8 @@ class View:
 
         K: 3x3 without skew, or (fx, fy, cx, cy), in pixels. pose: 4x4 rotation and translation; None: the identity.
         convention: what the pose means. "opencv" is opencv_world_to_camera (x right, y down, z ahead; [R | t] of
-        calibrations, BOP), "opengl" is opengl_camera_to_world (x right, y up, looks down -z). near, far: distances of
-        the planes beyond which nothing is seen; far may be infinite, as it is by default. pixel_rule: where K has the
+        calibrations, BOP), "opengl" is opengl_camera_to_world (x right, y up, looks down -z), "robot" is
+        robot_camera_to_world (x ahead, y left, z up; the transforms of ROS). near, far: distances of the planes beyond which nothing is seen; far may be infinite, as it is by default. pixel_rule: where K has the
         middle of the first pixel, (0, 0) as OpenCV or (0.5, 0.5).
         """
     @staticmethod
@@ -600,7 +600,9 @@ class RayIndex:
 
 class RayCamera:
     """A camera that only rays can serve. pose: 4x4; None: the identity. Azimuths go from ahead to the right, elevations
-    from the horizon upwards; ahead is -z of the "opengl" convention, which is the default here, +z of "opencv".
+    from the horizon upwards; ahead is -z of the "opengl" convention, which is the default here, +z of "opencv",
+    +x of "robot". ranges: least and greatest, both allowed; what is met elsewhere counts as nothing, and still hides what
+    is behind it.
     Raises Error: bad_argument, limit_exceeded, singular_camera.
     """
     @staticmethod
@@ -612,11 +614,17 @@ class RayCamera:
                 convention: Convention = "opengl", samples: int = 1) -> RayCamera:
         """Equidistant. fov: degrees, where the circle touches the nearer sides."""
     @staticmethod
-    def lidar(elevations: ArrayLike, steps: int = 1024, *, pose: ArrayLike | None = None,
+    def lidar(elevations: ArrayLike, steps: int = 1024, *, azimuths: ArrayLike = (0.0, 360.0),
+              ranges: ArrayLike = ..., pose: ArrayLike | None = None,
               convention: Convention = "opengl") -> RayCamera:
-        """A scanner that turns to the right: a row for each elevation (degrees), a column for each step of a turn."""
+        """A scanner that turns to the right: a row for each elevation (degrees), a column for each step of a turn.
+
+        azimuths: degrees of the first step and of the last, to the right of ahead; a whole turn does not repeat its first
+        ray; to the left where the last is less.
+        """
     @staticmethod
-    def pattern(directions: ArrayLike, *, pose: ArrayLike | None = None, convention: Convention = "opengl") -> RayCamera:
+    def pattern(directions: ArrayLike, *, ranges: ArrayLike = ..., pose: ArrayLike | None = None,
+                convention: Convention = "opengl") -> RayCamera:
         """Any rays from one point: (n, 3) directions in the camera's space, x right, y up, -z ahead. One row."""
     def looking(self, eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0, 1, 0)) -> RayCamera:
         """At another place, turned towards a target."""
@@ -652,6 +660,12 @@ class RangeScan:
     @property
     def points(self) -> NDArray[numpy.float64]:
         """(rows, columns, 3): where surfaces are met, in the world; NaN where none is."""
+    @property
+    def robot_points(self) -> NDArray[numpy.float64]:
+        """The same in the scanner's own axes: x ahead, y left, z up."""
+    @property
+    def incidence(self) -> NDArray[numpy.float32]:
+        """Degrees between the ray and the normal of what it meets: 0 head-on; NaN where nothing is met."""
     def shade(self, *, shading: Shading = "lit", background: ArrayLike | None = (1.0, 1.0, 1.0),
               shadows: Literal["off", "map", "rays"] = "map", opacity: float = 1.0,
               see_through: Literal["where_needed", "always", "never"] = "where_needed", grid: int = 0,

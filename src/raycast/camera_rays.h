@@ -48,7 +48,14 @@ struct PixelPlace {
   const std::int64_t h = camera.height, at = std::int64_t(y) * 256 + offset;
   return turn(256 * h - 2 * at, 1024 * h);
 }
-[[nodiscard]] inline glm::dvec2 azimuth_of(const Lidar& camera, int x, int) { return turn(x, camera.steps); }
+[[nodiscard]] inline glm::dvec2 azimuth_of(const Lidar& camera, int x, int) {
+  constexpr double whole = 6.28318530717958647692;
+  const double span = camera.last_azimuth - camera.first_azimuth;
+  const bool is_whole = std::abs(std::abs(span) - whole) <= 1e-9;
+  if (is_whole && span > 0 && camera.first_azimuth == 0) return turn(x, camera.steps);
+  const int gaps = is_whole ? camera.steps : std::max(camera.steps - 1, 1);
+  return turn_by(camera.first_azimuth + span * x / gaps);
+}
 [[nodiscard]] inline glm::dvec2 elevation_of(const Lidar& camera, int y, int) {
   return turn_by(camera.elevations[std::size_t(y)]);
 }

@@ -45,6 +45,11 @@ void check(const Lidar& camera) {
   for (const double elevation : camera.elevations)
     if (!(std::abs(elevation) <= kPi / 2))
       throw Error(ErrorCode::bad_argument, "ray camera: elevations: must be within 90 degrees of the horizon");
+  const double ends[] = {camera.first_azimuth, camera.last_azimuth, camera.last_azimuth - camera.first_azimuth};
+  for (const double angle : ends)
+    if (!(std::abs(angle) <= 2 * kPi + 1e-9))
+      throw Error(ErrorCode::bad_argument,
+                  "ray camera: azimuths: must be within 360 degrees of ahead, and of each other");
 }
 
 void check(const RayPattern& camera) { check_count(camera.directions.size(), 1); }
@@ -83,6 +88,8 @@ std::vector<double> ring_elevations(int rings, double lowest, double highest) {
 void validate(const RayCamera& camera) {
   std::visit([](const auto& model) { check(model); }, camera.model);
   check_samples(camera);
+  if (!(camera.nearest >= 0 && camera.nearest <= camera.farthest))
+    throw Error(ErrorCode::bad_argument, "ray camera: ranges: the least must be from 0 to the greatest");
   const glm::dmat4 pose = world_from_eye(camera.world_from_eye, PoseConvention::opengl_camera_to_world);
   for (int i = 0; i < 3; ++i)
     if (!std::isfinite(float(pose[3][i])))

@@ -136,6 +136,35 @@ void cast_parts(const RangeScan& scan, const Execution& execution, const CastPar
   std::visit([&](const auto& model) { for_each_part(scan, model, execution, cast_part); }, scan.camera.model);
 }
 
+void keep_in_range(RangeScan& scan, const Execution& execution) {
+  const double nearest = scan.camera.nearest, farthest = scan.camera.farthest;
+  constexpr float nowhere = std::numeric_limits<float>::infinity();
+  if (nearest == 0 && farthest == double(nowhere)) return;
+  parallel_for(execution, scan.ranges.size(), kRaysPerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (scan.ranges[i] >= nearest && scan.ranges[i] <= farthest) continue;
+      scan.primitives[i] = no_primitive;
+      scan.ranges[i] = nowhere;
+    }
+  });
+}
+
+Buffer<float> incidence_to(const NormalAt& normal_at, const RangeScan& scan, const Execution& execution) {
+  Buffer<float> angles(scan.ranges.size());
+  const auto measure = [&](std::size_t first, const std::vector<Ray>& rays) {
+    for (std::size_t i = first; i < first + rays.size(); ++i) {
+      angles[i] = std::numeric_limits<float>::quiet_NaN();
+      if (scan.primitives[i] == no_primitive) continue;
+      const glm::dvec3 ray(rays[i - first].direction), normal = normal_at(i);
+      // Not by the cosine, which says little near 0 degrees.
+      angles[i] =
+          float(glm::degrees(std::atan2(glm::length(glm::cross(ray, normal)), std::abs(glm::dot(ray, normal)))));
+    }
+  };
+  std::visit([&](const auto& model) { for_each_part(scan, model, execution, measure); }, scan.camera.model);
+  return angles;
+}
+
 }  // namespace raycast_detail
 
 RangeScan scan(const RayIndex& index, const RayCamera& camera, const Execution& execution) {
@@ -145,7 +174,17 @@ RangeScan scan(const RayIndex& index, const RayCamera& camera, const Execution& 
       ScanCaster(index.tree(), model, sample, result).cast(execution);
   };
   std::visit(cast, camera.model);
+  raycast_detail::keep_in_range(result, execution);
   return result;
+}
+
+Buffer<float> incidence_angles(const RangeScan& scan, const Surfaces& surfaces, const Execution& execution) {
+  const auto normal_at = [&](std::size_t i) {
+    const std::array<glm::vec3, 3> corners = surfaces.corners(scan.primitives[i]);
+    const glm::dvec3 first(corners[0]);
+    return glm::cross(glm::dvec3(corners[1]) - first, glm::dvec3(corners[2]) - first);
+  };
+  return raycast_detail::incidence_to(normal_at, scan, execution);
 }
 
 glm::dvec3 point_of(const RangeScan& scan, int x, int y, int sample) {

@@ -129,17 +129,18 @@ TEST_F(RayCameras, ALidarInsideACubeMeetsItWithEveryRay) {
   const std::string ply = read("points.ply");
   EXPECT_THAT(ply, HasSubstr("element vertex 12\n"));
   const std::size_t first = ply.find("end_header\n") + 11;
-  ASSERT_EQ(ply.size(), first + 12 * 32);
+  ASSERT_EQ(ply.size(), first + 12 * 36);
   // The middle ring: ahead (+y for z-up models), right (+x), behind, left.
   const glm::vec3 expected[] = {{0.5f, 1, 0.25f}, {1, 0.5f, 0.25f}, {0.5f, 0, 0.25f}, {0, 0.5f, 0.25f}};
   for (std::size_t step = 0; step < 4; ++step) {
-    const std::size_t at = first + (4 + step) * 32;
+    const std::size_t at = first + (4 + step) * 36;
     for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(float_at(ply, at + 4 * std::size_t(axis)), expected[step][axis]);
     EXPECT_EQ(float_at(ply, at + 12), 0.5f);
     EXPECT_EQ(word_at(ply, at + 16), 0u);
     EXPECT_LT(word_at(ply, at + 20), 12u);
     EXPECT_EQ(word_at(ply, at + 24), 1u);
     EXPECT_EQ(word_at(ply, at + 28), step);
+    EXPECT_EQ(float_at(ply, at + 32), 0.0f) << "incidence";
   }
 }
 
@@ -160,6 +161,37 @@ TEST_F(RayCameras, ALidarWritesRangeImagesAndTakesDirections) {
   EXPECT_EQ(behind["points"], 1);
 }
 
+// A quarter above the floor of a cube, half from its walls: left, ahead and right, level and 45 degrees down.
+TEST_F(RayCameras, ALidarHasAPartOfATurnAListOfRingsAndRobotsAxes) {
+  succeed(
+      "lidar cube.stl --from 0.5,0.5,0.25 --ring-elevations 0,-45 --azimuths -90,90 --steps 3 --robot-axes "
+      "-o points.ply -o ranges.exr");
+  const std::string ply = read("points.ply");
+  EXPECT_THAT(ply, HasSubstr("element vertex 6\n"));
+  EXPECT_THAT(ply, HasSubstr("property float incidence\n"));
+  const std::size_t first = ply.find("end_header\n") + 11;
+  const float h = 0.5f, q = 0.25f, slant = std::sqrt(0.125f);
+  const float expected[6][5] = {{0, h, 0, h, 0},       {h, 0, 0, h, 0},       {0, -h, 0, h, 0},
+                                {0, q, -q, slant, 45}, {q, 0, -q, slant, 45}, {0, -q, -q, slant, 45}};
+  const Image image = load_image(path("ranges.exr"));
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(float_at(ply, first + 36 * i + 4 * k), expected[i][k], 1e-6) << i;
+    EXPECT_NEAR(float_at(ply, first + 36 * i + 32), expected[i][4], 1e-4) << i;
+    EXPECT_NEAR(image.find("distance")->floats()[i], expected[i][3], 1e-6) << i;
+    EXPECT_NEAR(image.find("incidence")->floats()[i], expected[i][4], 1e-4) << i;
+  }
+  // The floor is nearer than half a unit: its rays return nothing.
+  EXPECT_EQ(succeed("lidar cube.stl --from 0.5,0.5,0.25 --ring-elevations 0,-45 --azimuths -90,90 --steps 3 "
+                    "--range 0.5,2 --json")
+                .json()["points"],
+            3);
+  write("robot.txt", "1 0 0  # ahead\n0 1 0  # left\n0 0 1\n");
+  succeed("lidar cube.stl --from 0.5,0.25,0.75 --directions robot.txt --robot-axes -o ranges.npy");
+  const Image ranges = load_image(path("ranges.npy"));
+  const auto& values = ranges.channels[0].floats();
+  EXPECT_EQ(std::vector<float>(values.begin(), values.end()), (std::vector<float>{0.75f, 0.5f, 0.25f}));
+}
+
 TEST_F(RayCameras, ALidarNamesWhatIsWrong) {
   write("short.txt", "1 2\n");
   write("empty.txt", "# nothing\n");
@@ -170,6 +202,11 @@ TEST_F(RayCameras, ALidarNamesWhatIsWrong) {
   expect_failure("lidar cube.stl --from 0,0,0 --elevations 10,-10 -o a.ply", 2, "--elevations");
   expect_failure("lidar cube.stl --from 0,0,0 --directions short.txt --steps 4 -o a.ply", 2, "two ways");
   expect_failure("lidar cube.stl --from 0,0,0 --directions short.txt -o a.ply", 1, "short.txt: line 1: three numbers");
+  expect_failure("lidar cube.stl --from 0,0,0 --ring-elevations 0,91 -o a.ply", 2, "--ring-elevations");
+  expect_failure("lidar cube.stl --from 0,0,0 --ring-elevations 0 --rings 2 -o a.ply", 2, "two ways");
+  expect_failure("lidar cube.stl --from 0,0,0 --azimuths -200,200 -o a.ply", 2, "more than a whole turn");
+  expect_failure("lidar cube.stl --from 0,0,0 --range 2,1 -o a.ply", 2, "the least comes first");
+  expect_failure("lidar cube.stl --from 0,0,0 --directions short.txt --azimuths 0,90 -o a.ply", 2, "two ways");
   write("still.txt", "0 0 -1\n0 0 0\n");
   expect_failure("lidar cube.stl --from 0,0,0 --directions still.txt -o a.npy", 1,
                  "still.txt: number 2 of its directions");

@@ -62,6 +62,29 @@ def test_patterns_are_rays(box):
     assert opencv.camera.pose("opencv").tolist() == numpy.linalg.inv(eye).tolist()
 
 
+def test_scanners_have_parts_of_a_turn_ranges_and_incidence(box):
+    # Two units in front of a cube of side 2: its wall is one away.
+    index = fm.RayIndex(fm.Surfaces(fm.Scene.from_arrays(*box)))
+    camera = fm.RayCamera.lidar([0, -30], 3, azimuths=(30, -30)).looking((0, 0, 2), (0, 0, 0))
+    scan, slant = index.scan(camera), 2 / numpy.sqrt(3)
+    assert numpy.allclose(scan.range, [[slant, 1, slant], [4 / 3, slant, 4 / 3]])
+    acute = numpy.degrees(numpy.arccos(0.75))
+    assert numpy.allclose(scan.incidence, [[30, 0, 30], [acute, 30, acute]], atol=1e-4)
+    side = numpy.tan(numpy.radians(30))
+    assert numpy.allclose(scan.robot_points[0], [[1, -side, 0], [1, 0, 0], [1, side, 0]])
+    assert numpy.allclose(scan.robot_points[1, 1], [1, 0, -side])
+    near = index.scan(fm.RayCamera.lidar([0], 3, azimuths=(-30, 30), ranges=(0, 1)).looking((0, 0, 2), (0, 0, 0)))
+    assert near.range.tolist() == [[numpy.inf, 1, numpy.inf]] and numpy.isnan(near.incidence[0, 0])
+    assert near.primitive[0, 0] == fm.no_primitive
+    far = index.scan(fm.RayCamera.pattern([[0, 0, -1]], ranges=(1.5, numpy.inf)).looking((0, 0, 2), (0, 0, 0)))
+    assert far.range.tolist() == [[numpy.inf]], "what is too near hides what is behind"
+
+
+def test_robots_axes_are_a_convention():
+    pose = fm.RayCamera.lidar([0], pose=numpy.eye(4), convention="robot").pose("opengl")
+    assert (-pose[:3, 2]).tolist() == [1, 0, 0] and pose[:3, 1].tolist() == [0, 0, 1]
+
+
 def test_planes_outlive_their_scan():
     scan = fm.RayIndex(fm.Surfaces(fm.builtin("city"))).scan(fm.RayCamera.panorama(64, 32).looking(EYE, TARGET))
     planes, kept = [scan.range, scan.primitive], [scan.range.copy(), scan.primitive.copy()]
@@ -80,6 +103,9 @@ def test_planes_outlive_their_scan():
     (lambda: fm.RayCamera.lidar([[0]]), ValueError, "^elevations: "),
     (lambda: fm.RayCamera.lidar([100]), fm.Error, ""),
     (lambda: fm.RayCamera.lidar([0], steps=0), fm.Error, ""),
+    (lambda: fm.RayCamera.lidar([0], azimuths=(-200, 200)), fm.Error, "azimuths"),
+    (lambda: fm.RayCamera.lidar([0], ranges=(2, 1)), fm.Error, "ranges"),
+    (lambda: fm.RayCamera.lidar([0], ranges=5), ValueError, "^ranges: "),
     (lambda: fm.RayCamera.pattern([[0, 1]]), ValueError, "^directions: "),
     (lambda: fm.RayCamera.panorama(pose=numpy.eye(3)), ValueError, "^pose: "),
     (lambda: fm.RayCamera.panorama(convention="x"), ValueError, "^convention: "),

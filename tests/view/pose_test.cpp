@@ -14,7 +14,8 @@ void expect_near(const glm::dvec3& a, const glm::dvec3& b) {
 
 constexpr PoseConvention kConventions[] = {
     PoseConvention::opengl_camera_to_world, PoseConvention::opengl_world_to_camera,
-    PoseConvention::opencv_camera_to_world, PoseConvention::opencv_world_to_camera};
+    PoseConvention::opencv_camera_to_world, PoseConvention::opencv_world_to_camera,
+    PoseConvention::robot_camera_to_world,  PoseConvention::robot_world_to_camera};
 
 TEST(LookAt, PutsTheTargetStraightAheadAndUpUp) {
   const glm::dmat4 pose = look_at({1, 2, 3}, {4, 2, 3}, {0, 0, 5});
@@ -51,6 +52,18 @@ TEST(Pose, OpenCVLooksAlongPlusZWithYDown) {
   const glm::dmat4 camera_from_world = pose_of(pose, PoseConvention::opencv_world_to_camera);
   expect_near(glm::dvec3(camera_from_world * glm::dvec4(0, 0, 0, 1)), {0, 0, 5});
   expect_near(glm::dvec3(camera_from_world * glm::dvec4(1, 2, 0, 1)), {1, -2, 5});
+}
+
+TEST(Pose, ARobotHasXAheadYLeftAndZUp) {
+  const glm::dmat4 eye = world_from_eye(glm::dmat4(1.0), PoseConvention::robot_camera_to_world);
+  EXPECT_EQ(-glm::dvec3(eye[2]), glm::dvec3(1, 0, 0)) << "ahead";
+  EXPECT_EQ(-glm::dvec3(eye[0]), glm::dvec3(0, 1, 0)) << "left";
+  EXPECT_EQ(glm::dvec3(eye[1]), glm::dvec3(0, 0, 1)) << "up";
+  // From (0, 0, 5) towards zero, y up: the origin is 5 ahead, and what is at +x there is on the right.
+  const glm::dmat4 robot_from_world =
+      pose_of(look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0}), PoseConvention::robot_world_to_camera);
+  expect_near(glm::dvec3(robot_from_world * glm::dvec4(0, 0, 0, 1)), {5, 0, 0});
+  expect_near(glm::dvec3(robot_from_world * glm::dvec4(1, 2, 0, 1)), {5, -1, 2});
 }
 
 TEST(Pose, RefusesWhatIsNotRigid) {

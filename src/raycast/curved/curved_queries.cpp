@@ -106,7 +106,12 @@ CurvedScan scan(const CurvedIndex& index, const RayCamera& camera, const Executi
     for (std::size_t at = 0; at < rays.size(); at += kPacketRays)
       cast_packet(parts, rays.subspan(at, std::min(kPacketRays, rays.size() - at)), execution.isa, result, first + at);
   });
+  keep_in_range(result.scan, execution);
   return result;
+}
+
+Buffer<float> incidence_angles(const CurvedScan& scan, const Execution& execution) {
+  return incidence_to([&](std::size_t i) { return glm::dvec3(scan.normals[i]); }, scan.scan, execution);
 }
 
 }  // namespace frontmost

@@ -63,4 +63,13 @@ using CastPart = std::function<void(std::size_t first, std::span<const Ray> rays
 /// Calls cast() for all parts of the camera's grid, on all threads, and tells how far it is.
 void cast_parts(const RangeScan& scan, const Execution& execution, const CastPart& cast);
 
+/// Takes out what is met beyond the camera's limits of range.
+void keep_in_range(RangeScan& scan, const Execution& execution);
+
+/// Of what a sample meets, of any length.
+using NormalAt = std::function<glm::dvec3(std::size_t sample)>;
+
+/// incidence_angles() to these normals, which are asked for from several threads.
+[[nodiscard]] Buffer<float> incidence_to(const NormalAt& normal_at, const RangeScan& scan, const Execution& execution);
+
 }  // namespace frontmost::raycast_detail

@@ -21,6 +21,8 @@ namespace {
 
 // y and z change sign between OpenGL's camera axes (y up, z back) and OpenCV's (y down, z forward).
 const glm::dmat4 kFlipYZ(1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1);
+// Eye space from a robot's axes: x is ahead (-z of the eye), y left (-x), z up (y).
+const glm::dmat4 kEyeFromRobot(0, 0, -1, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1);
 
 /// The transpose undoes a rotation exactly where a general inverse would round once more.
 glm::dmat4 inverse_rigid(const glm::dmat4& pose) {
@@ -44,11 +46,16 @@ void check_rigid(const glm::dmat4& pose) {
 }
 
 bool is_world_to_camera(PoseConvention convention) {
-  return convention == PoseConvention::opengl_world_to_camera || convention == PoseConvention::opencv_world_to_camera;
+  return convention == PoseConvention::opengl_world_to_camera || convention == PoseConvention::opencv_world_to_camera ||
+         convention == PoseConvention::robot_world_to_camera;
 }
 
 bool is_opencv(PoseConvention convention) {
   return convention == PoseConvention::opencv_camera_to_world || convention == PoseConvention::opencv_world_to_camera;
+}
+
+bool is_robot(PoseConvention convention) {
+  return convention == PoseConvention::robot_camera_to_world || convention == PoseConvention::robot_world_to_camera;
 }
 
 }  // namespace
@@ -77,11 +84,14 @@ glm::dmat4 world_from_eye(const glm::dmat4& pose, PoseConvention convention) {
   // A scale in a pose would change what distances mean without anybody noticing; a mirror would turn every face round.
   check_rigid(pose);
   const glm::dmat4 world_from_camera = is_world_to_camera(convention) ? inverse_rigid(pose) : pose;
+  if (is_robot(convention)) return world_from_camera * glm::transpose(kEyeFromRobot);
   return is_opencv(convention) ? world_from_camera * kFlipYZ : world_from_camera;
 }
 
 glm::dmat4 pose_of(const glm::dmat4& world_from_eye, PoseConvention convention) {
-  const glm::dmat4 world_from_camera = is_opencv(convention) ? world_from_eye * kFlipYZ : world_from_eye;
+  const glm::dmat4 world_from_camera = is_robot(convention)    ? world_from_eye * kEyeFromRobot
+                                       : is_opencv(convention) ? world_from_eye * kFlipYZ
+                                                               : world_from_eye;
   return is_world_to_camera(convention) ? inverse_rigid(world_from_camera) : world_from_camera;
 }
 
