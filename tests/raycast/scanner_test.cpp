@@ -13,7 +13,7 @@ namespace frontmost::test {
 namespace {
 
 constexpr double scanner_pi = 3.14159265358979323846;
-constexpr float beyond = std::numeric_limits<float>::infinity();
+constexpr float nothing_met = std::numeric_limits<float>::infinity();
 
 std::vector<glm::vec3> directions_of(const Lidar& lidar) {
   std::vector<glm::vec3> directions;
@@ -22,22 +22,22 @@ std::vector<glm::vec3> directions_of(const Lidar& lidar) {
 }
 
 using testing::ElementsAre;
-const glm::vec3 ahead(0, 0, -1), right(1, 0, 0), behind(0, 0, 1), left(-1, 0, 0);
+const glm::vec3 to_ahead(0, 0, -1), to_right(1, 0, 0), to_behind(0, 0, 1), to_left(-1, 0, 0);
 
 TEST(Scanner, APartOfATurnHasBothItsEnds) {
-  EXPECT_THAT(directions_of({{0}, 3, -scanner_pi / 2, scanner_pi / 2}), ElementsAre(left, ahead, right));
-  EXPECT_THAT(directions_of({{0}, 3, 0, -scanner_pi}), ElementsAre(ahead, left, behind)) << "to the left";
-  EXPECT_THAT(directions_of({{0}, 1, scanner_pi / 2, scanner_pi}), ElementsAre(right)) << "one ray is the first";
-  EXPECT_THAT(directions_of({{0}, 2, scanner_pi / 2, scanner_pi / 2}), ElementsAre(right, right));
+  EXPECT_THAT(directions_of({{0}, 3, -scanner_pi / 2, scanner_pi / 2}), ElementsAre(to_left, to_ahead, to_right));
+  EXPECT_THAT(directions_of({{0}, 3, 0, -scanner_pi}), ElementsAre(to_ahead, to_left, to_behind)) << "to the left";
+  EXPECT_THAT(directions_of({{0}, 1, scanner_pi / 2, scanner_pi}), ElementsAre(to_right)) << "one ray is the first";
+  EXPECT_THAT(directions_of({{0}, 2, scanner_pi / 2, scanner_pi / 2}), ElementsAre(to_right, to_right));
 }
 
 TEST(Scanner, AWholeTurnRepeatsNoRay) {
-  EXPECT_THAT(directions_of({{0}, 4}), ElementsAre(ahead, right, behind, left));
-  EXPECT_THAT(directions_of({{0}, 4, -scanner_pi, scanner_pi}), ElementsAre(behind, left, ahead, right));
-  EXPECT_THAT(directions_of({{0}, 4, 2 * scanner_pi, 0}), ElementsAre(ahead, left, behind, right));
+  EXPECT_THAT(directions_of({{0}, 4}), ElementsAre(to_ahead, to_right, to_behind, to_left));
+  EXPECT_THAT(directions_of({{0}, 4, -scanner_pi, scanner_pi}), ElementsAre(to_behind, to_left, to_ahead, to_right));
+  EXPECT_THAT(directions_of({{0}, 4, 2 * scanner_pi, 0}), ElementsAre(to_ahead, to_left, to_behind, to_right));
   // In degrees the ends may be off by a rounding.
   EXPECT_THAT(directions_of({{0}, 4, glm::radians(-90.0), glm::radians(270.0)}),
-              ElementsAre(left, ahead, right, behind));
+              ElementsAre(to_left, to_ahead, to_right, to_behind));
 }
 
 /// A wall of 2 by 2, one unit ahead of a scanner, and another one behind it at three units.
@@ -94,13 +94,13 @@ TEST(Scanner, RangesOutsideOfTheLimitsAreNothingMet) {
   const RangeScan met = scan(walls.index, camera);
   EXPECT_EQ(met.ranges[1], 1.0f) << "the limits themselves are in";
   for (const std::size_t i : {0u, 2u, 3u, 7u}) {
-    EXPECT_EQ(met.ranges[i], beyond);
+    EXPECT_EQ(met.ranges[i], nothing_met);
     EXPECT_EQ(met.primitives[i], no_primitive);
   }
   EXPECT_TRUE(std::isnan(incidence_angles(met, walls.surfaces)[0]));
   camera.nearest = 1.5;
   camera.farthest = 9;
-  EXPECT_EQ(scan(walls.index, camera).ranges[1], beyond) << "what is too near hides the wall behind it";
+  EXPECT_EQ(scan(walls.index, camera).ranges[1], nothing_met) << "what is too near hides the wall behind it";
 }
 
 TEST(Scanner, LimitsHoldForCurvedSurfaces) {
@@ -110,7 +110,7 @@ TEST(Scanner, LimitsHoldForCurvedSurfaces) {
   RayCamera camera{RayPattern{{glm::vec3(0, 0, -1)}}, look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0})};
   EXPECT_EQ(scan(index, camera).scan.ranges[0], 4.0f);
   camera.nearest = 4.5;
-  EXPECT_EQ(scan(index, camera).scan.ranges[0], beyond);
+  EXPECT_EQ(scan(index, camera).scan.ranges[0], nothing_met);
   EXPECT_EQ(scan(index, camera).scan.primitives[0], no_primitive);
 }
 
