@@ -346,7 +346,7 @@ TEST_F(Report, WhatTheFileHidesIsSaid) {
   EXPECT_EQ(report["hidden_by_file"], json({"a < lid"}));
   EXPECT_EQ(run({"report", "two.gltf", "--quiet", "--why", "a < lid"}).out, "a < lid is hidden by the file.\n");
   EXPECT_EQ(succeed(command + " --why seen --json").json()["hidden_by_file"], json::array());
-  expect_failure(command + " --why lid", 2, "--why: two.gltf has no object lid");
+  expect_failure(command + " --why lid", 2, "two.gltf has no object lid");
   succeed(command + " -o page.html");
   EXPECT_THAT(read("page.html"), HasSubstr("Hidden by the file, and not drawn: a &lt; lid</p>"));
   // A scene file tells of which of its objects it is.
