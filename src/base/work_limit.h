@@ -13,7 +13,7 @@ namespace frontmost {
 /// The work of all threads that share it.
 class WorkLimit {
  public:
-  /// Borrows the execution. A step takes about ten nanoseconds.
+  /// Borrows the watch. A step takes about ten nanoseconds, unless its owner says otherwise.
   WorkLimit(const Execution& execution, std::uint64_t most) : execution_(execution), most_(most) {}
 
   /// Counts steps, and asks whether to stop. To be called once in some ten thousand steps. `too_much()` makes the text
@@ -25,7 +25,7 @@ class WorkLimit {
   }
 
  private:
-  const Execution& execution_;
+  Execution execution_;
   std::uint64_t most_;
   std::atomic<std::uint64_t> done_{0};
 };

@@ -19,6 +19,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "base/work_limit.h"
 #include "lines/crossings/crossings.h"
 #include "lines/hiding/hidden_parts.h"
 #include "lines/lists.h"
@@ -30,7 +31,11 @@ namespace {
 using namespace lines_detail;
 
 constexpr std::size_t kEdgesPerPart = 64, kEdgesPerPoll = 16;
-constexpr std::size_t kMostParts = std::size_t(1) << 26, kPartsPerTally = 1 << 16;
+constexpr std::size_t kPartsPerTally = 1 << 16;
+/// So many parts, and a few more for each edge: five times what a city has.
+constexpr std::size_t kMostParts = std::size_t(1) << 21, kMostPartsOfEdge = 4;
+/// Of ten nanoseconds each, and a few more for each edge: sixty times what a city takes.
+constexpr std::uint64_t kMostSteps = std::uint64_t(1) << 31, kMostStepsOfEdge = 64;
 /// The Buffers of a drawing together, and rather more: 260 for the bunny.
 constexpr std::size_t kBytesPerTriangle = 400;
 constexpr double kCutFrom = 0.3;  // of the progress
@@ -85,16 +90,19 @@ void cut_all(const Candidates& candidates, const EdgeOccluders& occlusion, const
   std::vector<std::vector<DrawnPart>> lists((count + kEdgesPerPart - 1) / kEdgesPerPart);
   Pool<EdgeCutter> cutters;
   std::atomic<std::size_t> done{0}, parts{0};
+  const std::size_t most_parts = kMostParts + kMostPartsOfEdge * count;
+  WorkLimit work(execution, kMostSteps + kMostStepsOfEdge * count);
   const auto cut = [&](std::vector<DrawnPart>& list, std::size_t begin, std::size_t end) {
     const auto cutter = cutters.borrow([&] { return std::make_unique<EdgeCutter>(occlusion); });
     std::size_t counted = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      if (i % kEdgesPerPoll == 0) check_cancelled(execution);
+      if (i % kEdgesPerPoll == 0)
+        work.add(cutter->take_steps(), [] { return std::string("lines: too many triangles lie over each other"); });
       cutter->cut(candidates.sighted(i), std::uint32_t(i), list);
       // An edge alone may have as many as there are triangles.
       if (list.size() - counted < kPartsPerTally && i + 1 < end) continue;
-      if ((parts += list.size() - counted) > kMostParts)
-        throw Error(ErrorCode::limit_exceeded, "lines: more than " + std::to_string(kMostParts) + " parts of edges");
+      if ((parts += list.size() - counted) > most_parts)
+        throw Error(ErrorCode::limit_exceeded, "lines: more than " + std::to_string(most_parts) + " parts of edges");
       counted = list.size();
     }
     report_progress(execution, "lines", 1 - (1 - kCutFrom) * double(count - (done += end - begin)) / double(count));
@@ -108,6 +116,17 @@ void cut_all(const Candidates& candidates, const EdgeOccluders& occlusion, const
     }
   });
   drawing.parts = joined(lists, execution);
+}
+
+/// Adds to what a limit says where most triangles lie over each other.
+Error with_place(const Error& error, const OccluderGrid& grid, const WeldedMesh& mesh, const Surfaces& surfaces) {
+  const OccluderGrid::Crowd crowd = grid.largest_crowd();
+  if (error.code() != ErrorCode::limit_exceeded || crowd.count == 0) return error;
+  const PrimitiveId id = mesh.ids[crowd.triangle];
+  return {error.code(), error.what() + std::string(": most of them, ") + std::to_string(crowd.count) +
+                            ", in one place, among them face " + std::to_string(surfaces.source(id).triangle) +
+                            " of object " + std::to_string(surfaces.source(id).instance) +
+                            "; leave out what lies there many times"};
 }
 
 /// Closes the mesh's seams.
@@ -134,20 +153,24 @@ Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions
   if (!options.counts_hidden)
     for (const std::uint32_t twin : features.twins) seen.facing[twin] = 0;
   report_progress(execution, "lines", 0.1);
-  std::vector<Crossing> crossings;
-  if (options.intersections) crossings = find_crossings(mesh, features, execution);
-  std::erase_if(crossings, [&](const Crossing& crossing) {
-    return meet_at_gap(mesh, features.continued, crossing.left, crossing.right);
-  });
-  const Candidates candidates(mesh, std::move(features.edges), std::move(crossings));
-  report_progress(execution, "lines", 0.2);
   const OccluderGrid grid(seen, view, options.counts_hidden, execution);
-  report_progress(execution, "lines", kCutFrom);
-
+  report_progress(execution, "lines", 0.2);
   Drawing drawing;
   drawing.view = view;
-  const ShadowKernels kernels = shadow_kernels(execution.isa);
-  cut_all(candidates, {mesh, sight, view, grid, kernels, options.counts_hidden, options.outlines}, execution, drawing);
+  try {
+    std::vector<Crossing> crossings;
+    if (options.intersections) crossings = find_crossings(mesh, features, execution);
+    std::erase_if(crossings, [&](const Crossing& crossing) {
+      return meet_at_gap(mesh, features.continued, crossing.left, crossing.right);
+    });
+    const Candidates candidates(mesh, std::move(features.edges), std::move(crossings));
+    report_progress(execution, "lines", kCutFrom);
+    const ShadowKernels kernels = shadow_kernels(execution.isa);
+    cut_all(candidates, {mesh, sight, view, grid, kernels, options.counts_hidden, options.outlines}, execution,
+            drawing);
+  } catch (const Error& error) {
+    throw with_place(error, grid, mesh, surfaces);
+  }
   return drawing;
 }
 

@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "frontmost/lines.h"
+#include "support/costly_meshes.h"
 #include "support/effort.h"
-#include "support/meshes.h"
+#include "support/refusal.h"
 
 namespace frontmost::test {
 namespace {
@@ -137,6 +138,29 @@ TEST(Crowds, AskOftenWhetherToStop) {
     for (const std::size_t last : {std::size_t(1), asked / 3, asked / 2, asked - 1, asked})
       (void)questions_of(meshes[i], last, edges);
   }
+}
+
+/// What drawing a mesh from above says where it is refused.
+std::string refusal_from_above(const Mesh& mesh, int threads) {
+  const Scene scene = scene_of(mesh);
+  View view;
+  view.width = view.height = 640;
+  view.world_from_eye = look_at({0, 0, 10}, {0, 0, 0}, {0, 1, 0});
+  view.projection = make_orthographic(-2, 2, -2, 2, {1, 20});
+  return refusal_of(ErrorCode::limit_exceeded,
+                    [&] { (void)draw_lines(Surfaces(scene), view, {}, {.threads = threads}); });
+}
+
+/// Needles that all pass through each other have more segments than are kept; the error says where.
+TEST(Crowds, OfMoreSegmentsThanAreKeptAreRefused) {
+  const Mesh mesh = slivers_through_point(1600);
+  const std::string refusal = refusal_from_above(mesh, 1);
+  EXPECT_EQ(
+      refusal.find("lines: more than 1074176 segments where triangles pass through each other: most of them, 1600, "
+                   "in one place, among them face "),
+      0u)
+      << refusal;
+  EXPECT_EQ(refusal_from_above(mesh, 4), refusal);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <tuple>
 
 #include "base/parallel.h"
+#include "base/work_limit.h"
 #include "lines/crossings/box_tree.h"
 #include "lines/lists.h"
 #include "view/sight.h"
@@ -21,6 +22,8 @@ namespace frontmost::lines_detail {
 namespace {
 
 constexpr std::size_t kGroupsPerPart = 16, kPairsPerPoll = 16384;
+/// A pair takes as long as so many steps of ten nanoseconds, and all may take so many. A city has 42 thousand segments.
+constexpr std::uint64_t kStepsOfPair = 8, kMostSteps = std::uint64_t(1) << 30, kMostStepsOfTriangle = 256;
 
 /// A triangle with its vertices in ascending order, so that whoever asks its plane gets the same bits.
 class CrossedFace {
@@ -189,14 +192,17 @@ bool is_same_line(const Crossing& a, const Crossing& b) {
 /// Segments of all threads, so that their number is known before their memory is asked for.
 class Tally {
  public:
+  explicit Tally(std::size_t triangles) : most_(kMost + kMostOfTriangle * triangles) {}
+
   void add(std::size_t count) {
-    if ((all_ += count) > kMost)
+    if ((all_ += count) > most_)
       throw Error(ErrorCode::limit_exceeded,
-                  "lines: more than " + std::to_string(kMost) + " segments where triangles pass through each other");
+                  "lines: more than " + std::to_string(most_) + " segments where triangles pass through each other");
   }
 
  private:
-  static constexpr std::size_t kMost = std::size_t(1) << 25;
+  static constexpr std::size_t kMost = std::size_t(1) << 20, kMostOfTriangle = 16;
+  std::size_t most_;
   std::atomic<std::size_t> all_{0};
 };
 
@@ -229,7 +235,8 @@ std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& fea
   const std::size_t parts = (tree.group_count() + kGroupsPerPart - 1) / kGroupsPerPart;
   std::vector<std::vector<Crossing>> crossings(parts);
   std::vector<std::vector<EdgeContact>> contacts(parts);
-  Tally tally;
+  Tally tally(mesh.triangles.size());
+  WorkLimit work(execution, kMostSteps + kMostStepsOfTriangle * mesh.triangles.size());
   parallel_for(execution, tree.group_count(), kGroupsPerPart, [&](std::size_t begin, std::size_t end) {
     Found found;
     std::size_t counted = 0, asked = 0;
@@ -243,7 +250,10 @@ std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& fea
       tree.visit_pairs(group, [&](std::uint32_t a, std::uint32_t b) {
         add_crossing(mesh, std::min(a, b), std::max(a, b), found);
         if (++asked % kPairsPerPoll != 0) return;
-        check_cancelled(execution);
+        work.add(kStepsOfPair * kPairsPerPoll, [] {
+          return std::string(
+              "lines: too many triangles come near each other to find where they pass through each other");
+        });
         count();
       });
     }

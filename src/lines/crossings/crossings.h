@@ -30,7 +30,8 @@ struct Crossing {
 /// exact signs, and those of add_contacts(). Ends are computed from the edge and the plane that they are on, so that
 /// the next segment along a surface begins where one ends, to the bit. Triangles that are there twice give each segment
 /// once. In the order of their ends. O(triangles log triangles + pairs whose boxes touch).
-/// \throws Error limit_exceeded for more than 2^25 segments.
+/// \throws Error limit_exceeded for more than 2^20 segments and 16 for each triangle, or more than 2^27 pairs and 32
+/// for each triangle.
 [[nodiscard]] std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features,
                                                    const Execution& execution);
 

@@ -130,6 +130,7 @@ PartInCell seen_in(const PassedCell& cell, const Interval& part, const EdgeQuest
 bool hold_against_batch(const EdgeQuestion& question, EdgeSearch& search) {
   const SightedEdge& edge = question.edge.edge;
   HiddenBatch found;
+  ++search.batches;
   (question.hides() ? question.o.kernels.hide : question.o.kernels.cover)(search.batch, edge, question.o.sight, found);
   for (std::uint32_t bits = found.hides | found.open; bits != 0; bits &= bits - 1) {
     const auto i = std::size_t(std::countr_zero(bits));

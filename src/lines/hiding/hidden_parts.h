@@ -35,6 +35,7 @@ struct EdgeSearch {
   std::array<const Occluder*, 64> asked{};
   std::vector<std::pair<double, int>> changes;  ///< where one more or one less hides
   std::uint64_t boxes = 0;                      ///< how many boxes of occluders were looked at, in all edges
+  std::uint64_t batches = 0;                    ///< how many batches of occluders were held against edges
 };
 
 /// Cuts one edge after another. Not for several threads at once.
@@ -47,10 +48,17 @@ class EdgeCutter {
 
   /// How many boxes of occluders all edges so far were held against: what the time goes with.
   [[nodiscard]] std::uint64_t boxes_asked() const { return search_.boxes; }
+  /// What that and all else took since the last call, in steps of about ten nanoseconds.
+  [[nodiscard]] std::uint64_t take_steps() {
+    const std::uint64_t steps = search_.boxes / kBoxesInStep + search_.batches * kStepsOfBatch;
+    return steps - std::exchange(told_, steps);
+  }
 
  private:
+  static constexpr std::uint64_t kBoxesInStep = 16, kStepsOfBatch = 16;
   const EdgeOccluders o_;
   EdgeSearch search_;  ///< kept for its memory
+  std::uint64_t told_ = 0;
 };
 
 }  // namespace frontmost::lines_detail

@@ -153,6 +153,14 @@ void OccluderGrid::divide_crowds(const GridPlan& plan, const CrowdLimits& limits
       }
 }
 
+OccluderGrid::Crowd OccluderGrid::largest_crowd() const {
+  Crowd crowd;
+  for (std::size_t cell = 0; cell < cells_.count(); ++cell)
+    if (const std::size_t count = first_[cell + 1] - first_[cell]; count > crowd.count)
+      crowd = {count, occluder(first_[cell]).triangle};
+  return crowd;
+}
+
 /// Of what was set before, as much stays as there is.
 void OccluderGrid::set_entry_count(std::size_t count) {
   const auto resize = [](auto& values, std::size_t size) {

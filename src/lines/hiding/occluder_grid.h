@@ -70,6 +70,13 @@ class OccluderGrid {
   /// Cells a pixel.
   [[nodiscard]] double scale() const { return scale_; }
 
+  /// The cell with most entries, and the triangle of its nearest.
+  struct Crowd {
+    std::size_t count = 0;
+    std::uint32_t triangle = no_index;
+  };
+  [[nodiscard]] Crowd largest_crowd() const;
+
  private:
   static constexpr std::size_t kMany = 512, kManyInPart = 32;
   [[nodiscard]] bool has_sides(std::size_t cell) const {
