@@ -2,6 +2,7 @@
 #include "shade/shadow/light_shadows.h"
 
 #include <algorithm>
+#include <string>
 
 #include "shade/layers/opaque_part.h"
 #include "shade/shadow/light_view.h"
@@ -147,7 +148,16 @@ void LightShadows::aim_rays(const ShadedPicture& picture, const Execution& execu
     if (!index_) index_.emplace(surfaces, execution);
     index = &*index_;
   }
-  rays_.emplace(*index, picture.samples, picture.input.visible.view, execution.isa);
+  const View& view = picture.input.visible.view;
+  // A ray takes about a hundred nanoseconds. A picture of 1920 x 1080 pixels of four samples has 2^23 for each light.
+  constexpr std::uint64_t kMostRays = std::uint64_t(1) << 27, kMostRaysOfSample = 16;
+  const std::uint64_t most = kMostRays + kMostRaysOfSample * view.pixel_count() * picture.samples.size();
+  rays_.emplace(
+      *index, picture.samples, view, execution,
+      RayShadows::Limit{most, "shade: shadows of " + std::to_string(lights_->far.size() + lights_->near.size()) +
+                                  " lights by rays are more than " + std::to_string(most) +
+                                  " rays; ask for shadows by maps, for fewer lights or samples, or for a "
+                                  "smaller picture"});
   if (opaque_) rays_->forget_ids();
 }
 

@@ -21,8 +21,15 @@ bool lets_light_through(const View& view, const RayIndex& index) {
 
 }  // namespace
 
-RayShadows::RayShadows(const RayIndex& index, std::span<const glm::ivec2> samples, const View& view, Isa isa)
-    : index_(index), eye_(view.eye()), is_one_way_(lets_light_through(view, index)), isa_(isa), samples_(samples) {}
+RayShadows::RayShadows(const RayIndex& index, std::span<const glm::ivec2> samples, const View& view,
+                       const Execution& execution, Limit limit)
+    : index_(index),
+      eye_(view.eye()),
+      is_one_way_(lets_light_through(view, index)),
+      isa_(execution.isa),
+      samples_(samples),
+      rays_(execution, limit.most),
+      too_many_(std::move(limit.error)) {}
 
 /// Points that wait to be asked about together, and the fragments that they are of.
 class RayShadows::LightQuestions {
@@ -38,6 +45,7 @@ class RayShadows::LightQuestions {
 
   /// Answers come in whole samples, which floats add exactly.
   void ask() {
+    shadows_.count(count_);
     std::array<std::uint8_t, kAtOnce> is_lit;
     raycast_detail::find_lit(shadows_.index_.tree(), {points_.data(), count_}, {to_light_, shadows_.is_one_way_},
                              {is_lit.data(), count_}, shadows_.isa_);
@@ -75,6 +83,7 @@ class RayShadows::LampQuestions {
   }
 
   void ask() {
+    shadows_.count(count_);
     std::array<RayHit, kAtOnce> hits;
     raycast_detail::walk_batch(shadows_.index_.tree(), {queries_.data(), count_}, raycast_detail::Want::closest,
                                {hits.data(), count_}, shadows_.isa_);

@@ -10,8 +10,10 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
+#include "base/work_limit.h"
 #include "frontmost/raycast.h"
 #include "shade/batch.h"
 #include "shade/geometry/triangle_setup.h"
@@ -28,9 +30,16 @@ struct AskedFragments {
 
 class RayShadows {
  public:
-  /// Borrows both. The index holds what throws shadows; `samples` of a pixel are in 1/256 of it. The view is that of
-  /// the picture, or a pinhole where the picture is a scan.
-  RayShadows(const RayIndex& index, std::span<const glm::ivec2> samples, const View& view, Isa isa);
+  /// How many rays a picture may take, and what the error is that says there are more.
+  struct Limit {
+    std::uint64_t most;
+    std::string error;
+  };
+
+  /// Borrows all but the limit. The index holds what throws shadows; `samples` of a pixel are in 1/256 of it. The view
+  /// is that of the picture, or a pinhole where the picture is a scan.
+  RayShadows(const RayIndex& index, std::span<const glm::ivec2> samples, const View& view, const Execution& execution,
+             Limit limit);
 
   /// The ids of the index are not those of what is shaded. Slower: a triangle is then known by its corners.
   void forget_ids() { knows_ids_ = false; }
@@ -39,6 +48,7 @@ class RayShadows {
   void ask_at_points() { at_points_ = true; }
 
   /// Fills batch.shadow where it is asked for: the part of each fragment's samples that the light reaches.
+  /// \throws Error limit_exceeded.
   void find_light(const DirectLight& light, const AskedFragments& asked) const;
   void find_light(const Lamp& lamp, const AskedFragments& asked) const;
 
@@ -50,12 +60,18 @@ class RayShadows {
   template <class Questions, class MayFace>
   void ask(Questions& questions, const MayFace& may_face, const AskedFragments& asked) const;
 
+  void count(std::size_t rays) const {
+    rays_.add(rays, [this] { return too_many_; });
+  }
+
   const RayIndex& index_;
   glm::dvec3 eye_;
   bool is_one_way_;  ///< light comes through one-sided triangles from behind
   Isa isa_;
   bool knows_ids_ = true, at_points_ = false;
   std::span<const glm::ivec2> samples_;
+  mutable WorkLimit rays_;
+  std::string too_many_;
 };
 
 }  // namespace frontmost::shading
