@@ -231,7 +231,7 @@ def near(what, home, away, move, least=0):
 def read_points(path):
     header, body = path.read_bytes().split(b"end_header\n", 1)
     double = b"property double x" in header
-    row = struct.Struct("<3df4I" if double else "<3ff4I")
+    row = struct.Struct("<3df4If" if double else "<3ff4If")
     return list(row.iter_unpack(body))
 
 

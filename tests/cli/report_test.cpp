@@ -283,7 +283,7 @@ TEST_F(Report, ASceneOfBopThatCannotBeWholeIsNotThere) {
   expect_failure(std::string("report squares.obj --bop taken") + view, 1, "taken/scene_gt.json: cannot replace");
   EXPECT_FALSE(exists("taken/mask/000000_000000.png"));
   write("blocked/mask", "in the way");
-  expect_failure(std::string("report squares.obj --bop blocked") + view, 1, "blocked/mask: is no folder");
+  expect_failure(std::string("report squares.obj --bop blocked") + view, 1, "blocked/mask: not a folder");
   EXPECT_FALSE(exists("blocked/scene_gt.json"));
 }
 
