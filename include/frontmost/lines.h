@@ -94,8 +94,8 @@ struct Drawing {
 /// for that of them for which it comes first by its kind; two of one object may have triangles in common as well. The
 /// result is the same to the bit for any number of threads and every instruction set. \throws Error as validate(view)
 /// does, bad_argument for an angle that is out of range, and limit_exceeded for more than 2^20 segments of
-/// intersections and 16 for each triangle, 2^21 parts and 4 for each edge, or what takes more than about 2^31 steps:
-/// many times what a city takes.
+/// intersections and 16 for each triangle, 2^21 parts and 4 for each edge, or work of about 20 s: many times what a
+/// city takes.
 [[nodiscard]] Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions& options = {},
                                  const Execution& execution = {});
 

@@ -13,7 +13,7 @@ namespace frontmost {
 /// The work of all threads that share it.
 class WorkLimit {
  public:
-  /// Borrows the watch. A step takes about ten nanoseconds, unless its owner says otherwise.
+  /// Borrows what watches the execution. The owner says what a step is.
   WorkLimit(const Execution& execution, std::uint64_t most) : execution_(execution), most_(most) {}
 
   /// Counts steps, and asks whether to stop. To be called once in some ten thousand steps. `too_much()` makes the text

@@ -34,8 +34,8 @@ constexpr std::size_t kEdgesPerPart = 64, kEdgesPerPoll = 16;
 constexpr std::size_t kPartsPerTally = 1 << 16;
 /// So many parts, and a few more for each edge: five times what a city has.
 constexpr std::size_t kMostParts = std::size_t(1) << 21, kMostPartsOfEdge = 4;
-/// Of ten nanoseconds each, and a few more for each edge: sixty times what a city takes.
-constexpr std::uint64_t kMostSteps = std::uint64_t(1) << 31, kMostStepsOfEdge = 64;
+/// Boxes of triangles that edges are held against, at 0.6 nanoseconds each: sixty times what a city takes.
+constexpr std::uint64_t kMostBoxes = std::uint64_t(1) << 35, kMostBoxesOfEdge = 1024;
 /// The Buffers of a drawing together, and rather more: 260 for the bunny.
 constexpr std::size_t kBytesPerTriangle = 400;
 constexpr double kCutFrom = 0.3;  // of the progress
@@ -91,13 +91,15 @@ void cut_all(const Candidates& candidates, const EdgeOccluders& occlusion, const
   Pool<EdgeCutter> cutters;
   std::atomic<std::size_t> done{0}, parts{0};
   const std::size_t most_parts = kMostParts + kMostPartsOfEdge * count;
-  WorkLimit work(execution, kMostSteps + kMostStepsOfEdge * count);
+  WorkLimit work(execution, kMostBoxes + kMostBoxesOfEdge * count);
+  const auto tell = [&](EdgeCutter& cutter) {
+    work.add(cutter.take_work(), [] { return std::string("lines: too many triangles lie over each other"); });
+  };
   const auto cut = [&](std::vector<DrawnPart>& list, std::size_t begin, std::size_t end) {
     const auto cutter = cutters.borrow([&] { return std::make_unique<EdgeCutter>(occlusion); });
     std::size_t counted = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      if (i % kEdgesPerPoll == 0)
-        work.add(cutter->take_steps(), [] { return std::string("lines: too many triangles lie over each other"); });
+      if (i % kEdgesPerPoll == 0) tell(*cutter);
       cutter->cut(candidates.sighted(i), std::uint32_t(i), list);
       // An edge alone may have as many as there are triangles.
       if (list.size() - counted < kPartsPerTally && i + 1 < end) continue;
@@ -105,6 +107,7 @@ void cut_all(const Candidates& candidates, const EdgeOccluders& occlusion, const
         throw Error(ErrorCode::limit_exceeded, "lines: more than " + std::to_string(most_parts) + " parts of edges");
       counted = list.size();
     }
+    tell(*cutter);
     report_progress(execution, "lines", 1 - (1 - kCutFrom) * double(count - (done += end - begin)) / double(count));
   };
   // The edges are listed while others are cut.

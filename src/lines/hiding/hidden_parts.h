@@ -48,14 +48,14 @@ class EdgeCutter {
 
   /// How many boxes of occluders all edges so far were held against: what the time goes with.
   [[nodiscard]] std::uint64_t boxes_asked() const { return search_.boxes; }
-  /// What that and all else took since the last call, in steps of about ten nanoseconds.
-  [[nodiscard]] std::uint64_t take_steps() {
-    const std::uint64_t steps = search_.boxes / kBoxesInStep + search_.batches * kStepsOfBatch;
-    return steps - std::exchange(told_, steps);
+  /// The work since the last call, in boxes that were looked at. A batch that was held against an edge takes as long as
+  /// 256 of them.
+  [[nodiscard]] std::uint64_t take_work() {
+    const std::uint64_t work = search_.boxes + 256 * search_.batches;
+    return work - std::exchange(told_, work);
   }
 
  private:
-  static constexpr std::uint64_t kBoxesInStep = 16, kStepsOfBatch = 16;
   const EdgeOccluders o_;
   EdgeSearch search_;  ///< kept for its memory
   std::uint64_t told_ = 0;

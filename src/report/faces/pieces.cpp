@@ -13,7 +13,7 @@ namespace {
 /// Keys that differ by no more than this share of themselves may be equal: doubles put them to some 2^-45.
 constexpr double kAlike = 1.0 / (1ll << 36);
 /// More faces than this are cut in an order of their own: it takes time to find, and pays where most overlap.
-constexpr std::size_t kManyFaces = 128;
+constexpr std::size_t kManyToCut = 128;
 
 /// Steps that things take, of about ten nanoseconds: to look at a face for a piece, to cut by it or to tell what is
 /// nearer, to find by exact signs whether it lies in a plane, and to keep what is seen.
@@ -74,7 +74,7 @@ void PieceCutter::cut(const CellBox& box, std::span<const FaceInBox> list, std::
     candidates_.back().plane_number = std::uint32_t(reaches_.size());
     reaches_.push_back({found.x, found.y, face.nearest});
   }
-  if (candidates_.size() > kManyFaces) order_by_planes(box);
+  if (candidates_.size() > kManyToCut) order_by_planes(box);
   pieces_.emplace_back(box);
   while (!pieces_.empty()) {
     Piece piece = pieces_.back();
