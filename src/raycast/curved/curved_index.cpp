@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "raycast/curved/curved_parts.h"
+#include "surfaces/material_sides.h"
 
 namespace frontmost {
 
