@@ -56,16 +56,17 @@ TEST_F(Messages, OfSight) {
 TEST_F(Messages, OfLidar) {
   write("empty.txt", "# nothing\n\n");
   write("two.txt", "1 2\n");
-  expect_usage({{"lidar cube.stl -o a.ply", "give --from X,Y,Z, where the scanner stands"},
-                {"lidar cube.stl --from 0,0,9", "nothing to do: give -o FILE or --json"},
-                {"lidar cube.stl --from 0,0,9 -o a.png", "a.png: the suffix names no format; use .ply, .exr or .npy"},
-                {"lidar cube.stl --from 0,0,9 --json --elevations 5,-5", "--elevations: the lowest comes first"},
-                {"lidar cube.stl --from 0,0,9 --json --elevations 5,91", "--elevations: 91 is not between -90 and 90"},
-                {"lidar cube.stl --from 0,0,9 --json --rings 0", "--rings: 0 is not between 1 and 16384"},
-                {"lidar cube.stl --from 0,0,9 --json --steps 1.5", "--steps: 1.5 is not a whole number"},
-                {"lidar cube.stl --from 0,0,9 --json --directions two.txt --steps 5",
-                 "--directions and --rings, --steps, --elevations are two ways to say it"},
-                {"lidar cube.stl --from 0,0,9 -o a.ply -o a.ply", "a.ply: would be written twice"}});
+  expect_usage(
+      {{"lidar cube.stl -o a.ply", "give --from X,Y,Z, where the scanner stands"},
+       {"lidar cube.stl --from 0,0,9", "nothing to do: give -o FILE or --json"},
+       {"lidar cube.stl --from 0,0,9 -o a.png", "a.png: the suffix names no format; use .ply, .exr or .npy"},
+       {"lidar cube.stl --from 0,0,9 --json --elevations 5,-5", "--elevations: the lowest comes first"},
+       {"lidar cube.stl --from 0,0,9 --json --elevations 5,91", "--elevations: 91 is not between -90 and 90"},
+       {"lidar cube.stl --from 0,0,9 --json --rings 0", "--rings: 0 is not between 1 and 16384"},
+       {"lidar cube.stl --from 0,0,9 --json --steps 1.5", "--steps: 1.5 is not a whole number"},
+       {"lidar cube.stl --from 0,0,9 --json --directions two.txt --steps 5",
+        "--directions and --rings, --steps, --azimuths, --elevations, --ring-elevations are two ways to say it"},
+       {"lidar cube.stl --from 0,0,9 -o a.ply -o a.ply", "a.ply: would be written twice"}});
   expect_could_not({{"lidar cube.stl --from 0,0,9 --json --directions empty.txt", "empty.txt: holds no direction"},
                     {"lidar cube.stl --from 0,0,9 --json --directions two.txt",
                      "two.txt: line 1: three numbers make a direction; there are 2"},
