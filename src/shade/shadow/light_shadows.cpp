@@ -150,7 +150,7 @@ void LightShadows::aim_rays(const ShadedPicture& picture, const Execution& execu
   }
   const View& view = picture.input.visible.view;
   // A ray takes about a hundred nanoseconds. A picture of 1920 x 1080 pixels of four samples has 2^23 for each light.
-  constexpr std::uint64_t kMostRays = std::uint64_t(1) << 27, kMostRaysOfSample = 16;
+  constexpr std::uint64_t kMostRays = std::uint64_t(1) << 27, kMostRaysOfSample = 8;
   const std::uint64_t most = kMostRays + kMostRaysOfSample * view.pixel_count() * picture.samples.size();
   rays_.emplace(
       *index, picture.samples, view, execution,
