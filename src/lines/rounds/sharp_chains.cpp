@@ -40,8 +40,12 @@ using ChainEnd = std::uint32_t;
 
 class Chainer {
  public:
-  Chainer(const SmoothMesh& mesh, SharpChains& all, double widest)
-      : mesh_(mesh), edges_(all.edges), chains_(all.chains), next_(2 * edges_.size(), no_index), widest_(widest) {}
+  Chainer(const SmoothMesh& mesh, SharpChains& all, double least_cosine)
+      : mesh_(mesh),
+        edges_(all.edges),
+        chains_(all.chains),
+        next_(2 * edges_.size(), no_index),
+        least_cosine_(least_cosine) {}
 
   void run(const Execution& execution) {
     join_all(execution);
@@ -96,7 +100,7 @@ class Chainer {
         // An edge of a surface that is there twice leads nowhere else.
         if (vertex(ends[i].second ^ 1) == vertex(ends[k].second ^ 1)) continue;
         const double cosine = -glm::dot(direction(ends[i].second), direction(ends[k].second));
-        if (cosine >= widest_) pairs.push_back({cosine, ends[k].second, ends[i].second});
+        if (cosine >= least_cosine_) pairs.push_back({cosine, ends[k].second, ends[i].second});
       }
     std::sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) {
       return p.cosine != q.cosine ? p.cosine > q.cosine : p.a != q.a ? p.a < q.a : p.b < q.b;
@@ -129,17 +133,17 @@ class Chainer {
   const std::vector<SharpEdge>& edges_;
   std::vector<SharpChain>& chains_;
   std::vector<ChainEnd> next_;  ///< by end the one that it goes on from, or no_index
-  double widest_;               ///< the least cosine of a turn
+  double least_cosine_;         ///< of a turn
 };
 
 }  // namespace
 
-SharpChains sharp_chains(const SmoothMesh& mesh, const Execution& execution, double widest) {
+SharpChains sharp_chains(const SmoothMesh& mesh, const Execution& execution, double least_cosine) {
   SharpChains all;
   all.edges = sharp_edges(mesh, execution);
   if (all.edges.size() >= std::size_t(1) << 31)
     throw Error(ErrorCode::limit_exceeded, "rounds: more than 2147483647 sharp edges");
-  Chainer(mesh, all, widest).run(execution);
+  Chainer(mesh, all, least_cosine).run(execution);
   return all;
 }
 

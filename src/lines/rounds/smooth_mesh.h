@@ -56,8 +56,8 @@ struct SharpChains {
 inline constexpr std::size_t kFewestSides = 4;  ///< of an arc
 
 /// Each edge is in one chain, but for those of chains that are shorter than an arc. Where several meet, those go on in
-/// each other that turn least, and none whose turn has a cosine below `widest`. O(edges log edges at a vertex).
+/// each other that turn least, and none whose turn has a cosine below `least_cosine`. O(edges log edges at a vertex).
 [[nodiscard]] SharpChains sharp_chains(const SmoothMesh& mesh, const Execution& execution,
-                                       double widest = kWidestCosine);
+                                       double least_cosine = kWidestCosine);
 
 }  // namespace frontmost::lines_detail
