@@ -118,8 +118,8 @@ struct VisibleParts {
 /// Near-linear in scenes of bounded depth complexity: n log n to sort, then one test for every two triangles that
 /// overlap on the screen and in depth. They are found by a grid when they are asked for, and not stored: about 200
 /// bytes a triangle, 110 of them the result, whatever overlaps. The result is the same to the bit for any number of
-/// threads. \throws Error as validate(view) does, and limit_exceeded for more than
-/// PainterOptions allow.
+/// threads. \throws Error as validate(view) does, and limit_exceeded for more than PainterOptions allow, or 2^28 tests
+/// and 8,192 for each polygon.
 [[nodiscard]] PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOptions& options = {},
                                  const Execution& execution = {});
 

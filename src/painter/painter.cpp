@@ -28,8 +28,8 @@ constexpr std::size_t kFewer = 64;
 /// be as uneven as there are pieces.
 class Orderer {
  public:
-  Orderer(Pieces& pieces, const PainterOptions& options, const Execution& execution, PaintSteps& steps)
-      : pieces_(pieces), options_(options), steps_(steps), poll_(execution) {}
+  Orderer(Pieces& pieces, const PainterOptions& options, PaintEffort& effort, PaintSteps& steps)
+      : pieces_(pieces), options_(options), steps_(steps), poll_(effort) {}
 
   [[nodiscard]] std::vector<std::uint32_t> order(std::vector<std::uint32_t> members) {
     all_ = members.size();
@@ -155,8 +155,9 @@ PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOpti
   if (pieces.size() > options.most_polygons) refuse_more_polygons_than(options.most_polygons);
   const Copies copies(pieces, members);
   std::vector<std::uint32_t> first;
+  PaintEffort effort(execution, members.size());
   if (options.occluders.may_exist()) {
-    Unhidden left = without_hidden(pieces, members, view, options.occluders, execution);
+    Unhidden left = without_hidden(pieces, members, view, options.occluders, effort);
     members = std::move(left.others);
     first = std::move(left.unoverlapped);
   }
@@ -166,12 +167,12 @@ PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOpti
   } else if (options.method == PaintMethod::centroid) {
     sort_by_centroid(pieces, members);
   } else {
-    members = Orderer(pieces, options, execution, order.steps).order(std::move(members));
+    members = Orderer(pieces, options, effort, order.steps).order(std::move(members));
   }
   report_progress(execution, "painter", 0.9);
   first.insert(first.end(), members.begin(), members.end());
   copies.put_back(pieces, first, options.occluders, options.most_polygons);
-  Poll poll(execution);
+  Poll poll(effort);
   fill(pieces, first, order, poll);
   report_progress(execution, "painter", 1);
   return order;

@@ -67,7 +67,7 @@ struct Unhidden {
 /// Leaves out most that occluders hide together, before anything is in order. Precondition: pieces of different
 /// triangles.
 [[nodiscard]] Unhidden without_hidden(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view,
-                                      const Occluders& occluders, const Execution& execution);
+                                      const Occluders& occluders, PaintEffort& effort);
 
 /// Pieces one after another, in groups: a group of one can be painted whole, those of more have to be cut. Every group
 /// covers only those before it.

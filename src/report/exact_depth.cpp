@@ -71,11 +71,6 @@ DepthBounds BoundedPlane::at(const SampleRay& ray) const {
   return bounds;
 }
 
-bool BoundedPlane::is_within_corners(const SampleRay& ray) const {
-  DepthBounds bounds{};
-  return find_depth(ray, bounds) && bounds.low > limits_low_.high && bounds.high < limits_high_.low;
-}
-
 bool share_a_plane(const std::array<glm::vec3, 3>& a, const std::array<glm::vec3, 3>& b) {
   const auto has_area = [](const std::array<glm::vec3, 3>& corners) {
     const glm::dvec3 from(corners[0]);
@@ -92,6 +87,8 @@ bool share_a_plane(const std::array<glm::vec3, 3>& a, const std::array<glm::vec3
 
 bool has_one_depth(const std::array<glm::vec3, 3>& corners, const SampleRays& rays) {
   const auto is_level = [&](const glm::vec3& corner) {
+    const Bounded step = bounded_dot(rays.forward(), glm::dvec3(0), glm::dvec3(corner) - glm::dvec3(corners[0]));
+    if (std::abs(step.value) > 2 * step.error) return false;
     return dot(exact(rays.forward()), difference(glm::dvec3(corner), glm::dvec3(corners[0]))).sign() == 0;
   };
   return is_level(corners[1]) && is_level(corners[2]);

@@ -50,8 +50,11 @@ class BoundedPlane {
  public:
   BoundedPlane(const std::array<glm::vec3, 3>& corners, const SampleRays& rays);
   [[nodiscard]] DepthBounds at(const SampleRay& ray) const;
-  /// Whether the exact depth is the plane's own at a ray, which no corner limits. False where that is open.
-  [[nodiscard]] bool is_within_corners(const SampleRay& ray) const;
+  /// Whether the exact depth that at() has these bounds of is the plane's own, which no corner limits. False where that
+  /// is open.
+  [[nodiscard]] bool is_within_corners(const DepthBounds& bounds) const {
+    return bounds.low > limits_low_.high && bounds.high < limits_high_.low;
+  }
 
  private:
   /// Without the limits of the corners. \returns false where nothing is known.

@@ -8,7 +8,7 @@
 #include <array>
 #include <optional>
 
-#include "base/parallel.h"
+#include "base/work_limit.h"
 #include "frontmost/precision.h"
 #include "report/exact_depth.h"
 #include "view/screen_cutout.h"
@@ -19,6 +19,12 @@ namespace frontmost {
 namespace {
 
 using namespace zbuffer_detail;
+
+/// The work that some things are, where a sample of a triangle that doubles decide is one step: a triangle in a tile,
+/// two planes, and two depths, both compared exactly.
+constexpr std::uint64_t kStepsOfTriangle = 16, kStepsOfPlanes = 16, kStepsOfDepths = 64;
+/// So that what takes minutes is an error. The triangles of a scene mostly lie in a few tiles, and few over each other.
+constexpr std::uint64_t kMostSteps = std::uint64_t(1) << 29, kMostStepsOfSample = 128, kMostStepsOfTriangle = 1024;
 
 /// What is known of a triangle beside another one: in models with faces in one plane thousands of samples ask.
 struct Rival {
@@ -40,11 +46,14 @@ struct NearestBounds {
 class TileContest {
  public:
   TileContest(NearestBounds& field, const PixelRect& tile) : field_(field), tile_(tile) {}
+  /// What was done, in samples of triangles that doubles decide.
+  [[nodiscard]] std::uint64_t steps() const { return steps_; }
 
   void enter(const TriangleRecord& r) {
     const View& view = field_.answer.view;
     const PixelRect rect = common_part(pixel_rect(r, view.width, view.height), tile_);
     if (rect.is_empty()) return;
+    steps_ += kStepsOfTriangle;
     const BoundedPlane plane(field_.surfaces.corners(r.id), field_.rays);
     const Cutouts* const cutouts = field_.surfaces.placed().cutouts.get();
     std::optional<ScreenCutout> cutout;
@@ -60,6 +69,7 @@ class TileContest {
 
  private:
   void fragment(int x, int y, std::size_t sample, PrimitiveId id, const BoundedPlane& plane) {
+    ++steps_;
     ExactVisible& answer = field_.answer;
     const SampleRay ray = field_.rays.at(x, y, field_.samples[sample]);
     const DepthBounds bounds = plane.at(ray);
@@ -68,7 +78,8 @@ class TileContest {
     DepthBounds& best = field_.bounds[i];
     const bool first = answer.primitives[i] == no_primitive;
     if (!first && bounds.low > best.high) return;
-    const int order = first || bounds.high < best.low ? -1 : compare_exactly(id, answer.primitives[i], plane, ray);
+    const int order =
+        first || bounds.high < best.low ? -1 : compare_exactly(id, answer.primitives[i], plane, bounds, best, ray);
     if (order > 0) return;
     if (order == 0) {
       answer.tied[i] = 1;
@@ -79,11 +90,14 @@ class TileContest {
     best = bounds;
   }
 
-  [[nodiscard]] int compare_exactly(PrimitiveId a, PrimitiveId b, const BoundedPlane& plane, const SampleRay& ray) {
+  /// Of `a`, in a plane with these bounds, and `b`, with those.
+  [[nodiscard]] int compare_exactly(PrimitiveId a, PrimitiveId b, const BoundedPlane& plane, const DepthBounds& bounds,
+                                    const DepthBounds& others, const SampleRay& ray) {
     const Rival& rival = rival_of(a, b);
     if (rival.shares_plane &&
-        (rival.has_one_depth || (plane.is_within_corners(ray) && rival.plane->is_within_corners(ray))))
+        (rival.has_one_depth || (plane.is_within_corners(bounds) && rival.plane->is_within_corners(others))))
       return 0;
+    steps_ += kStepsOfDepths;
     return compare(ExactDepth(field_.surfaces.corners(a), field_.rays, ray),
                    ExactDepth(field_.surfaces.corners(b), field_.rays, ray));
   }
@@ -92,6 +106,7 @@ class TileContest {
   [[nodiscard]] const Rival& rival_of(PrimitiveId a, PrimitiveId b) {
     Rival& rival = rivals_[b % rivals_.size()];
     if (rival.beside == a && rival.id == b) return rival;
+    steps_ += kStepsOfPlanes;
     const auto own = field_.surfaces.corners(a), other = field_.surfaces.corners(b);
     rival.beside = a;
     rival.id = b;
@@ -103,6 +118,7 @@ class TileContest {
 
   NearestBounds& field_;
   PixelRect tile_;
+  std::uint64_t steps_ = 0;
   std::array<Rival, 16> rivals_;  // by the last digits of their ids
 };
 
@@ -115,6 +131,8 @@ ExactVisible find_exact_visible(const Surfaces& surfaces, const View& view, cons
   ExactVisible answer{view, Buffer<PrimitiveId>(count, no_primitive), Buffer<std::uint8_t>(count, 0)};
   NearestBounds field{surfaces, SampleRays(view),          ScreenRays(view), sample_offsets(view.samples),
                       answer,   Buffer<DepthBounds>(count)};
+  WorkLimit work(execution,
+                 kMostSteps + kMostStepsOfSample * count + kMostStepsOfTriangle * surfaces.primitive_count());
   submit(surfaces, view, {0, surfaces.primitive_count()}, execution, [&](const Tile& tile, const OrderedBatch& batch) {
     TileContest contest(field, tile.rect());
     batch.visit_tile(
@@ -124,6 +142,10 @@ ExactVisible find_exact_visible(const Surfaces& surfaces, const View& view, cons
             for (std::size_t i = 0; i < run.count; ++i) contest.enter(batch.small().record(run.first + i));
         },
         [&](const SingleTriangle& single) { contest.enter(single.record); });
+    work.add(contest.steps(), [&] {
+      return "exact depths: too many of " + std::to_string(surfaces.primitive_count()) +
+             " triangles lie over each other in the picture";
+    });
   });
   return answer;
 }

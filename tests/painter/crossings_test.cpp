@@ -66,7 +66,8 @@ TEST(PaintCrossings, NoMoreCutsAreForeseenThanAreMade) {
       Pieces pieces(view);
       const std::vector<std::uint32_t> members = gather(surfaces, view, pieces, {});
       const Execution execution;
-      Poll poll(execution);
+      PaintEffort effort(execution, members.size());
+      Poll poll(effort);
       const double foreseen = least_cuts(pieces, members, poll);
       const auto made = double(painter(surfaces, view, {.method = PaintMethod::bsp}).steps.cuts);
       EXPECT_LE(foreseen, made);

@@ -3,8 +3,10 @@
 
 #include "painter/painted.h"
 #include "painter/trapped.h"
+#include "support/costly_meshes.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
+#include "support/refusal.h"
 
 namespace frontmost::test {
 namespace {
@@ -197,6 +199,15 @@ TEST(Hostile, PartsAndTrapsStopWhenTold) {
   parts.expect_heard([&] { (void)visible_parts(order, Occluders::all(), parts.execution()); });
   const Stopper traps(30);
   traps.expect_heard([&] { (void)trapped(order, 1, Occluders::all(), traps.execution()); });
+}
+
+TEST(TooMuch, StripsOverEachOther) {
+  const Scene scene = scene_of(crossing_strips(10000));
+  const Surfaces surfaces(scene);
+  View view = frame(surfaces, 640, 480);
+  EXPECT_EQ(
+      refusal_of(ErrorCode::limit_exceeded, [&] { (void)painter(surfaces, view, {.occluders = Occluders::all()}); }),
+      "painter: too many of 20000 triangles and pieces overlap in one place of the picture");
 }
 
 }  // namespace

@@ -48,7 +48,8 @@ struct Laid {
   Adjacency adjacency;
 
   [[nodiscard]] std::vector<std::uint32_t> alone(const std::vector<std::uint8_t>& gone = {}) const {
-    const std::vector<std::uint8_t> found = find_unoverlapped(screen, adjacency, gone, {});
+    PaintEffort effort({}, screen.count());
+    const std::vector<std::uint8_t> found = find_unoverlapped(screen, adjacency, gone, effort);
     std::vector<std::uint32_t> places;
     for (std::uint32_t place = 0; place < found.size(); ++place)
       if (found[screen.slot(place)]) places.push_back(place);
@@ -258,7 +259,8 @@ TEST(Alone, OverlapNothingInAnyScene) {
       Random random(seed + 7);
       const PaintOrder order = painter(surfaces, random_view(random, 100, 80), {.method = PaintMethod::farthest});
       const ScreenPolygons screen(order, Occluders::all());
-      const std::vector<std::uint8_t> found = find_unoverlapped(screen, Adjacency(screen), {}, {});
+      PaintEffort effort({}, screen.count());
+      const std::vector<std::uint8_t> found = find_unoverlapped(screen, Adjacency(screen), {}, effort);
       for (std::size_t a = 0; a < found.size(); ++a) {
         alone += found[a];
         for (std::size_t b = 0; found[a] && b < found.size(); ++b)

@@ -7,10 +7,12 @@
 #include "frontmost/precision.h"
 #include "frontmost/zbuffer.h"
 #include "report/exact_depth.h"
+#include "support/costly_meshes.h"
 #include "support/effort.h"
 #include "support/oracle.h"
 #include "support/random_scene.h"
 #include "support/rational_vector.h"
+#include "support/refusal.h"
 
 namespace frontmost::test {
 namespace {
@@ -235,6 +237,14 @@ TEST(DepthFights, OtherViewsAreRefused) {
   const ExactVisible exact = find_exact_visible(surfaces, view);
   view.width = 32;
   EXPECT_THROW((void)find_depth_fights(surfaces, exact, zbuffer(surfaces, view)), Error);
+}
+
+TEST(TooMuch, SheetsWhoseDepthsDoublesDoNotTellApart) {
+  const Scene scene = scene_of(parallel_sheets(10000, 1e-7));
+  const Surfaces surfaces(scene);
+  EXPECT_EQ(
+      refusal_of(ErrorCode::limit_exceeded, [&] { (void)find_exact_visible(surfaces, frame(surfaces, 640, 480)); }),
+      "exact depths: too many of 20000 triangles lie over each other in the picture");
 }
 
 }  // namespace

@@ -10,8 +10,10 @@
 #include "frontmost/zbuffer.h"
 #include "report/fights/face_pairs.h"
 #include "report/fights/risk.h"
+#include "support/costly_meshes.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
+#include "support/refusal.h"
 
 namespace frontmost::test {
 namespace {
@@ -128,12 +130,13 @@ TEST_P(FightsOfEveryKind, AreThoseOfAllPairs) {
     const std::vector<ScreenFace> faces = screen_faces(surfaces, view, step, {}, {});
     RiskFinder finder(view, fights.setup);
     double area = 0, found = 0;
+    VisibleShares shares(visible, 1);
     for (std::size_t a = 0; a < faces.size(); ++a)
       for (std::size_t b = a + 1; b < faces.size(); ++b) {
         if (faces[a].record.id == faces[b].record.id) continue;
         const ConvexArea& at_risk = finder.of_pair(faces[a], faces[b]);
         if (at_risk.is_empty()) continue;
-        area += at_risk.area() * visible_share(at_risk, RiskKeys(faces[a], faces[b], step), visible);
+        area += at_risk.area() * shares.of(at_risk, RiskKeys(faces[a], faces[b], step));
       }
     for (const FightingFaces& fight : fights.faces) found += fight.kind == FightKind::clear ? 0 : fight.visible_area;
     EXPECT_NEAR(found, area, 1e-6 * (1 + area)) << "seed " << seed;
@@ -339,6 +342,26 @@ TEST(FightingFaces, OfThousandsInOnePlaceAreRefused) {
   for (int i = 0; i < 5000; ++i) scene.instances.push_back(scene.instances[0]);
   const Surfaces surfaces(scene);
   EXPECT_THROW((void)find_fighting_faces(surfaces, flat_view(), DepthFormat::d24), Error);
+}
+
+TEST(TooMuch, PairsBehindAShieldAsLargeAsTheyAre) {
+  Mesh mesh = turned_triangles(400);
+  for (int i = 0; i < 400; ++i) {  // a disc before them, which hides all but the corners of their rectangles
+    const auto rim = [&](int k) {
+      const double turn = 6.283185307179586 * k / 400;
+      return glm::vec3(1.01 * std::cos(turn), 1.01 * std::sin(turn), 0.5);
+    };
+    add_triangle(mesh, glm::vec3(0, 0, 0.5f), rim(i), rim(i + 1));
+  }
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  View view;
+  view.width = view.height = 400;
+  view.world_from_eye = look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0});
+  view.projection = make_orthographic(-1.2, 1.2, -1.2, 1.2, {1, 10});
+  EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { (void)find_fighting_faces(surfaces, view, DepthFormat::d24); }),
+            "fighting faces: too many pairs of faces lie over each other: most faces, 800, are in the pixels from 0,0 "
+            "to 256,256; leave out what lies there many times");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "shade/shadow/light_view.h"
 #include "shade/support.h"
 #include "support/allocation_count.h"
+#include "support/refusal.h"
 
 namespace frontmost::test {
 namespace {
@@ -274,6 +275,14 @@ TEST(LampShadows, PicturesOneAfterAnotherAreThoseOfTheFunctionAndAllocateNothing
   };
   fly(true);
   EXPECT_EQ(fly(false), 0u);
+}
+
+TEST(TooMuch, RaysOfFourThousandLights) {
+  const std::vector<Light> lights(4000, light_towards(Light::Kind::sun, {0, 0, 0}, {0.1, 0, -1}, 1e-6));
+  EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded,
+                       [&] { (void)picture(floor_and_roof(lights), front_view(512), Shadows::rays); }),
+            "shade: shadows of 4000 lights by rays are more than 136314880 rays; ask for shadows by maps, for fewer "
+            "lights or samples, or for a smaller picture");
 }
 
 }  // namespace

@@ -33,6 +33,20 @@ inline Mesh nested_sheets(int count) {
   return mesh;
 }
 
+/// Long narrow rectangles behind each other, in all directions of a plane.
+inline Mesh crossing_strips(int count) {
+  Random random(2);
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const float turn = 3.14159f * random.unit(), z = float(i) / float(count);
+    const glm::vec3 along(std::cos(turn), std::sin(turn), 0), aside(-0.002f * along.y, 0.002f * along.x, 0),
+        at(0, 0, z);
+    add_triangle(mesh, at - along - aside, at + along - aside, at + along + aside);
+    add_triangle(mesh, at - along - aside, at + along + aside, at - along + aside);
+  }
+  return mesh;
+}
+
 /// Very thin triangles of length 2 through one point, in all directions of space.
 inline Mesh slivers_through_point(int count) {
   Random random(3);

@@ -32,7 +32,6 @@ class Adjacency {
 /// By slot: 1 where surely no other polygon overlaps the one in it. Polygons with `gone[slot]` do not count; an empty
 /// `gone` stands for none. Finds nothing in scenes whose polygons share few sides.
 [[nodiscard]] std::vector<std::uint8_t> find_unoverlapped(const ScreenPolygons& screen, const Adjacency& adjacency,
-                                                          const std::vector<std::uint8_t>& gone,
-                                                          const Execution& execution);
+                                                          const std::vector<std::uint8_t>& gone, PaintEffort& effort);
 
 }  // namespace frontmost::painter_detail

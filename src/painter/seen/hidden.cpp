@@ -28,7 +28,8 @@ bool is_before(const Pieces& pieces, std::uint32_t piece, std::uint32_t other) {
 }  // namespace
 
 Unhidden without_hidden(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view,
-                        const Occluders& occluders, const Execution& execution) {
+                        const Occluders& occluders, PaintEffort& effort) {
+  const Execution& execution = effort.execution();
   // The nearest last: what is before another is mostly after it here.
   std::vector<std::uint32_t> sorted = members;
   sort_by_depth(
@@ -42,10 +43,10 @@ Unhidden without_hidden(const Pieces& pieces, const std::vector<std::uint32_t>& 
   Pool<OcclusionClipper> clippers;
   parallel_for(execution, screen.count(), kPerPart, [&](std::size_t begin, std::size_t end) {
     const auto clipper =
-        clippers.borrow([&] { return std::make_unique<OcclusionClipper>(screen, adjacency, execution, is_behind); });
+        clippers.borrow([&] { return std::make_unique<OcclusionClipper>(screen, adjacency, effort, is_behind); });
     for (std::size_t slot = begin; slot < end; ++slot) is_hidden[slot] = clipper->is_hidden(slot);
   });
-  const std::vector<std::uint8_t> is_unoverlapped = find_unoverlapped(screen, adjacency, is_hidden, execution);
+  const std::vector<std::uint8_t> is_unoverlapped = find_unoverlapped(screen, adjacency, is_hidden, effort);
   Unhidden left;
   std::vector<std::uint8_t> is_other(pieces.size(), 0);
   for (std::size_t slot = 0; slot < screen.count(); ++slot) {

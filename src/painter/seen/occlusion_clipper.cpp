@@ -185,6 +185,7 @@ bool OcclusionClipper::take_covers(std::size_t slot, std::uint32_t first_place, 
         if (!may_hide(slot, other)) continue;
         ++count;
         const Cover cover{screen_.outline(other), glm::dvec2(e.low), glm::dvec2(e.high)};
+        poll_.count(OutlineClipper::steps_of_part * cutter_.count());
         if (cutter_.subtract(cover, cutter_.count() <= OutlineClipper::most_parts)) return true;
       }
     }

@@ -21,9 +21,9 @@ class OcclusionClipper {
   /// it always is: the order says so.
   using IsBehind = std::function<bool(std::uint32_t place, std::uint32_t cover)>;
 
-  OcclusionClipper(const ScreenPolygons& screen, const Adjacency& adjacency, const Execution& execution,
+  OcclusionClipper(const ScreenPolygons& screen, const Adjacency& adjacency, PaintEffort& effort,
                    IsBehind is_behind = {})
-      : screen_(screen), poll_(execution), is_behind_(std::move(is_behind)), union_(screen, adjacency) {}
+      : screen_(screen), poll_(effort), is_behind_(std::move(is_behind)), union_(screen, adjacency) {}
 
   /// Whether the polygon in a slot is hidden wholly. False also where that takes long to tell.
   [[nodiscard]] bool is_hidden(std::size_t slot);

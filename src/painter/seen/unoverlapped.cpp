@@ -56,11 +56,11 @@ bool is_near(const glm::dvec2& at, const glm::dvec2& a, const glm::dvec2& b) {
 class Finder {
  public:
   Finder(const ScreenPolygons& screen, const Adjacency& adjacency, const std::vector<std::uint8_t>& gone,
-         const Execution& execution)
+         PaintEffort& effort)
       : screen_(screen),
         adjacency_(adjacency),
         gone_(gone),
-        poll_(execution),
+        poll_(effort),
         state_(screen.count(), State::unknown),
         is_blocked_(screen.corners().size(), 0) {}
 
@@ -212,8 +212,8 @@ class Finder {
 }  // namespace
 
 std::vector<std::uint8_t> find_unoverlapped(const ScreenPolygons& screen, const Adjacency& adjacency,
-                                            const std::vector<std::uint8_t>& gone, const Execution& execution) {
-  return Finder(screen, adjacency, gone, execution).find();
+                                            const std::vector<std::uint8_t>& gone, PaintEffort& effort) {
+  return Finder(screen, adjacency, gone, effort).find();
 }
 
 }  // namespace frontmost::painter_detail

@@ -46,10 +46,10 @@ VisibleParts visible_parts(const PaintOrder& order, const Occluders& occluders, 
   const IeeeScope ieee;
   const ScreenPolygons screen(order, occluders);
   const Adjacency adjacency(screen);
-  const std::vector<std::uint8_t> is_unoverlapped = find_unoverlapped(screen, adjacency, {}, execution);
+  PaintEffort effort(execution, screen.count());
+  const std::vector<std::uint8_t> is_unoverlapped = find_unoverlapped(screen, adjacency, {}, effort);
   PartList parts = list_by_place<PartList>(
-      screen, execution, "visible parts",
-      [&] { return std::make_unique<OcclusionClipper>(screen, adjacency, execution); },
+      screen, execution, "visible parts", [&] { return std::make_unique<OcclusionClipper>(screen, adjacency, effort); },
       [&](OcclusionClipper& clipper, std::size_t slot, PartList& list) {
         const PrimitiveId id = order.polygons[screen.place(slot)].id;
         if (is_unoverlapped[slot]) {

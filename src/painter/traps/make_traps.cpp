@@ -34,8 +34,8 @@ struct TrappedSide {
 /// Makes the traps of one polygon after another. Not for several threads at once.
 class TrapMaker {
  public:
-  TrapMaker(const ScreenPolygons& screen, const Adjacency& adjacency, double width, const Execution& execution)
-      : screen_(screen), nearby_(screen, adjacency, execution), width_(width) {}
+  TrapMaker(const ScreenPolygons& screen, const Adjacency& adjacency, double width, PaintEffort& effort)
+      : screen_(screen), nearby_(screen, adjacency, effort), width_(width) {}
 
   /// Adds the traps of the polygon in a slot.
   void add_traps(std::size_t slot, TrapList& list) {
@@ -149,8 +149,9 @@ TrapList make_traps(std::span<const ScreenPolygon> polygons, const View& view, d
                     const Execution& execution) {
   const ScreenPolygons screen(polygons, view);
   const Adjacency adjacency(screen);
+  PaintEffort effort(execution, screen.count());
   return list_by_place<TrapList>(
-      screen, execution, "traps", [&] { return std::make_unique<TrapMaker>(screen, adjacency, width, execution); },
+      screen, execution, "traps", [&] { return std::make_unique<TrapMaker>(screen, adjacency, width, effort); },
       [](TrapMaker& maker, std::size_t slot, TrapList& list) { maker.add_traps(slot, list); });
 }
 

@@ -104,6 +104,7 @@ const OutlineClipper& NearbyOccluders::open_parts(Outline outline) {
   cutter_.begin(outline);
   any_of(box_of(outline), [&](const Hider& hider) {
     const Cover cover{screen_.outline(hider.slot), glm::dvec2(hider.low), glm::dvec2(hider.high)};
+    poll_.count(OutlineClipper::steps_of_part * cutter_.count());
     return cutter_.subtract(cover, cutter_.count() <= OutlineClipper::most_parts);
   });
   return cutter_;

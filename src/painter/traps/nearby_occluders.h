@@ -20,8 +20,8 @@ namespace frontmost::painter_detail {
 /// all questions about a polygon, and most polygons have few. Not for several threads at once.
 class NearbyOccluders {
  public:
-  NearbyOccluders(const ScreenPolygons& screen, const Adjacency& adjacency, const Execution& execution)
-      : screen_(screen), adjacency_(adjacency), poll_(execution), listed_(screen.count(), 0) {}
+  NearbyOccluders(const ScreenPolygons& screen, const Adjacency& adjacency, PaintEffort& effort)
+      : screen_(screen), adjacency_(adjacency), poll_(effort), listed_(screen.count(), 0) {}
 
   /// Of the polygon in a slot from now on, as far as `reach` pixels around it.
   void begin(std::size_t slot, double reach);

@@ -3,10 +3,9 @@
 #include "report/fights/face_pairs.h"
 
 #include <algorithm>
-#include <atomic>
 #include <tuple>
 
-#include "base/parallel.h"
+#include "base/work_limit.h"
 #include "zbuffer/tile/tile_lists.h"
 
 namespace frontmost {
@@ -14,19 +13,11 @@ namespace {
 
 using namespace zbuffer_detail;
 
-constexpr std::size_t kMostLooks = std::size_t(1) << 28, kMostPairs = std::size_t(1) << 24;
+constexpr std::uint64_t kMostLooks = std::uint64_t(1) << 28, kMostPairs = std::uint64_t(1) << 24;
 
 /// What is looked at and kept, by all threads together.
-struct Effort {
-  std::atomic<std::size_t> looks{0}, pairs{0};
-
-  void add(std::size_t more_looks, std::size_t more_pairs) {
-    if ((looks += more_looks) > kMostLooks)
-      throw Error(ErrorCode::limit_exceeded, "fighting faces: too many faces lie in one place of the picture");
-    if ((pairs += more_pairs) > kMostPairs)
-      throw Error(ErrorCode::limit_exceeded,
-                  "fighting faces: more than 16777216 pairs of faces lie close to each other");
-  }
+struct PairLimits {
+  WorkLimit looks, pairs;
 };
 
 /// What is looked at first of a face in a cell.
@@ -78,8 +69,24 @@ class FaceCells {
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
 
+  /// The text of an error, which says where most faces lie over one cell.
+  [[nodiscard]] std::string too_many(const std::string& things) const {
+    const std::size_t columns = std::size_t(columns_);
+    std::size_t fullest = 0;
+    for (std::size_t cell = 1; cell < columns * std::size_t(rows_); ++cell)
+      if (lists_.of(cell).size() > lists_.of(fullest).size()) fullest = cell;
+    const double side = double(1 << shift_) / kSubPixels;
+    const auto at = [&](std::size_t place, int size) {
+      return std::to_string(std::min(int(double(place) * side), size));
+    };
+    const std::size_t x = fullest % columns, y = fullest / columns;
+    return "fighting faces: too many " + things + ": most faces, " + std::to_string(lists_.of(fullest).size()) +
+           ", are in the pixels from " + at(x, view_.width) + "," + at(y, view_.height) + " to " +
+           at(x + 1, view_.width) + "," + at(y + 1, view_.height) + "; leave out what lies there many times";
+  }
+
   /// Appends the pairs that are met in this cell.
-  void find_pairs(int column, int row, CellScratch& scratch, Effort& effort, std::vector<FacePair>& pairs) const {
+  void find_pairs(int column, int row, CellScratch& scratch, PairLimits& limits, std::vector<FacePair>& pairs) const {
     std::vector<CellFace>& entries = scratch.entries;
     entries.clear();
     for (const std::uint32_t i : lists_.of(std::size_t(row) * std::size_t(columns_) + std::size_t(column)))
@@ -89,7 +96,8 @@ class FaceCells {
     constexpr std::size_t kLooksAtOnce = 1 << 12;
     std::size_t looks = 0, told = pairs.size();
     const auto tell = [&] {
-      effort.add(looks, pairs.size() - told);
+      limits.looks.add(looks, [&] { return too_many("faces lie over each other"); });
+      limits.pairs.add(pairs.size() - told, [&] { return too_many("pairs of faces lie close to each other"); });
       looks = 0;
       told = pairs.size();
     };
@@ -162,17 +170,20 @@ std::vector<FacePair> find_face_pairs(const std::vector<ScreenFace>& faces, cons
                                       const Execution& execution) {
   const FaceCells cells(faces, view);
   std::vector<std::vector<FacePair>> by_row(std::size_t(cells.rows()));
-  Effort effort;
+  PairLimits limits{{execution, kMostLooks}, {execution, kMostPairs}};
   parallel_for(execution, by_row.size(), 1, [&](std::size_t row, std::size_t) {
     CellScratch scratch;
     for (int column = 0; column < cells.columns(); ++column)
-      cells.find_pairs(column, int(row), scratch, effort, by_row[row]);
+      cells.find_pairs(column, int(row), scratch, limits, by_row[row]);
   });
   std::vector<FacePair> pairs;
-  pairs.reserve(effort.pairs);
   for (const std::vector<FacePair>& row : by_row) pairs.insert(pairs.end(), row.begin(), row.end());
   std::sort(pairs.begin(), pairs.end());
   return pairs;
+}
+
+std::string too_many_faces(const std::vector<ScreenFace>& faces, const View& view, const std::string& things) {
+  return FaceCells(faces, view).too_many(things);
 }
 
 }  // namespace frontmost

@@ -7,6 +7,7 @@
 //    +----+----+----+     rectangles have in common.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "report/fights/screen_faces.h"
@@ -26,5 +27,9 @@ struct FacePair {
 /// order. \throws Error limit_exceeded as find_fighting_faces() does.
 [[nodiscard]] std::vector<FacePair> find_face_pairs(const std::vector<ScreenFace>& faces, const View& view,
                                                     const Execution& execution);
+
+/// The text of an error: too many of these things, and where most faces lie.
+[[nodiscard]] std::string too_many_faces(const std::vector<ScreenFace>& faces, const View& view,
+                                         const std::string& things);
 
 }  // namespace frontmost

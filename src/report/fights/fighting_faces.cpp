@@ -10,6 +10,7 @@
 
 #include "base/exact_vector.h"
 #include "base/parallel.h"
+#include "base/work_limit.h"
 #include "frontmost/zbuffer.h"
 #include "report/fights/face_pairs.h"
 #include "report/fights/risk.h"
@@ -52,13 +53,13 @@ struct FightSearch {
   const KeyStep step{setup};
 
   /// Appends the area of two faces, or with the same face twice that of the clear value.
-  void find(RiskFinder& finder, const FacePair& pair, FoundAreas& found) const {
+  void find(RiskFinder& finder, VisibleShares& shares, const FacePair& pair, FoundAreas& found) const {
     const ScreenFace &a = faces[pair.first], &b = faces[pair.second];
     const bool is_alone = pair.first == pair.second;
     const ConvexArea& area = is_alone ? finder.of_clear_value(a) : finder.of_pair(a, b);
     if (area.is_empty()) return;
     const RiskKeys keys(a, b, step);
-    const double share = visible_share(area, keys, visible);
+    const double share = shares.of(area, keys);
     if (share == 0) return;
     FightingFaces fight;
     fight.first = a.record.id;
@@ -77,11 +78,20 @@ struct FightSearch {
 };
 
 FoundAreas find_areas(const FightSearch& search, const std::vector<FacePair>& pairs, const Execution& execution) {
-  constexpr std::size_t kGrain = 4096, kMostAreas = std::size_t(1) << 22;
+  constexpr std::size_t kGrain = 4096, kMostAreas = std::size_t(1) << 22, kPairsAtOnce = 16;
+  constexpr std::uint64_t kMostLooks = std::uint64_t(1) << 30;
+  WorkLimit work(execution, kMostLooks);
   std::vector<FoundAreas> parts((pairs.size() + kGrain - 1) / kGrain);
   parallel_for(execution, pairs.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     RiskFinder finder(search.visible.view, search.setup);
-    for (std::size_t i = begin; i < end; ++i) search.find(finder, pairs[i], parts[begin / kGrain]);
+    VisibleShares shares(search.visible, pairs.size());
+    for (std::size_t i = begin; i < end; ++i) {
+      search.find(finder, shares, pairs[i], parts[begin / kGrain]);
+      if (i % kPairsAtOnce == 0 || i + 1 == end)
+        work.add(shares.take_looks(), [&] {
+          return too_many_faces(search.faces, search.visible.view, "pairs of faces lie over each other");
+        });
+    }
   });
   FoundAreas all;
   for (const FoundAreas& part : parts) {

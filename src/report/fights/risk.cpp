@@ -9,7 +9,7 @@
 namespace frontmost {
 namespace {
 
-constexpr double kSamplesAsked = 4096;
+constexpr double kMostAsked = 4096, kLeastAsked = 64, kAskedOfAll = 1 << 28;
 
 std::array<glm::dvec2, 3> corners_of(const ScreenFace& face) {
   return {face.corner(0), face.corner(1), face.corner(2)};
@@ -65,10 +65,13 @@ RiskKeys::RiskKeys(const ScreenFace& a, const ScreenFace& b, const KeyStep& step
       second(b.keys()),
       reach(double(a.slack) + double(b.slack) + step.at(std::max(a.record.nearest(), b.record.nearest()))) {}
 
-double visible_share(const ConvexArea& area, const RiskKeys& keys, const Visible& visible) {
-  const View& view = visible.view;
+VisibleShares::VisibleShares(const Visible& visible, std::size_t areas)
+    : visible_(visible), asked_(std::clamp(kAskedOfAll / double(areas), kLeastAsked, kMostAsked)) {}
+
+double VisibleShares::of(const ConvexArea& area, const RiskKeys& keys) {
+  const View& view = visible_.view;
   const auto is_seen = [&](std::size_t sample, const glm::dvec2& point) {
-    return keys.nearest_at(point) + keys.reach >= double(visible.keys[sample]);
+    return keys.nearest_at(point) + keys.reach >= double(visible_.keys[sample]);
   };
   std::uint64_t all = 0, seen = 0;
   const auto look = [&](int step) {
@@ -77,9 +80,10 @@ double visible_share(const ConvexArea& area, const RiskKeys& keys, const Visible
       ++all;
       seen += is_seen(i, glm::dvec2(x, y) + offset);
     });
+    looks_ += all;
   };
-  // Thousands of samples tell the share well enough; whether anything is seen, all of them must.
-  const int step = int(std::sqrt(area.area() * view.samples / kSamplesAsked));
+  // Some samples tell the share well enough; whether anything is seen, all of them must.
+  const int step = int(std::sqrt(area.area() * view.samples / asked_));
   if (step > 1) look(step);
   if (seen == 0) look(1);
   if (all > 0) return double(seen) / double(all);

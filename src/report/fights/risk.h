@@ -8,7 +8,7 @@
 //       \    where it is nearer   \/////\\    where it is nearer
 #pragma once
 
-#include <optional>
+#include <utility>
 
 #include "frontmost/fighting_faces.h"
 #include "report/fights/convex_area.h"
@@ -46,8 +46,22 @@ struct RiskKeys {
   [[nodiscard]] double nearest_at(const glm::dvec2& point) const { return std::max(first.at(point), second.at(point)); }
 };
 
-/// Which share of an area is seen, by the samples in it, of many some thousands; where there is none, by those of the
-/// pixel at its centre. 0 only where no sample is seen.
-[[nodiscard]] double visible_share(const ConvexArea& area, const RiskKeys& keys, const Visible& visible);
+/// Tells which share of one area after another is seen, by samples. One thread's.
+class VisibleShares {
+ public:
+  /// For so many areas: of each it looks at 4,096 samples, or fewer where that would be more than 2^28 of all.
+  VisibleShares(const Visible& visible, std::size_t areas);
+
+  /// By the samples in the area; where there is none, by those of the pixel at its centre. 0 only where no sample is
+  /// seen, and then it looks at all of them.
+  [[nodiscard]] double of(const ConvexArea& area, const RiskKeys& keys);
+  /// How many samples it has looked at since the last call.
+  [[nodiscard]] std::uint64_t take_looks() { return std::exchange(looks_, 0); }
+
+ private:
+  const Visible& visible_;
+  double asked_;
+  std::uint64_t looks_ = 0;
+};
 
 }  // namespace frontmost

@@ -23,7 +23,8 @@ using namespace shading;
 /// For every polygon, whether none that is painted later covers a part of it.
 std::vector<bool> find_uncovered(const ColoredOrder& order, const Execution& execution) {
   const Overlaps overlaps(order);
-  painter_detail::Poll poll(execution);
+  painter_detail::PaintEffort effort(execution, order.polygons.size());
+  painter_detail::Poll poll(effort);
   std::vector<bool> uncovered(order.polygons.size());
   for (std::size_t i = 0; i < uncovered.size(); ++i)
     uncovered[i] = !overlaps.any_later(i, [&](std::size_t other) {

@@ -53,7 +53,8 @@ void sort_out(std::vector<NodePair>& pairs) {
 std::optional<std::vector<NodePair>> find_over(const ColoredOrder& colored, const Execution& execution) {
   const std::vector<std::uint32_t> shape_of = colored.shapes_of_polygons();
   const Overlaps overlaps(colored);
-  painter_detail::Poll poll(execution);
+  painter_detail::PaintEffort effort(execution, shape_of.size());
+  painter_detail::Poll poll(effort);
   std::vector<NodePair> over;
   std::vector<std::uint8_t> is_bound;
   for (const ColoredShape& shape : colored.shapes) is_bound.push_back(shape.color.a < 255);
