@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// access.mjs FOLDER: every page without a mouse and without seeing it, in Chromium, in both languages: what the
-// accessibility tree names, where the tab key goes and what it shows there, what keys do, what is told when something
-// changes, and whether text stands out from what is behind it in both schemes of colours.
+// access.mjs FOLDER [all]: every page without a mouse and without seeing it, in Chromium, in one language and the other
+// in turn, or in both: what the accessibility tree names, where the tab key goes and what it shows there, what keys do,
+// what is told when something changes, and whether text stands out from what is behind it in both schemes of colours.
 import assert from "node:assert/strict";
 import { openBrowser, openPage } from "./browser.mjs";
 
-const [folder] = process.argv.slice(2);
+const [folder, all] = process.argv.slice(2);
 const { browser, address, close } = await openBrowser(folder);
 const patience = { timeout: 300000 };
 const complaints = [];
@@ -182,15 +182,16 @@ try {
   await contents.goto(`${address}lessons.html?lang=en`);
   paths.push(...await contents.locator(".contents a").evaluateAll((links) => links.map((link) => link.getAttribute("href"))));
   await first.close();
-  for (const path of paths) {
-    // The English page in the light scheme, the Chinese one in the dark one.
-    for (const [lang, colorScheme] of [["en", "light"], ["zh", "dark"]]) {
+  // The English page in the light scheme, the Chinese one in the dark one.
+  const kinds = [["en", "light"], ["zh", "dark"]];
+  for (const [i, path] of paths.entries()) {
+    for (const [lang, colorScheme] of all ? kinds : [kinds[i % 2]]) {
       const { page, context } = await readyPage(path, lang, { colorScheme });
       const { faint, count } = await page.evaluate(faintTexts);
       check(faint.length === 0, `${path}, ${lang}, ${colorScheme}: ${faint.join("; ")}`);
       texts += count;
       await checkNames(page, context, lang, `${path}, ${lang}`);
-      if (lang === "en") {
+      if (lang === "en" || !all) {
         await checkTabs(page, path);
         await checkKeys(page, path);
       }
