@@ -163,15 +163,15 @@ Image range_image(const RangeScan& scan, const RayScene& rays, const Buffer<floa
   return image;
 }
 
-void write(const std::string& path, const CurvedScan& met, const RayScene& rays, const LidarSettings& settings,
+void write(const std::string& path, const RangeScan& met, const RayScene& rays, const LidarSettings& settings,
            const Execution& execution) {
   stop_if_interrupted();
   const WritingFiles writing;
   const std::string suffix = std::filesystem::path(path).extension().string();
-  if (suffix == ".npy") return save(range_image(met.scan, rays, nullptr), path, {}, execution);
-  const Buffer<float> incidences = rays.incidences(met, execution);
-  if (suffix == ".ply") return save_text(points_ply({met.scan, rays, incidences, settings.robot_axes}), path);
-  save(range_image(met.scan, rays, &incidences), path, {}, execution);
+  if (suffix == ".npy") return save(range_image(met, rays, nullptr), path, {}, execution);
+  const Buffer<float> incidences = incidence_angles(met, rays.surfaces, execution);
+  if (suffix == ".ply") return save_text(points_ply({met, rays, incidences, settings.robot_axes}), path);
+  save(range_image(met, rays, &incidences), path, {}, execution);
 }
 
 /// What was met, in all and by object.
@@ -182,7 +182,7 @@ Json report(const Settings& settings, const RangeScan& scan, const RayScene& ray
   for (std::size_t i = 0; i < scan.primitives.size(); ++i) {
     if (scan.primitives[i] == no_primitive) continue;
     ++met;
-    ++points[rays.source(scan.primitives[i]).instance];
+    ++points[rays.surfaces.source(scan.primitives[i]).instance];
     nearest = std::min(nearest, double(scan.ranges[i]));
     farthest = std::max(farthest, double(scan.ranges[i]));
   }
@@ -211,16 +211,16 @@ int run_lidar(const Settings& settings) {
   const Surfaces surfaces(scene, execution);
   camera.world_from_eye = pose_of(settings.lidar, surfaces);
   Stopwatch watch;
-  const OwnRayScene index(surfaces, execution);
-  const RayScene rays = index.get();
+  const RayIndex index(surfaces, execution);
+  const RayScene rays{surfaces, index};
   const double index_time = watch.milliseconds();
   watch = {};
-  const CurvedScan result = rays.scan(camera, execution);
+  const RangeScan result = rays.scan(camera, execution);
   const double scan_time = watch.milliseconds();
   progress.clear();
   for (const std::string& path : settings.lidar.outputs) write(path, result, rays, settings.lidar, execution);
   if (!settings.run.json) return exit_done;
-  Json json = report(settings, result.scan, rays);
+  Json json = report(settings, result, rays);
   json["timings_ms"] = {{"index", index_time}, {"visible", scan_time}};
   print(dump(json));
   return exit_done;

@@ -58,21 +58,21 @@ std::vector<Segment> segments_of(std::span<const PointPair> pairs, const glm::dv
   return segments;
 }
 
-/// What stands in the way.
+/// What stands in the way: a triangle of an object.
 struct Blocked {
-  RayElement by;
+  PrimitiveSource by;
   std::string object;
   glm::dvec3 point;
   double distance;
 };
 
-Blocked blocked_by(const CurvedHit& hit, const Segment& pair, const RayScene& rays) {
+Blocked blocked_by(const RayHit& hit, const Segment& pair, const RayScene& rays) {
   const glm::dvec3 from(pair.from), along = glm::dvec3(pair.to) - from;
-  const RayElement by = rays.element(hit.primitive);
+  const PrimitiveSource by = rays.surfaces.source(hit.primitive);
   return {by, rays.scene().instances[by.instance].name, from + hit.t * along, hit.t * glm::length(along)};
 }
 
-Json pair_json(const CurvedHit& hit, const Segment& pair, const RayScene& rays) {
+Json pair_json(const RayHit& hit, const Segment& pair, const RayScene& rays) {
   const glm::dvec3& origin = rays.scene().origin;
   Json json = {
       {"from", to_json(in_file(pair.from, origin))}, {"to", to_json(in_file(pair.to, origin))}, {"clear", !hit}};
@@ -80,19 +80,18 @@ Json pair_json(const CurvedHit& hit, const Segment& pair, const RayScene& rays) 
   const Blocked blocked = blocked_by(hit, pair, rays);
   json["object"] = blocked.by.instance;
   json["name"] = blocked.object;
-  json[std::string(blocked.by.kind)] = blocked.by.number;
+  json["triangle"] = blocked.by.triangle;
   json["point"] = to_json(in_file(blocked.point, origin));
   json["distance"] = blocked.distance;
   return json;
 }
 
-std::string pair_text(const CurvedHit& hit, const Segment& pair, const RayScene& rays) {
+std::string pair_text(const RayHit& hit, const Segment& pair, const RayScene& rays) {
   if (!hit) return "clear\n";
   const Blocked blocked = blocked_by(hit, pair, rays);
   const std::string name = blocked.object.empty() ? "" : " (" + printable_name(blocked.object) + ")";
-  return fmt::format("blocked by object {}{}, {} {}, at {}, distance {:.6g}\n", blocked.by.instance, name,
-                     blocked.by.kind, blocked.by.number, place_text(blocked.point, rays.scene().origin),
-                     blocked.distance);
+  return fmt::format("blocked by object {}{}, triangle {}, at {}, distance {:.6g}\n", blocked.by.instance, name,
+                     blocked.by.triangle, place_text(blocked.point, rays.scene().origin), blocked.distance);
 }
 
 /// Calls `use` with every pair and what is met between its points, in order: a part of them at a time, so that memory
@@ -104,7 +103,7 @@ void for_each_pair(std::span<const PointPair> pairs, const RayScene& rays, const
     stop_if_interrupted();
     const std::span<const PointPair> part = pairs.subspan(begin, std::min(at_once, pairs.size() - begin));
     const std::vector<Segment> segments = segments_of(part, rays.scene().origin);
-    const std::vector<CurvedHit> hits = rays.closest(segments, execution);
+    const std::vector<RayHit> hits = rays.closest(segments, execution);
     for (std::size_t i = 0; i < part.size(); ++i) use(hits[i], segments[i]);
   }
 }
@@ -113,7 +112,7 @@ void print_json(const Settings& settings, std::span<const PointPair> pairs, cons
                 const Execution& execution) {
   JsonListPrinter printer({{"model", settings.model}}, "pairs");
   std::size_t clear = 0;
-  for_each_pair(pairs, rays, execution, [&](const CurvedHit& hit, const Segment& pair) {
+  for_each_pair(pairs, rays, execution, [&](const RayHit& hit, const Segment& pair) {
     clear += !hit;
     printer.add(pair_json(hit, pair, rays));
   });
@@ -123,7 +122,7 @@ void print_json(const Settings& settings, std::span<const PointPair> pairs, cons
 void print_text(std::span<const PointPair> pairs, const RayScene& rays, const Execution& execution) {
   constexpr std::size_t enough = 1 << 16;
   std::string text;
-  for_each_pair(pairs, rays, execution, [&](const CurvedHit& hit, const Segment& pair) {
+  for_each_pair(pairs, rays, execution, [&](const RayHit& hit, const Segment& pair) {
     text += pair_text(hit, pair, rays);
     if (text.size() < enough) return;
     print(text);
@@ -142,12 +141,13 @@ int run_sight(const Settings& settings) {
   const Execution execution = execution_for(settings.run, progress);
   const Scene scene = load_model(settings, execution, progress);
   const Surfaces surfaces(scene, execution);
-  const OwnRayScene index(surfaces, execution);
+  const RayIndex index(surfaces, execution);
+  const RayScene rays{surfaces, index};
   progress.clear();
   if (settings.run.json)
-    print_json(settings, pairs, index.get(), execution);
+    print_json(settings, pairs, rays, execution);
   else
-    print_text(pairs, index.get(), execution);
+    print_text(pairs, rays, execution);
   return exit_done;
 }
 

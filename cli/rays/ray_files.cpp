@@ -117,7 +117,7 @@ std::string points_ply(const ScanPoints& points) {
       const PrimitiveId id = scan.primitives[scan.index(x, y)];
       if (id == no_primitive) continue;
       append_place(bytes, glm::dvec3(out_from_world * glm::dvec4(point_of(scan, x, y), 1)), origin);
-      append_ids(bytes, scan, {x, y}, rays.source(id));
+      append_ids(bytes, scan, {x, y}, rays.surfaces.source(id));
       append(bytes, points.incidences[scan.index(x, y)]);
     }
   return bytes;

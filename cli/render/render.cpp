@@ -14,7 +14,7 @@
 #include "cli/render/json_report.h"
 #include "cli/render/output_writer.h"
 #include "cli/render/ranks.h"
-#include "cli/render/render_curved.h"
+#include "cli/render/render_tessellated.h"
 #include "cli/render/render_view.h"
 #include "cli/render/shard.h"
 #include "cli/stopwatch.h"
@@ -201,21 +201,21 @@ int render_whole(Run& run) {
   if (is_often) (void)surfaces.clusters(execution);
   timings.surfaces = watch.milliseconds();
   watch = {};
-  plan_curved(scene, settings.run, run.jobs);
-  const RayIndexes indexes(run.jobs, settings.run, surfaces, execution);
-  if (indexes.triangles || indexes.curved) timings.index = watch.milliseconds();
+  std::optional<RayIndex> index;
+  if (std::any_of(run.jobs.begin(), run.jobs.end(),
+                  [&](const Job& job) { return needs_index(job, settings.run) && !is_tessellated(job, scene); })) {
+    index.emplace(surfaces, execution);
+    timings.index = watch.milliseconds();
+  }
   SharedBuffers buffers;
   Shader shader(surfaces);
   Environments environments;
   const std::vector<ViewResult> results = render_all(run, progress, [&](const Job& job) {
-    const bool is_met = meets_curved(job, settings.run, scene);
     RenderContext context{surfaces, shader, environments, settings.run, execution, run.on_terminal};
     context.by_rays = settings.run.method == Method::raycast;
-    if (indexes.triangles) context.index = &*indexes.triangles;
-    if (is_met) context.curved = &*indexes.curved;
+    if (index) context.index = &*index;
     if (is_often) context.buffers = &buffers;
-    if (job.view.tessellation_error) return render_tessellated_view(job, context);
-    if (is_met && job.view.camera_model == CameraModel::pinhole) return render_curved_view(job, context);
+    if (is_tessellated(job, scene)) return render_tessellated_view(job, context);
     return render_view(job, context);
   });
   timings.total = run.whole.milliseconds();

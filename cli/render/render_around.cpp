@@ -42,11 +42,11 @@ ViewResult resolve(const Job& job, const Surfaces& surfaces) {
   return result;
 }
 
-CurvedScan timed_scan(const RayScene& rays, const RayCamera& camera, const RenderContext& context,
-                      std::vector<double>& times) {
+RangeScan timed_scan(const RayScene& rays, const RayCamera& camera, const RenderContext& context,
+                     std::vector<double>& times) {
   for (int i = 1;; ++i) {
     const Stopwatch watch;
-    CurvedScan result = rays.scan(camera, context.execution);
+    RangeScan result = rays.scan(camera, context.execution);
     times.push_back(watch.milliseconds());
     if (i >= context.run.repeat) return result;
   }
@@ -89,10 +89,10 @@ Seen summary_around(const RayScene& rays, const RangeScan& around) {
 
 /// What the rays of a job meet: of the picture, and at the middle of every pixel, which may be the same.
 struct SightsAround {
-  std::optional<CurvedScan> picture, middles;
+  std::optional<RangeScan> picture, middles;
 
-  [[nodiscard]] const CurvedScan& for_picture() const { return picture ? *picture : *middles; }
-  [[nodiscard]] const CurvedScan& for_maps() const { return middles ? *middles : *picture; }
+  [[nodiscard]] const RangeScan& for_picture() const { return picture ? *picture : *middles; }
+  [[nodiscard]] const RangeScan& for_maps() const { return middles ? *middles : *picture; }
 };
 
 SightsAround look_around(const Job& job, const RayScene& rays, const RenderContext& context, ViewResult& result) {
@@ -113,10 +113,8 @@ bool is_blank(const RangeScan& around) {
                      [](PrimitiveId id) { return id == no_primitive; });
 }
 
-Image shade_around(const Job& job, const CurvedScan& met, const RenderContext& context) {
-  const ShadeOptions options = shade_options(job, context);
-  if (context.curved) return shade(*context.curved, context.surfaces.scene(), met, options, context.execution);
-  (void)context.shader.shade(ScanInput(met.scan, context.index), options, context.execution);
+Image shade_around(const Job& job, const RangeScan& met, const RenderContext& context) {
+  (void)context.shader.shade(ScanInput(met, context.index), shade_options(job, context), context.execution);
   return context.shader.take();
 }
 
@@ -135,9 +133,9 @@ void check_outputs_around(const Job& job) {
 
 ViewResult render_around(const Job& job, const RenderContext& context) {
   ViewResult result = resolve(job, context.surfaces);
-  const RayScene rays{context.surfaces, context.index, context.curved};
+  const RayScene rays{context.surfaces, *context.index};
   const SightsAround sights = look_around(job, rays, context, result);
-  const RangeScan& around = sights.for_maps().scan;
+  const RangeScan& around = sights.for_maps();
   if (job.output.hash || context.run.json) result.seen = summary_around(rays, around);
   if (is_blank(around)) result.warnings.emplace_back("nothing is in view: no ray meets the model");
   std::optional<Image> picture;
@@ -146,9 +144,6 @@ ViewResult render_around(const Job& job, const RenderContext& context) {
     picture = shade_around(job, sights.for_picture(), context);
     result.timings.shade = watch.milliseconds();
     const std::span<const PrimitiveId> first(around.primitives.data(), around.index(0, around.height));
-    if (context.curved && job.output.shading == Shading::lit)
-      result.warnings.emplace_back(
-          "spheres and patches are plain all around: lit from the eye, opaque, without textures and shadows");
     if (job.output.background && nothing_stands_out(*picture, first, *job.output.background))
       result.warnings.push_back(contrast_warning(false));
   }

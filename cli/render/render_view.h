@@ -7,10 +7,12 @@
 //
 // There are several ways to find what is visible: render_view() looks at the model's triangles through a pinhole,
 // render_around() through cameras that are none, by rays; render_streamed_view() at a model that is read piece by
-// piece. Those for curved surfaces are in render_curved.h. All end in finish_view(), or write their files as it does.
+// piece; render_tessellated_view() at triangles that are made for the view. All end in finish_view(), or write their
+// files as it does.
 #pragma once
 
-#include <frontmost/curved.h>
+#include <frontmost/ray_camera.h>
+#include <frontmost/shade.h>
 #include <frontmost/stream.h>
 #include <frontmost/surfaces.h>
 #include <frontmost/visible.h>
@@ -88,9 +90,8 @@ struct RenderContext {
   const RunSettings& run;
   Execution execution;
   bool keep_picture = false;
-  const RayIndex* index = nullptr;      ///< where the method, the cameras or the shadows need one
-  bool by_rays = false;                 ///< the method is raycast
-  const CurvedIndex* curved = nullptr;  ///< where cameras that are no pinholes meet curved surfaces; then no `index`
+  const RayIndex* index = nullptr;  ///< where the method, the cameras or the shadows need one
+  bool by_rays = false;             ///< the method is raycast
   /// Whose bounds the camera goes by, where it is not these surfaces'.
   const Surfaces* framed = nullptr;
   SharedBuffers* buffers = nullptr;  ///< null where a single picture is drawn

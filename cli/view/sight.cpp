@@ -3,7 +3,6 @@
 // Callers name the way once, by an index or by settings, and do not branch again.
 #include "cli/view/sight.h"
 
-#include <frontmost/tessellate.h>
 #include <frontmost/zbuffer.h>
 
 namespace frontmost::cli {
@@ -42,53 +41,16 @@ std::string_view name(DepthFunc func) {
   return names[int(func)];
 }
 
-CurvedScan RayScene::scan(const RayCamera& camera, const Execution& execution) const {
-  if (curved) return frontmost::scan(*curved, camera, execution);
-  return {frontmost::scan(*triangles, camera, execution), {}};
-}
-
-std::vector<CurvedHit> RayScene::closest(std::span<const Segment> segments, const Execution& execution) const {
-  std::vector<CurvedHit> hits(segments.size());
-  if (curved) {
-    closest_hits(*curved, segments, hits, execution);
-    return hits;
-  }
-  std::vector<RayHit> flat(segments.size());
-  closest_hits(*triangles, segments, flat, execution);
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    hits[i].primitive = flat[i].primitive;
-    hits[i].t = flat[i].t;
-    hits[i].is_front = flat[i].is_front;
-  }
+std::vector<RayHit> RayScene::closest(std::span<const Segment> segments, const Execution& execution) const {
+  std::vector<RayHit> hits(segments.size());
+  closest_hits(index, segments, hits, execution);
   return hits;
-}
-
-PrimitiveSource RayScene::source(PrimitiveId id) const { return curved ? curved->source(id) : surfaces.source(id); }
-
-RayElement RayScene::element(PrimitiveId id) const {
-  const PrimitiveSource from = source(id);
-  const Mesh& mesh = scene().meshes[from.mesh];
-  if (!curved || !mesh.is_curved()) return {from.instance, "triangle", from.triangle};
-  const auto spheres = std::uint32_t(mesh.spheres.size());
-  if (from.triangle < spheres) return {from.instance, "sphere", from.triangle};
-  return {from.instance, "patch", from.triangle - spheres};
 }
 
 Image RayScene::ids(const RangeScan& scan, IdKind kind) const {
   const std::span<const PrimitiveId> primitives(scan.primitives.data(), scan.primitives.size());
   return id_image(
-      scene(), [&](PrimitiveId id) { return source(id); }, {scan.width, scan.height}, primitives, kind);
-}
-
-Buffer<float> RayScene::incidences(const CurvedScan& scan, const Execution& execution) const {
-  return curved ? incidence_angles(scan, execution) : incidence_angles(scan.scan, surfaces, execution);
-}
-
-OwnRayScene::OwnRayScene(const Surfaces& surfaces, const Execution& execution) : surfaces_(surfaces) {
-  if (has_curved(surfaces.scene()))
-    curved_.emplace(surfaces.scene(), execution);
-  else
-    triangles_.emplace(surfaces, execution);
+      scene(), [&](PrimitiveId id) { return surfaces.source(id); }, {scan.width, scan.height}, primitives, kind);
 }
 
 }  // namespace frontmost::cli

@@ -142,9 +142,8 @@ constexpr Option view_options[] = {
      for_render | for_camera | for_precision | for_compare | for_report | for_visible | for_explain,
      [](Settings& s, const Given& g) { s.view.culling = g.choice<Culling>(); }},
     {"tessellation-error", 0, "PIXELS",
-     "Cut spheres and patches into triangles within that many pixels of the surface. Without it the method raycast "
-     "meets the surfaces themselves, lines cuts as finely as its paper shows, and others draw the triangles of the "
-     "model.",
+     "Cut spheres and patches into triangles within that many pixels of the surface. Without it lines cuts as finely "
+     "as its paper shows, and others draw the triangles of the model.",
      Group::grid, for_render | for_compare | for_lines | for_report | for_explain,
      [](Settings& s, const Given& g) {
        s.view.tessellation_error = g.number({1e-3, 1e3});

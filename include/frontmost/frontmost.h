@@ -12,7 +12,6 @@
 #include "frontmost/accounting.h"      // IWYU pragma: export
 #include "frontmost/agreement.h"       // IWYU pragma: export
 #include "frontmost/base.h"            // IWYU pragma: export
-#include "frontmost/curved.h"          // IWYU pragma: export
 #include "frontmost/datasets.h"        // IWYU pragma: export
 #include "frontmost/depth_buffer.h"    // IWYU pragma: export
 #include "frontmost/environment.h"     // IWYU pragma: export

@@ -28,9 +28,6 @@ struct Pen {
   PageColor color;
   /// Millimetres that are drawn, left out, drawn and so on; an even count, empty: no gaps. Every path begins anew.
   std::vector<double> dashes{};
-  /// Draws around filled paths in their own colour instead, where that is opaque: against the hairlines that viewers
-  /// leave between neighbours. Translucent fills then have no line.
-  bool takes_fill_color = false;
 };
 
 /// Consecutive points of a group, joined in their order. One point alone is a dot.

@@ -32,14 +32,6 @@ class RayIndex {
  public:
   /// O(n log n) for n triangles, in parallel; about 45 bytes a triangle kept. The same for any number of threads.
   explicit RayIndex(const Surfaces& surfaces, const Execution& execution = {});
-  /// On two levels: a hierarchy for every mesh that has instances, in the mesh's own space, and one over the instances.
-  /// Ids and answers are to the bit those of an index over Surfaces(scene), which need not be made: memory and time
-  /// grow with the triangles of the meshes, and with the instances by a matrix each, however many triangles they
-  /// repeat; only triangles of alpha mode MASK are kept for every instance, 80 bytes each.
-  /// Queries take longer, as boxes and triangles are placed in the world when a ray comes to them.
-  /// (I. Wald, C. Benthin, P. Slusallek. Distributed Interactive Ray Tracing of Dynamic Scenes. 2003.)
-  /// \throws Error as Surfaces(scene) does.
-  explicit RayIndex(const Scene& scene, const Execution& execution = {});
   ~RayIndex();
   RayIndex(RayIndex&&) noexcept;
   RayIndex& operator=(RayIndex&&) noexcept;
@@ -52,22 +44,15 @@ class RayIndex {
   /// new index, which is made where `surfaces` has triangles to meet that this one does not hold. Ended by an error or
   /// by cancelling, the index is empty.
   void refit(const Surfaces& surfaces, const Execution& execution = {});
-  /// On two levels: moves the instances to where they are in `scene`, whose meshes are taken to be as they were.
-  /// O(instances), and what one copy of the boxes of the meshes takes. Where the index is on one level, or has other
-  /// instances, it is made anew. \throws Error as Surfaces(scene) does.
-  void refit(const Scene& scene, const Execution& execution = {});
-
   /// Follows one instance to where Surfaces::move() has put it: the surfaces are those that the index was made of, or
-  /// of the same scene. Answers are to the bit those of a new index, and queries grow slower as after refit(). On one
-  /// level O(triangles of the instance log n), and O(n) the first time; on two levels, where instances move quicker and
-  /// others cost no more, O(log instances), and O(instances) the first time. Made anew where refit() would be, and
-  /// where corners become finite. \throws Error bad_argument for an instance that is not there, or another scene.
+  /// of the same scene. Answers are to the bit those of a new index, and queries grow slower as after refit().
+  /// O(triangles of the instance log n), and O(n) the first time. Made anew where refit() would be, and where corners
+  /// become finite. \throws Error bad_argument for an instance that is not there.
   void follow(const Surfaces& surfaces, std::uint32_t instance, const Execution& execution = {});
 
-  /// Triangles that a ray can meet: those with finite corners (on two levels: in their meshes), no two the same in
-  /// their meshes.
+  /// Triangles that a ray can meet: those with finite corners, no two the same in their meshes.
   [[nodiscard]] std::uint32_t triangle_count() const;
-  /// World-space bounds of these triangles; empty without any. On two levels a box around them.
+  /// World-space bounds of these triangles; empty without any.
   [[nodiscard]] const Box& bounds() const;
   [[nodiscard]] std::size_t byte_count() const;
 

@@ -46,10 +46,9 @@ inline constexpr std::uint32_t max_texcoord_sets = 4;
 /// A triangle mesh in its own space. Counter-clockwise corners face the viewer.
 ///
 /// A mesh may be curved: then `spheres` and `patches` are what it is, in this order its curved primitives, and its
-/// triangles are only a tessellation of them, for methods that know triangles alone; tessellate() makes one for a view,
-/// CurvedIndex does without. Curved primitives that are not finite, and spheres whose radius is not positive, are never
-/// seen, but keep their number. A curved mesh has one material at most and one set of texture coordinates, and colours
-/// of its triangles do not count.
+/// triangles are only a tessellation of them; tessellate() makes one for a view. Curved primitives that are not finite,
+/// and spheres whose radius is not positive, are never seen, but keep their number. A curved mesh has one material at
+/// most and one set of texture coordinates, and colours of its triangles do not count.
 struct Mesh {
   std::string name;
   /// Any unit; as in the file, but for what the reader took off, non-finite ones included.
@@ -290,8 +289,6 @@ void set_origin(Scene& scene, const glm::dvec3& origin);
 /// most 2^32 - 2 triangles. \throws Error file_malformed or limit_exceeded naming the mesh and triangle. O(size of the
 /// scene).
 void validate(const Scene& scene);
-/// The same but for the vertices that triangles name: for Surfaces, which look at all of those anyway.
-void validate_besides_vertices(const Scene& scene);
 
 /// A scene made by code: teapot, cubes, cycle, city, spheres, gallery.
 /// \throws Error bad_argument naming the known ones.

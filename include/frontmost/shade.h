@@ -14,7 +14,6 @@
 #include <span>
 #include <vector>
 
-#include "frontmost/curved.h"
 #include "frontmost/environment.h"
 #include "frontmost/figure.h"
 #include "frontmost/image.h"
@@ -282,12 +281,6 @@ class Shader {
 /// \throws Error bad_argument for a scan or options that do not fit. O(rays).
 [[nodiscard]] Image shade(const Surfaces& surfaces, const ScanInput& input, const ShadeOptions& options = {},
                           const Execution& execution = {});
-
-/// A plain picture of a scan that may have met curved surfaces, whose own normals count: `lit` by a light at the eye,
-/// from base colours without textures, all opaque and without shadows. The mean of all samples. Precondition: index and
-/// scan are of the scene. O(rays). \throws Error unsupported for Shading::uv and an opacity below 1.
-[[nodiscard]] Image shade(const CurvedIndex& index, const Scene& scene, const CurvedScan& scan,
-                          const ShadeOptions& options = {}, const Execution& execution = {});
 
 /// World-space unit shading normals at the first sample: channels N.X, N.Y, N.Z; zero where nothing is seen.
 [[nodiscard]] Image normal_image(const Surfaces& surfaces, const Visible& visible, const Execution& execution = {});

@@ -33,8 +33,4 @@ namespace frontmost {
 /// and as validate() does of scene and view.
 [[nodiscard]] Scene tessellate(const Scene& scene, const View& view, double pixels);
 
-/// A close upper bound of how many triangles tessellate() would make for the curved meshes, without making any; may be
-/// beyond its limit, and infinite. O(size of the scene). \throws Error as tessellate() does, but for the limit.
-[[nodiscard]] double tessellated_count(const Scene& scene, const View& view, double pixels);
-
 }  // namespace frontmost

@@ -11,11 +11,12 @@
 #include <mutex>
 
 #include "abuffer/fragment_pass.h"
+#include "abuffer/plan/crowd.h"
 #include "abuffer/tile_parts.h"
 
 namespace frontmost {
 
-std::uint64_t most_gathered_fragments(const View& view) {
+std::uint64_t abuffer_detail::most_gathered_fragments(const View& view) {
   constexpr std::uint64_t most_per_pixel = 64;
   return std::max(most_fragments, most_per_pixel * view.pixel_count());
 }

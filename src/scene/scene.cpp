@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/validate.h"
+
 namespace frontmost {
 namespace {
 

@@ -11,6 +11,7 @@
 #include "sheets/page_marks.h"
 #include "sheets/planned_view.h"
 #include "sheets/sections/sections.h"
+#include "view/tessellate/level.h"
 
 namespace frontmost {
 

@@ -9,7 +9,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "frontmost/scene.h"
+#include "scene/validate.h"
 #include "surfaces/cluster_set.h"
 
 namespace frontmost {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "abuffer/plan/crowd.h"
 #include "fragment_oracle.h"
 #include "support/cutout_scene.h"
 #include "support/effort.h"
@@ -121,13 +122,13 @@ TEST(Limit, CountsWhatThePictureShows) {
   view.projection = make_orthographic(-1, 1, -1, 1, {0.5, 6});
   // The line x + y = 1.8 leaves a two hundredth of the picture, which itself would be too much.
   const std::uint64_t picture = view.pixel_count(), fragments = count_fragments(Surfaces(scene), view).fragments;
-  EXPECT_GT(picture * count, most_gathered_fragments(view));
+  EXPECT_GT(picture * count, abuffer_detail::most_gathered_fragments(view));
   EXPECT_NEAR(double(fragments), double(picture * count) / 200, 0.01 * double(picture * count) / 200);
 }
 
 TEST(Limit, GrowsWithThePicture) {
-  EXPECT_EQ(most_gathered_fragments(front_view(1920, 1080)), most_fragments);
-  EXPECT_EQ(most_gathered_fragments(front_view(8192, 8192)), std::uint64_t(1) << 32);
+  EXPECT_EQ(abuffer_detail::most_gathered_fragments(front_view(1920, 1080)), most_fragments);
+  EXPECT_EQ(abuffer_detail::most_gathered_fragments(front_view(8192, 8192)), std::uint64_t(1) << 32);
 }
 
 }  // namespace

@@ -77,15 +77,6 @@ TEST_F(RayCameras, SamplesAndShadowsCountAndMapsHaveOneRayAPixel) {
     succeed(line + more + " -o other.png");
 }
 
-TEST_F(RayCameras, CurvedSurfacesThatAreLitPlainlyAreTold) {
-  const std::string spheres = "render builtin:spheres --camera-model panorama --resolution 32,16 ";
-  const char* const told =
-      "spheres and patches are plain all around: lit from the eye, opaque, without textures and shadows";
-  EXPECT_THAT(succeed(spheres + "-o a.png").err, HasSubstr(told));
-  EXPECT_THAT(succeed(spheres + "-o a.png --shading flat").err, Not(HasSubstr(told)));
-  EXPECT_THAT(succeed(spheres + "--depth a.exr").err, Not(HasSubstr(told)));
-}
-
 TEST_F(RayCameras, ABatchMayMixCameras) {
   write("views.json", R"({"outputs": {"output": "{view}.png"}, "views": [
     {"name": "flat", "resolution": [32, 16]},

@@ -7,7 +7,7 @@
 
 #include "eye_oracle.h"
 #include "frontmost/agreement.h"
-#include "frontmost/curved.h"
+#include "frontmost/ray_camera.h"
 #include "frontmost/raycast.h"
 #include "frontmost/zbuffer.h"
 #include "indexed_scene.h"
@@ -226,21 +226,6 @@ TEST(EyesOnSurfaces, ALightInTheirPlaneThrowsNoShadowOfThem) {
   for (TrianglePoint& point : points) point.corners = {glm::vec3(0, 0, 0), glm::vec3(2, 0, 0), glm::vec3(1, -3, 1)};
   are_lit(in.index, points, {0.25f, 1, 0}, lit);
   EXPECT_EQ(std::count(lit.begin(), lit.end(), 0), 3);
-}
-
-TEST(EyesOnSurfaces, CurvedSurfacesBesideATriangleInTheirPlaneAreSeen) {
-  Scene scene = triangle_before_a_wall();
-  Mesh ball;
-  ball.spheres = {{{0.5, 3, 0}, 0.8}};
-  scene.meshes.push_back(ball);
-  scene.instances.push_back({"ball", 1, glm::dmat4(1.0)});
-  const CurvedIndex index(scene);
-  for (const glm::dvec3& eye : {glm::dvec3(0, 0, 0), glm::dvec3(1, 0, 0), glm::dvec3(0.5, 0.5, 0)}) {
-    const Visible seen = raycast(index, view_from(eye, {0, 1, 0})).visible;
-    EXPECT_EQ(std::count(seen.primitives.begin(), seen.primitives.end(), 0u), 0);
-    EXPECT_GT(std::count(seen.primitives.begin(), seen.primitives.end(), 2u), 0);
-    EXPECT_GT(std::count(seen.primitives.begin(), seen.primitives.end(), 1u), 0);
-  }
 }
 
 }  // namespace

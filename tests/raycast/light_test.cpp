@@ -275,7 +275,7 @@ TEST(Light, BoxesWithoutAnEndThrowTheSameShadowsOnEveryInstructionSet) {
   add(scene, caster, placed);
   add(scene, caster, placed);
   const Surfaces surfaces(scene);
-  const RayIndex index(scene);
+  const RayIndex index(surfaces);
   std::vector<TrianglePoint> points(400);
   for (std::size_t i = 0; i < points.size(); ++i)
     points[i] = {.primitive = 0,

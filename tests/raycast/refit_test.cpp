@@ -141,25 +141,5 @@ TEST(Refit, OneThatIsEndedHalfwayLeavesNothing) {
   EXPECT_TRUE(was_whole);
 }
 
-TEST(Refit, InstancesThatAreMovedHalfwayLeaveNothing) {
-  Scene scene = three_of(Kind::soup, 9);
-  RayIndex index(scene);
-  scene.instances[1].world_from_mesh[3] += glm::dvec4(0.5, 0, 0, 0);
-  const CountingWatch watch(1);
-  EXPECT_THROW(index.refit(scene, watch.execution()), Error);
-  expect_empty(index);
-  index.refit(scene);
-  expect_as_built_anew(index, RayIndex(scene), 3);
-}
-
-TEST(Refit, ABadTransformLeavesTheIndexAsItWas) {
-  Scene scene = three_of(Kind::soup, 9);
-  RayIndex index(scene);
-  Scene bad = scene;
-  bad.instances[2].world_from_mesh[0][0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(index.refit(bad), Error);
-  expect_as_built_anew(index, RayIndex(scene), 3);
-}
-
 }  // namespace
 }  // namespace frontmost::test

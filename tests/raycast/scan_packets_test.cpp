@@ -150,23 +150,5 @@ TEST(ScanPackets, FindTheSameAmongAllSizes) {
   EXPECT_GT(met, 1000u);
 }
 
-TEST(ScanPackets, FindTheSameOnTwoLevels) {
-  Scene scene = scene_of(random_mesh(Kind::soup, 300, 1));
-  scene.meshes.push_back(random_mesh(Kind::shared_grid, 200, 2));
-  const auto place = [&](std::uint32_t mesh, const glm::dvec3& scales, const glm::dvec3& offset) {
-    glm::dmat4 m(1.0);
-    for (int i = 0; i < 3; ++i) m[i][i] = scales[i];
-    m[3] = glm::dvec4(offset, 1);
-    scene.instances.push_back({"", mesh, m});
-  };
-  place(1, {-1, 1, 1}, {0.3, 0.2, 0.1});
-  place(0, {0.5, -0.5, 0.7}, {0, 0.5, 0});
-  place(1, {0.3, 0, 0.3}, {0.1, 0.4, 0});
-  place(0, {1e-3, 2e-3, 1e-3}, {0.4, 0, -0.2});
-  place(0, {1e30, 1e30, 1e30}, {0, 0, 0});
-  const RayIndex index(scene);
-  for (const RayCamera& camera : cameras_at({0.05, 0.1, 0.7}, 2)) EXPECT_GT(expect_as_ray_by_ray(index, camera), 0u);
-}
-
 }  // namespace
 }  // namespace frontmost::test

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "frontmost/curved.h"
 #include "indexed_scene.h"
 #include "support/refusal.h"
 
@@ -72,20 +71,6 @@ TEST(Scanner, IncidenceIsTheSameFromBehind) {
   EXPECT_NEAR(angles[0], 30, 1e-5);
 }
 
-// From two units off the centre of a unit sphere, a ray 0.5 beside it meets it where its normal is 30 degrees off.
-TEST(Scanner, IncidenceOnCurvedSurfacesIsToTheirOwnNormal) {
-  Mesh mesh;
-  mesh.spheres.push_back({{0, 0, 0}, 1});
-  const CurvedIndex index(scene_of(mesh));
-  const double beside = std::asin(0.25);
-  const CurvedScan met = scan(index, {Lidar{{0}, 2, 0, beside}, look_at({0, 0, 2}, {0, 0, 0}, {0, 1, 0})});
-  const Buffer<float> angles = incidence_angles(met);
-  EXPECT_NEAR(met.scan.ranges[0], 1, 1e-6);
-  EXPECT_NEAR(angles[0], 0, 1e-5);
-  EXPECT_NEAR(met.scan.ranges[1], 2 * std::cos(beside) - std::sqrt(0.75), 1e-6);
-  EXPECT_NEAR(angles[1], 30, 1e-4);
-}
-
 TEST(Scanner, RangesOutsideOfTheLimitsAreNothingMet) {
   const Walls walls;
   RayCamera camera = walls.camera;
@@ -101,17 +86,6 @@ TEST(Scanner, RangesOutsideOfTheLimitsAreNothingMet) {
   camera.nearest = 1.5;
   camera.farthest = 9;
   EXPECT_EQ(scan(walls.index, camera).ranges[1], nothing_met) << "what is too near hides the wall behind it";
-}
-
-TEST(Scanner, LimitsHoldForCurvedSurfaces) {
-  Mesh mesh;
-  mesh.spheres.push_back({{0, 0, 0}, 1});
-  const CurvedIndex index(scene_of(mesh));
-  RayCamera camera{RayPattern{{glm::vec3(0, 0, -1)}}, look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0})};
-  EXPECT_EQ(scan(index, camera).scan.ranges[0], 4.0f);
-  camera.nearest = 4.5;
-  EXPECT_EQ(scan(index, camera).scan.ranges[0], nothing_met);
-  EXPECT_EQ(scan(index, camera).scan.primitives[0], no_primitive);
 }
 
 TEST(Scanner, RefusesWhatCannotBe) {

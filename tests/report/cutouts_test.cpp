@@ -116,7 +116,6 @@ TEST_P(EveryKind, IsSeenAlikeByEveryMethod) {
     view.culling = Culling(seed % 3);
     const Visible drawn = zbuffer(surfaces, view), cast = raycast(surfaces, view);
     ASSERT_EQ(content_hash(visible_layers(surfaces, view, 1)[0]), content_hash(drawn));
-    ASSERT_EQ(content_hash(raycast(RayIndex(scene), view)), content_hash(cast)) << "on two levels";
     const Agreement answer = check_agreement(surfaces, drawn, cast);
     EXPECT_EQ(answer.count(Difference::unexplained), 0u);
     differing += answer.differing();

@@ -29,7 +29,6 @@ struct Method {
 Visible by_zbuffer(const Scene& scene, const View& view) { return ZBuffer().draw(Surfaces(scene), view); }
 Visible by_single_picture(const Scene& scene, const View& view) { return zbuffer(Surfaces(scene), view); }
 Visible by_raycast(const Scene& scene, const View& view) { return raycast(Surfaces(scene), view); }
-Visible by_two_levels(const Scene& scene, const View& view) { return raycast(RayIndex(scene), view); }
 Visible by_depth_buffer(const Scene& scene, const View& view) {
   DepthBuffer buffer(view.width, view.height, view.samples, DepthFormat::f32);
   buffer.draw(Surfaces(scene), view);
@@ -40,9 +39,11 @@ Visible by_layers(const Scene& scene, const View& view) {
   return std::move(layers[0]);
 }
 
-constexpr Method methods[] = {{"zbuffer", by_zbuffer},           {"single picture", by_single_picture},
-                              {"raycast", by_raycast},           {"two levels", by_two_levels},
-                              {"depth buffer", by_depth_buffer}, {"layers", by_layers}};
+constexpr Method methods[] = {{"zbuffer", by_zbuffer},
+                              {"single picture", by_single_picture},
+                              {"raycast", by_raycast},
+                              {"depth buffer", by_depth_buffer},
+                              {"layers", by_layers}};
 
 /// Coordinates in steps of 1/1024, so that sums with whole numbers are exact in floats.
 glm::vec3 in_steps(const glm::vec3& p) { return glm::round(p * 1024.0f) / 1024.0f; }

@@ -5,7 +5,7 @@
 #include <functional>
 #include <limits>
 
-#include "frontmost/scene.h"
+#include "scene/validate.h"
 #include "support/refusal.h"
 
 namespace frontmost {

@@ -376,21 +376,6 @@ TEST(ShadeScan, RefusesScansThatDoNotFit) {
   EXPECT_THROW((void)of.picture({.opacity = 2}), Error);
 }
 
-TEST(ShadeScan, CurvedSurfacesAreLitFromTheEye) {
-  Scene scene;
-  scene.meshes.emplace_back().spheres.push_back({{0, 0, -3}, 1});
-  scene.meshes[0].material_ids = {0};
-  scene.materials.push_back(colored({0.5f, 0.25f, 0.75f, 1}));
-  scene.instances.push_back({"ball", 0, glm::dmat4(1.0)});
-  const CurvedIndex index(scene);
-  for (const int samples : {1, 16}) {
-    const CurvedScan met = scan(index, {Fisheye{9, 9, 1e-3}, glm::dmat4(1.0), samples});
-    expect_color(shade(index, scene, met), 4, 4, {0.5f, 0.25f, 0.75f, 1}, 1e-3f);
-    EXPECT_THROW((void)shade(index, scene, met, {.shading = Shading::uv}), Error);
-    EXPECT_THROW((void)shade(index, scene, met, {.opacity = 0.5f}), Error);
-  }
-}
-
 TEST(ShadeScan, IdsOfAnyGrid) {
   const Scanned of(wall({1, 1, 1, 1}), kNine);
   const std::vector<PrimitiveId> ids = {0, no_primitive};

@@ -58,20 +58,15 @@ glm::dmat4 next_placement(Random& random) {
 /// What is kept from move to move.
 struct Kept {
   explicit Kept(const Scene& scene)
-      : surfaces(scene),
-        index(surfaces),
-        placed_index(scene),
-        occlusion(surfaces),
-        parts(surfaces, ObjectUnit::parts) {}
+      : surfaces(scene), index(surfaces), occlusion(surfaces), parts(surfaces, ObjectUnit::parts) {}
 
   void move(Scene& scene, std::uint32_t instance, const glm::dmat4& to) {
     surfaces.move(scene, instance, to);
     index.follow(surfaces, instance);
-    placed_index.follow(surfaces, instance);
   }
 
   Surfaces surfaces;
-  RayIndex index, placed_index;
+  RayIndex index;
   ZBuffer buffer;
   Occlusion occlusion, parts;
 };
@@ -106,7 +101,6 @@ void expect_as_made_anew(Kept& kept, const Scene& scene, const View& view) {
   ASSERT_NO_FATAL_FAILURE(expect_same(expected, draw_both_ways(kept.surfaces, view)));
   const Visible by_rays = raycast(anew, view);
   ASSERT_NO_FATAL_FAILURE(expect_same(by_rays, raycast(kept.index, view)));
-  ASSERT_NO_FATAL_FAILURE(expect_same(by_rays, raycast(kept.placed_index, view)));
   Occlusion occlusion(anew), parts(anew, ObjectUnit::parts);
   ASSERT_NO_FATAL_FAILURE(expect_same_sights(kept.occlusion, occlusion, view));
   ASSERT_NO_FATAL_FAILURE(expect_same_sights(kept.parts, parts, view));
@@ -235,13 +229,9 @@ TEST(Move, OtherScenesInstancesAndTransformsAreRefused) {
   broken[3].x = std::numeric_limits<double>::infinity();
   EXPECT_EQ(code_of([&] { surfaces.move(scene, 0, broken); }), ErrorCode::bad_argument);
   EXPECT_EQ(scene.instances[0].world_from_mesh, before);
-  RayIndex index(surfaces), placed(other);
+  RayIndex index(surfaces);
   EXPECT_EQ(refusal_of(ErrorCode::bad_argument, [&] { index.follow(surfaces, 40); }),
             "follow: there is no instance 40");
-  other.instances.pop_back();
-  const Surfaces fewer(other);
-  EXPECT_EQ(refusal_of(ErrorCode::bad_argument, [&] { placed.follow(fewer, 0); }),
-            "follow: the surfaces are of another scene");
 }
 
 }  // namespace

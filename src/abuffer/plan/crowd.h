@@ -22,6 +22,9 @@ struct CopyRule {
   std::size_t most = std::size_t(-1);  ///< never more than these, opaque or not
 };
 
+/// How many fragments a function goes through at most, as `most_fragments` says.
+[[nodiscard]] std::uint64_t most_gathered_fragments(const View& view);
+
 /// A frame some tile of which holds too much.
 class CrowdedFrame {
  public:

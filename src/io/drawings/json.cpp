@@ -27,7 +27,6 @@ void write_pen(PageText& out, const Pen& pen) {
     out.decimal(pen.dashes[i]);
   }
   out << "]";
-  if (pen.takes_fill_color) out << ", \"takes_fill_color\": true";
   out << "}";
 }
 

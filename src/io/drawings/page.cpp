@@ -113,12 +113,7 @@ void WritingProgress::tell() const {
 PathPaint paint_of(const PageGroup& group, std::size_t path) {
   PathPaint paint;
   if (!group.fills.empty() && group.fills[path].opacity > 0) paint.fill = group.fills[path];
-  if (group.pen.width == 0) return paint;
-  if (!group.pen.takes_fill_color) {
-    if (group.pen.color.opacity > 0) paint.line = group.pen.color;
-  } else if (paint.fill && paint.fill->opacity == 255) {
-    paint.line = paint.fill;
-  }
+  if (group.pen.width > 0 && group.pen.color.opacity > 0) paint.line = group.pen.color;
   return paint;
 }
 

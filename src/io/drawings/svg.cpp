@@ -54,16 +54,16 @@ class SvgWriter {
       out_ << " opacity=\"";
       out_.fixed(thousandths(group.opacity / 255.0)) << '"';
     }
-    const bool has_lines = group.pen.width > 0, has_line_color = has_lines && !group.pen.takes_fill_color;
-    if (has_line_color) color("stroke", group.pen.color);
+    const bool has_lines = group.pen.width > 0;
     if (has_lines) {
+      color("stroke", group.pen.color);
       out_ << " stroke-width=\"";
       millimetres(group.pen.width) << "\" stroke-linecap=\"round\" stroke-linejoin=\"round\"";
     }
     if (has_lines && !group.pen.dashes.empty()) write_dashes(group.pen.dashes);
     if (group.fills.empty()) out_ << " fill=\"none\"";
     out_ << ">\n";
-    if (has_line_color || !group.fills.empty()) write_paths(group);
+    if (has_lines || !group.fills.empty()) write_paths(group);
     out_ << "</g>\n";
   }
 
@@ -114,7 +114,6 @@ class SvgWriter {
     } else {
       out_ << " fill=\"none\"";
     }
-    if (paint.line && group.pen.takes_fill_color) color("stroke", *paint.line);
     out_ << " d=\"";
     do write_path(group, group.paths[i]);
     while (++i < group.paths.size() && group.paths[i].is_part);

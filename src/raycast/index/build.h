@@ -71,28 +71,12 @@ void fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execu
 /// Fills tree.nodes over the boxes, which are reordered.
 void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& execution);
 
-/// Whether triangles that are there again have a tree of their own.
-enum class RepeatedTriangles { among_all, apart };
-
-/// One level over `surfaces`.
-[[nodiscard]] RayTree make_tree(const Surfaces& surfaces, RepeatedTriangles copies, const Execution& execution);
-
-/// Two levels: one tree for every mesh that has instances, and one over the instances.
-[[nodiscard]] RayTree make_placed_tree(const Scene& scene, const Execution& execution);
-
-/// Moves the instances of a tree on two levels to where they are in `scene`.
-/// \returns false where these are other instances; the tree is then as it was. Empty after an error halfway.
-[[nodiscard]] bool replace_instances(const Scene& scene, RayTree& tree, const Execution& execution);
+[[nodiscard]] RayTree make_tree(const Surfaces& surfaces, const Execution& execution);
 
 /// Moves one instance to where it is in `surfaces`, which are those that the tree is of. \returns false where the tree
 /// has to be made anew, because corners have become finite, are so no more, or are copies of others; it is then empty,
 /// as it is after an error.
 [[nodiscard]] bool follow_instance(const Surfaces& surfaces, std::uint32_t instance, RayTree& tree);
-
-/// Gives a root the place of an instance.
-void place_instance(const Instance& instance, PlacedRoot& placed);
-/// Around the boxes that a walk meets below the root: its children's, where it has any.
-[[nodiscard]] Box placed_box(const RayTree& tree, const PlacedRoot& by);
 
 /// Two corners the same: no ray meets it, or it is one that Surfaces has set aside as not finite.
 inline bool is_degenerate(const ClusterSet& set, std::size_t t) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// An index after one instance has moved: its triangles, or its root, get their new places, and the boxes on the way
-// from there to the root are fitted anew.
+// An index after one instance has moved: its triangles get their new places, and the boxes on the way from there to the
+// root are fitted anew.
 //
-//    one level     leaves that hold triangles of the instance --> boxes of these leaves --> nodes above
-//    two levels    the instance's root --> its box --> nodes above, of the tree over the instances
+//    leaves that hold triangles of the instance --> boxes of these leaves --> nodes above
 
 #include <algorithm>
 
@@ -13,12 +12,11 @@
 namespace frontmost {
 namespace {
 
-/// The links from `first_node` on, which are those to roots on two levels.
-RayLinks links_of(const RayTree& tree, std::uint32_t first_node, std::size_t leaf_count) {
+RayLinks links_of(const RayTree& tree) {
   RayLinks links;
   links.above_node.assign(tree.nodes.size(), no_index);
-  links.above_leaf.assign(leaf_count, no_index);
-  for (std::uint32_t n = first_node; n < tree.nodes.size(); ++n)
+  links.above_leaf.assign(tree.leaves.size(), no_index);
+  for (std::uint32_t n = 0; n < tree.nodes.size(); ++n)
     for (std::uint32_t lane = 0; lane < tree.nodes[n].count; ++lane) {
       const std::uint32_t child = tree.nodes[n].child[lane];
       (child & kLeafBit ? links.above_leaf[child & ~kLeafBit] : links.above_node[child]) = n * kRayLanes + lane;
@@ -26,7 +24,7 @@ RayLinks links_of(const RayTree& tree, std::uint32_t first_node, std::size_t lea
   return links;
 }
 
-/// Sets the box of a leaf, or a root, in the node above it, and fits what is above that.
+/// Sets the box of a leaf in the node above it, and fits what is above that.
 void fit_above(RayTree& tree, std::uint32_t leaf, Box box) {
   std::uint32_t link = tree.links->above_leaf[leaf];
   for (; link != no_index; link = tree.links->above_node[link / kRayLanes]) {
@@ -71,10 +69,10 @@ std::uint32_t count_met(const Mesh& mesh) {
   return count;
 }
 
-bool follow_on_one_level(const PlacedScene& placed, std::uint32_t instance, RayTree& tree) {
+bool move_instance(const PlacedScene& placed, std::uint32_t instance, RayTree& tree) {
   if (tree.copies || tree.root == no_index) return false;
   if (!tree.links) {
-    tree.links = links_of(tree, 0, tree.leaves.size());
+    tree.links = links_of(tree);
     tree.links->holders.emplace(placed.first_primitives, tree.leaves.size(),
                                 [&](std::uint32_t leaf) { return std::span(tree.leaves[leaf].id, kRayLanes); });
   }
@@ -89,19 +87,6 @@ bool follow_on_one_level(const PlacedScene& placed, std::uint32_t instance, RayT
   return count == count_met(placed.scene->meshes[placed.scene->instances[instance].mesh]);
 }
 
-bool follow_on_two_levels(const PlacedScene& placed, std::uint32_t instance, RayTree& tree) {
-  PlacedRoot& root = tree.placed[instance];
-  place_instance(placed.scene->instances[instance], root);
-  if (root.root == no_index) return true;
-  if (!tree.links) tree.links = links_of(tree, tree.mesh_nodes, tree.placed.size());
-  const Box box = placed_box(tree, root);
-  // Nothing of it was finite, or is any more.
-  if (box.is_empty() || (tree.links->above_leaf[instance] == no_index && tree.root != (instance | kLeafBit)))
-    return false;
-  fit_above(tree, instance, box);
-  return true;
-}
-
 }  // namespace
 
 bool follow_instance(const Surfaces& surfaces, std::uint32_t instance, RayTree& tree) {
@@ -109,7 +94,7 @@ bool follow_instance(const Surfaces& surfaces, std::uint32_t instance, RayTree& 
   TreeChange change(tree);
   tree.cutouts = placed.cutouts;
   tree.sides = placed.sides;
-  if (!(tree.placed.empty() ? follow_on_one_level : follow_on_two_levels)(placed, instance, tree)) return false;
+  if (!move_instance(placed, instance, tree)) return false;
   change.complete();
   return true;
 }

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // RayIndex: what its constructors and refit() do, and in what order.
-//
-// An index on one level is built over Surfaces. On two levels each mesh has one tree, where it is modelled, however
-// often it is placed, and a tree over the instances leads into them: so a forest of one tree takes the memory of one.
 
 #include "base/parallel.h"
 #include "raycast/index/build.h"
@@ -24,21 +21,21 @@ std::size_t byte_count(const RayLinks& links) {
 
 std::size_t byte_count(const RayTree& tree) {
   return sizeof(RayTree) + tree.nodes.size() * sizeof(RayNode) + tree.leaves.size() * sizeof(RayLeaf) +
-         tree.placed.size() * sizeof(PlacedRoot) + (tree.cutouts ? tree.cutouts->byte_count() : 0) +
+         (tree.cutouts ? tree.cutouts->byte_count() : 0) +
          (tree.sides ? tree.sides->bits.size() * sizeof(std::uint32_t) : 0) +
          (tree.copies ? byte_count(*tree.copies) : 0) + (tree.links ? byte_count(*tree.links) : 0);
 }
 
 }  // namespace
 
-RayTree make_tree(const Surfaces& surfaces, RepeatedTriangles copies, const Execution& execution) {
+RayTree make_tree(const Surfaces& surfaces, const Execution& execution) {
   const IeeeScope ieee;
   RayTree tree;
   tree.cutouts = surfaces.placed().cutouts;
   tree.sides = surfaces.placed().sides;
   report_progress(execution, "index", 0);
   fill_leaves(surfaces, tree, execution);
-  if (copies == RepeatedTriangles::apart) tree.copies = take_copies(tree, execution);
+  tree.copies = take_copies(tree, execution);
   build(tree, execution);
   if (tree.copies) build(*tree.copies, execution);
   report_progress(execution, "index", 1);
@@ -46,9 +43,7 @@ RayTree make_tree(const Surfaces& surfaces, RepeatedTriangles copies, const Exec
 }
 
 RayIndex::RayIndex(const Surfaces& surfaces, const Execution& execution)
-    : tree_(std::make_unique<RayTree>(make_tree(surfaces, RepeatedTriangles::apart, execution))) {}
-RayIndex::RayIndex(const Scene& scene, const Execution& execution)
-    : tree_(std::make_unique<RayTree>(make_placed_tree(scene, execution))) {}
+    : tree_(std::make_unique<RayTree>(make_tree(surfaces, execution))) {}
 RayIndex::~RayIndex() = default;
 RayIndex::RayIndex(RayIndex&&) noexcept = default;
 RayIndex& RayIndex::operator=(RayIndex&&) noexcept = default;
@@ -56,25 +51,15 @@ RayIndex& RayIndex::operator=(RayIndex&&) noexcept = default;
 void RayIndex::refit(const Surfaces& surfaces, const Execution& execution) {
   const IeeeScope ieee;
   report_progress(execution, "index", 0);
-  if (!refit_tree(surfaces, *tree_, execution)) *tree_ = make_tree(surfaces, RepeatedTriangles::apart, execution);
+  if (!refit_tree(surfaces, *tree_, execution)) *tree_ = make_tree(surfaces, execution);
   report_progress(execution, "index", 1);
-}
-
-void RayIndex::refit(const Scene& scene, const Execution& execution) {
-  const IeeeScope ieee;
-  if (!replace_instances(scene, *tree_, execution)) *tree_ = make_placed_tree(scene, execution);
 }
 
 void RayIndex::follow(const Surfaces& surfaces, std::uint32_t instance, const Execution& execution) {
   const IeeeScope ieee;
-  const bool has_two_levels = !tree_->placed.empty();
   if (instance >= surfaces.scene().instances.size())
     throw Error(ErrorCode::bad_argument, "follow: there is no instance " + std::to_string(instance));
-  if (has_two_levels && tree_->placed.size() != surfaces.scene().instances.size())
-    throw Error(ErrorCode::bad_argument, "follow: the surfaces are of another scene");
-  if (follow_instance(surfaces, instance, *tree_)) return;
-  *tree_ = has_two_levels ? make_placed_tree(surfaces.scene(), execution)
-                          : make_tree(surfaces, RepeatedTriangles::apart, execution);
+  if (!follow_instance(surfaces, instance, *tree_)) *tree_ = make_tree(surfaces, execution);
 }
 
 std::uint32_t RayIndex::triangle_count() const {

@@ -14,6 +14,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/memory.h"
 #include "frontmost/raycast.h"
 #include "surfaces/cutouts.h"
 #include "surfaces/holders.h"
@@ -47,39 +48,35 @@ struct alignas(64) RayLeaf {
   }
 };
 
-/// A tree that stands somewhere in the world: nodes and leaves in the space of a mesh.
-struct PlacedRoot {
-  glm::dmat4 world_from_mesh{1.0};
-  std::uint32_t mesh = no_index;
-  PrimitiveId first = 0;          ///< the id of the mesh's triangle 0; leaves count from there
-  std::uint32_t root = no_index;  ///< a child
-  bool is_mirrored = false;       ///< the last two corners change places
-};
-
 /// The way back, once an instance has moved. node * 16 + lane, or no_index above the root.
 struct RayLinks {
   std::vector<std::uint32_t> above_node;
-  std::vector<std::uint32_t> above_leaf;  ///< on two levels, by placed root
-  std::optional<Holders> holders;         ///< on one level: the leaves of an instance's triangles
+  std::vector<std::uint32_t> above_leaf;
+  std::optional<Holders> holders;  ///< the leaves of an instance's triangles
 };
 
-/// On two levels, the leaves of the tree under `root` are the numbers of placed roots.
 struct RayTree {
   Buffer<RayNode> nodes;
   Buffer<RayLeaf> leaves;
-  std::vector<PlacedRoot> placed;  ///< by instance; empty on one level
-  std::uint32_t mesh_nodes = 0;    ///< how many nodes belong to meshes, before those over the instances
-  std::uint32_t mesh_depth = 0;    ///< nodes from the root of a mesh to its deepest leaf
-  std::uint32_t root = no_index;   ///< a child; no_index when there are no triangles
+  std::uint32_t root = no_index;  ///< a child; no_index when there are no triangles
   std::uint32_t triangle_count = 0;
-  std::uint32_t depth = 0;                 ///< nodes from the root to the deepest leaf, over both levels
-  Box bounds;                              ///< on two levels, of the boxes; around those of the triangles otherwise
+  std::uint32_t depth = 0;                 ///< nodes from the root to the deepest leaf
+  Box bounds;                              ///< around the triangles
   std::shared_ptr<const Cutouts> cutouts;  ///< null where no triangle has holes
   std::shared_ptr<const MaterialSides> sides;
   /// Triangles that are there again: each has the corners of one of this tree, in their order, and a higher id. So
   /// whoever asks what is nearest, or whether anything is met, does without them. Null: none were taken apart.
   std::shared_ptr<RayTree> copies;
   std::optional<RayLinks> links;  ///< made when they are first asked for
+
+  [[nodiscard]] const RayLeaf& leaf(std::uint32_t child) const { return leaves[child & ~kLeafBit]; }
+  /// For a child that will be looked at soon.
+  void prefetch(std::uint32_t child) const {
+    const char* const from =
+        child & kLeafBit ? reinterpret_cast<const char*>(&leaf(child)) : reinterpret_cast<const char*>(&nodes[child]);
+    const std::size_t bytes = child & kLeafBit ? sizeof(RayLeaf) : sizeof(RayNode);
+    for (std::size_t i = 0; i < bytes; i += 64) prefetch_line(from + i);
+  }
 
   /// The most children that a depth-first walk has waiting.
   [[nodiscard]] std::size_t stack_size() const { return std::size_t(depth) * (kRayLanes - 1) + 1; }

@@ -73,7 +73,7 @@ void fit_nodes(const std::vector<LeafBox>& boxes, RayTree& tree) {
 bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execution) {
   TreeChange change(tree);
   // Copies may be moved apart.
-  if (!tree.placed.empty() || tree.copies) return false;
+  if (tree.copies) return false;
   const ClusterSet& set = surfaces.clusters(execution);
   tree.cutouts = set.cutouts;
   tree.sides = surfaces.placed().sides;

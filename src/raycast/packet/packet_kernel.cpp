@@ -11,7 +11,6 @@
 #include <array>
 #include <cstring>
 
-#include "raycast/index/placement.h"
 #include "raycast/packet/scan_packet.h"
 #include "raycast/query/queries.h"
 
@@ -31,24 +30,20 @@ namespace hn = hwy::HWY_NAMESPACE;
 class PacketWalker {
  public:
   PacketWalker(const RayTree& tree, const PacketCone& cone, ScanScratch& scratch)
-      : cone_(cone), stack_(scratch.stack.data()), walk_(tree), hits_(tree, cone, scratch) {
+      : cone_(cone), tree_(tree), stack_(scratch.stack.data()), hits_(tree, cone, scratch) {
     stack_[waiting_++] = {0, tree.root};
   }
 
   PacketHits& Walk() {
     while (waiting_ > 0) {
       const ScanScratch::Waiting next = stack_[--waiting_];
-      walk_.Take(waiting_);
       if (next.place > hits_.packet_end()) continue;
-      if (HWY_UNLIKELY(walk_.IsInstance(next.child))) {
-        stack_[waiting_] = {next.place, walk_.Enter(next.child, waiting_)};
-        ++waiting_;
-      } else if (next.child & kLeafBit) {
-        hits_.MeetLeaf(walk_.Leaf(next.child));
+      if (next.child & kLeafBit) {
+        hits_.MeetLeaf(tree_.leaf(next.child));
       } else {
-        LookInto(walk_.Node(next.child));
+        LookInto(tree_.nodes[next.child]);
       }
-      if (waiting_ > 0 && !walk_.IsAround(waiting_)) walk_.Prefetch(stack_[waiting_ - 1].child);
+      if (waiting_ > 0) tree_.prefetch(stack_[waiting_ - 1].child);
     }
     return hits_;
   }
@@ -85,9 +80,9 @@ class PacketWalker {
   }
 
   const PacketCone& cone_;
+  const RayTree& tree_;
   ScanScratch::Waiting* stack_;
   std::size_t waiting_ = 0;
-  PlacedWalk walk_;
   PacketHits hits_;
 };
 

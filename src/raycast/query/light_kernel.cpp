@@ -20,7 +20,6 @@
 #include <vector>
 
 #include "base/exact_vector.h"
-#include "raycast/index/placement.h"
 #include "raycast/query/queries.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -176,17 +175,12 @@ class LightPacket {
     if (waiting_count_ == 0) return;
     std::size_t count = 1;
     stack_[0] = tree_.root;
-    PlacedWalk walk(tree_);
     while (count > 0 && waiting_count_ > 0) {
       const std::uint32_t child = stack_[--count];
-      walk.Take(count);
-      if (HWY_UNLIKELY(walk.IsInstance(child))) {
-        stack_[count] = walk.Enter(child, count);
-        ++count;
-      } else if (child & kLeafBit) {
-        MeetLeaf(walk.Leaf(child));
+      if (child & kLeafBit) {
+        MeetLeaf(tree_.leaf(child));
       } else {
-        LookInto(walk.Node(child), count);
+        LookInto(tree_.nodes[child], count);
       }
     }
   }

@@ -13,7 +13,6 @@
 #include <cstring>
 #include <optional>
 
-#include "raycast/index/placement.h"
 #include "raycast/query/queries.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -41,7 +40,7 @@ class QueryWalker {
  public:
   /// `stack` has room for tree.stack_size().
   QueryWalker(const RayTree& tree, const Query& query, Want want, Entry* stack, std::vector<RayHit>& hits)
-      : tree_(tree), walk_(tree), q_(query), axis_(query), want_(want), stack_(stack), hits_(hits) {
+      : tree_(tree), q_(query), axis_(query), want_(want), stack_(stack), hits_(hits) {
     if (query.is_segment) end_ = 1;
     for (int axis = 0; axis < 3; ++axis) slab_[axis] = SlabOf(axis);
     stack_[waiting_++] = {0, tree.root};
@@ -50,15 +49,11 @@ class QueryWalker {
   /// One node or leaf. \returns false where the walk has ended, and `hits` is complete.
   bool Step() {
     const Entry next = stack_[--waiting_];
-    walk_.Take(waiting_);
-    if (HWY_UNLIKELY(walk_.IsInstance(next.child))) {
-      stack_[waiting_] = {next.t, walk_.Enter(next.child, waiting_)};
-      ++waiting_;
-    } else if ((next.child & kLeafBit) == 0) {
-      waiting_ += LookInto(walk_.Node(next.child), stack_ + waiting_);
+    if ((next.child & kLeafBit) == 0) {
+      waiting_ += LookInto(tree_.nodes[next.child], stack_ + waiting_);
     } else if (want_ == Want::closest) {
-      NoteLeaf(walk_.Leaf(next.child));
-    } else if (MeetLeaf(walk_.Leaf(next.child)) && want_ == Want::any) {
+      NoteLeaf(tree_.leaf(next.child));
+    } else if (MeetLeaf(tree_.leaf(next.child)) && want_ == Want::any) {
       return false;
     }
     while (waiting_ != 0 && stack_[waiting_ - 1].t > end_) --waiting_;
@@ -66,7 +61,7 @@ class QueryWalker {
       Settle();
       return false;
     }
-    if (!walk_.IsAround(waiting_)) walk_.Prefetch(stack_[waiting_ - 1].child);
+    tree_.prefetch(stack_[waiting_ - 1].child);
     return true;
   }
 
@@ -248,7 +243,6 @@ class QueryWalker {
   }
 
   const RayTree& tree_;
-  PlacedWalk walk_;
   const Query& q_;
   RayAxis axis_;
   Want want_;

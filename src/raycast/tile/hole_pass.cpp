@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "raycast/index/placement.h"
 #include "raycast/tile/tile_kernel.h"
 #include "view/screen_cutout.h"
 
@@ -57,18 +56,14 @@ class HolePasser {
     direction_ = rays_.is_parallel() ? rays_.forward() : at;
     nearest_ = {};
     waiting_.assign(1, {transform_.near, tree_.root});
-    PlacedWalk walk(tree_);
     while (!waiting_.empty()) {
       const auto [enter, child] = waiting_.back();
       waiting_.pop_back();
       if (is_behind(enter)) continue;
-      walk.Take(waiting_.size());
-      if (walk.IsInstance(child))
-        waiting_.push_back({enter, walk.Enter(child, waiting_.size())});
-      else if (child & kLeafBit)
-        meet_leaf(walk.Leaf(child), place);
+      if (child & kLeafBit)
+        meet_leaf(tree_.leaf(child), place);
       else
-        look_into(walk.Node(child));
+        look_into(tree_.nodes[child]);
     }
     return nearest_;
   }

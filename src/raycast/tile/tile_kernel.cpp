@@ -16,7 +16,6 @@
 #define HWY_TARGET_INCLUDE "raycast/tile/tile_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-#include "raycast/index/placement.h"
 #include "raycast/tile/triangle_queue-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -40,7 +39,6 @@ class TileCaster {
         place_(frame, tile_x, tile_y, sample),
         buffer_(place_, scratch),
         large_(frame, place_, buffer_),
-        walk_(frame.tree),
         queue_(frame, place_, buffer_, large_) {}
 
   void Cast() {
@@ -157,20 +155,16 @@ class TileCaster {
     while (waiting_ > 0) {
       const Waiting next = scratch_.stack[--waiting_];
       const auto bits = std::uint32_t(next >> 32), child = std::uint32_t(next);
-      walk_.Take(waiting_);
-      if (!walk_.IsAround(waiting_)) walk_.Prefetch(std::uint32_t(scratch_.stack[waiting_ - 1]));
+      if (waiting_ > 0) frame_.tree.prefetch(std::uint32_t(scratch_.stack[waiting_ - 1]));
       // Every few leaves: a hidden one that is met costs less than looking for it.
       if (!(child & kLeafBit) || (++leaves_met_ & 3) == 0) buffer_.Refresh();
       float key;
       std::memcpy(&key, &bits, sizeof key);
       if (key < buffer_.tile_farthest()) continue;
-      if (HWY_UNLIKELY(walk_.IsInstance(child))) {
-        scratch_.stack[waiting_] = Waiting(bits) << 32 | walk_.Enter(child, waiting_);
-        ++waiting_;
-      } else if (child & kLeafBit) {
-        MeetLeaf(walk_.Leaf(child));
+      if (child & kLeafBit) {
+        MeetLeaf(frame_.tree.leaf(child));
       } else {
-        LookInto(walk_.Node(child));
+        LookInto(frame_.tree.nodes[child]);
       }
     }
   }
@@ -334,7 +328,6 @@ class TileCaster {
   TilePlace place_;
   RayTileBuffer buffer_;
   LargeRayTriangles large_;
-  PlacedWalk walk_;
   RayTriangleQueue queue_;
   HalfSpace planes_[4], depth_;
   std::size_t waiting_ = 0;

@@ -25,6 +25,10 @@
 
 namespace frontmost {
 
+/// A close upper bound of how many triangles tessellate() would make for the curved meshes, without making any; may be
+/// beyond its limit, and infinite. O(size of the scene). \throws Error as tessellate() does, but for the limit.
+[[nodiscard]] double tessellated_count(const Scene& scene, const View& view, double pixels);
+
 /// Steps of a grid over a patch.
 struct PatchLevel {
   int u = 1, v = 1;  ///< powers of two

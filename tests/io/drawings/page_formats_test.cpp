@@ -72,15 +72,14 @@ TEST(Svg, RoundingDoesNotAddUp) {
 
 TEST(Svg, FillsKeepTheirOrderAndHaveAnElementEach) {
   Page page{10, 10, "", {}};
-  PageGroup group{"", {0.1, {}}};
-  group.pen.takes_fill_color = true;
+  PageGroup group{"", {0, {}}};
   const std::vector<glm::dvec2> triangle = {{1, 1}, {9, 1}, {1, 9}};
   for (int i = 0; i < 3; ++i) group.add(triangle, true);
   group.fills = {{255, 0, 0}, {0, 255, 0, 51}, {0, 0, 255, 0}};
   page.layers = {{"", {group}}};
   const std::string svg = saved(page, PageFormat::svg);
   EXPECT_TRUE(has(svg,
-                  "<path fill=\"#ff0000\" stroke=\"#ff0000\" d=\"M1 1l8 0-8 8z\"/>\n"
+                  "<path fill=\"#ff0000\" d=\"M1 1l8 0-8 8z\"/>\n"
                   "<path fill=\"#00ff00\" fill-opacity=\".2\" d=\"M1 1l8 0-8 8z\"/>\n</g>"))
       << svg;
 }
