@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a scene may not be, and that the message names the place; what it may be although it is odd.
+#include "scene/validate.h"
+
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <limits>
 
-#include "scene/validate.h"
 #include "support/refusal.h"
 
 namespace frontmost {
