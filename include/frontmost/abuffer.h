@@ -47,8 +47,8 @@ struct FragmentLists {
 };
 
 /// The most fragments that abuffer() returns: 2^30, 32 GiB. A pixel has at most 2^20 - 1 in every function here, and
-/// none goes through more than 2^30, hidden ones too, which takes minutes, or 64 for each pixel of larger pictures.
-/// They are estimated, by the areas of the triangles, before they are gathered. Of opaque triangles at one place the
+/// none goes through more than 2^28 and 1,024 for each triangle, at most 2^30, hidden ones too, or 64 for each pixel of
+/// larger pictures. They are estimated, by the areas of the triangles, before they are gathered. Of opaque triangles at one place the
 /// lowest id alone counts, for visible_layers() of others as many as there are layers, and for count_fragments() all.
 inline constexpr std::uint64_t most_fragments = std::uint64_t(1) << 30;
 

@@ -16,9 +16,10 @@
 
 namespace frontmost {
 
-std::uint64_t abuffer_detail::most_gathered_fragments(const View& view) {
-  constexpr std::uint64_t most_per_pixel = 64;
-  return std::max(most_fragments, most_per_pixel * view.pixel_count());
+std::uint64_t abuffer_detail::most_gathered_fragments(const View& view, std::uint64_t triangles) {
+  constexpr std::uint64_t most_of_few = std::uint64_t(1) << 28, most_per_triangle = 1 << 10, most_per_pixel = 64;
+  return std::max(std::min(most_fragments, most_of_few + most_per_triangle * triangles),
+                  most_per_pixel * view.pixel_count());
 }
 
 FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferOptions& options,

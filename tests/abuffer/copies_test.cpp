@@ -100,7 +100,9 @@ TEST(Copies, OfGlassAreRefusedBeforeTheyAreGathered) {
   const View view = front_view(700, 500);
   // The square covers the whole picture, within the eye's 0.9 radians: 100,000 times 700 x 500.
   const std::string wanted =
-      "abuffer: about 35000000000 fragments, and the most of a picture of 700 x 500 pixels are 1073741824";
+      "abuffer: about " + std::to_string(std::uint64_t(kCrowd) * 700 * 500) +
+      " fragments, and the most of a picture of 700 x 500 pixels are " +
+      std::to_string((std::uint64_t(1) << 28) + 1024 * 2 * std::uint64_t(kCrowd));
   EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { (void)abuffer(surfaces, view); }), wanted);
   EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { (void)flat_picture(surfaces, view); }), wanted);
   EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { (void)count_fragments(surfaces, view); }), wanted);
@@ -122,13 +124,14 @@ TEST(Limit, CountsWhatThePictureShows) {
   view.projection = make_orthographic(-1, 1, -1, 1, {0.5, 6});
   // The line x + y = 1.8 leaves a two hundredth of the picture, which itself would be too much.
   const std::uint64_t picture = view.pixel_count(), fragments = count_fragments(Surfaces(scene), view).fragments;
-  EXPECT_GT(picture * count, abuffer_detail::most_gathered_fragments(view));
+  EXPECT_GT(picture * count, abuffer_detail::most_gathered_fragments(view, count));
   EXPECT_NEAR(double(fragments), double(picture * count) / 200, 0.01 * double(picture * count) / 200);
 }
 
-TEST(Limit, GrowsWithThePicture) {
-  EXPECT_EQ(abuffer_detail::most_gathered_fragments(front_view(1920, 1080)), most_fragments);
-  EXPECT_EQ(abuffer_detail::most_gathered_fragments(front_view(8192, 8192)), std::uint64_t(1) << 32);
+TEST(Limit, GrowsWithThePictureAndTheScene) {
+  EXPECT_EQ(abuffer_detail::most_gathered_fragments(front_view(1920, 1080), 0), most_fragments / 4);
+  EXPECT_EQ(abuffer_detail::most_gathered_fragments(front_view(1920, 1080), 1'000'000), most_fragments);
+  EXPECT_EQ(abuffer_detail::most_gathered_fragments(front_view(8192, 8192), 0), std::uint64_t(1) << 32);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "shade/shadow/light_view.h"
 #include "shade/support.h"
 #include "support/allocation_count.h"
+#include "support/costly_meshes.h"
 #include "support/refusal.h"
 
 namespace frontmost::test {
@@ -283,6 +284,13 @@ TEST(TooMuch, RaysOfFourThousandLights) {
                        [&] { (void)picture(floor_and_roof(lights), front_view(512), Shadows::rays); }),
             "shade: shadows of 4000 lights by rays are more than 136314880 rays; ask for shadows by maps, for fewer "
             "lights or samples, or for a smaller picture");
+}
+
+TEST(TooMuch, TrianglesInThePlaneOfEveryRaysStart) {
+  const Scene scene = scene_of(nested_sheets(5000));
+  EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded,
+                       [&] { (void)picture(scene, front_view(512), Shadows::rays, Lights::key); }),
+            "shade: too many of 10000 triangles lie over each other for shadows by rays; ask for shadows by maps");
 }
 
 }  // namespace

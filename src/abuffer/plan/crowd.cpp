@@ -158,7 +158,7 @@ void CrowdedFrame::make() {
   CopyFinder finder(plan_, rule_);
   const std::vector<TriangleNumber> hidden = finder.find();
   const View& view = plan_.view();
-  const std::uint64_t most = most_gathered_fragments(view);
+  const std::uint64_t most = most_gathered_fragments(view, plan_.set().i0.size());
   if (finder.area() > double(most))
     throw Error(ErrorCode::limit_exceeded, "abuffer: about " + std::to_string(std::uint64_t(finder.area())) +
                                                " fragments, and the most of a picture of " +

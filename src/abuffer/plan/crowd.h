@@ -23,7 +23,7 @@ struct CopyRule {
 };
 
 /// How many fragments a function goes through at most, as `most_fragments` says.
-[[nodiscard]] std::uint64_t most_gathered_fragments(const View& view);
+[[nodiscard]] std::uint64_t most_gathered_fragments(const View& view, std::uint64_t triangles);
 
 /// A frame some tile of which holds too much.
 class CrowdedFrame {

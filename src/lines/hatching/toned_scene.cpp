@@ -11,8 +11,8 @@
 #include <cmath>
 #include <string>
 
-#include "base/parallel.h"
 #include "base/pool.h"
+#include "base/work_limit.h"
 #include "lines/lists.h"
 
 namespace frontmost::lines_detail {
@@ -21,6 +21,8 @@ namespace {
 constexpr std::size_t triangles_per_part = 256, triangles_per_poll = 16;
 constexpr std::size_t most_pieces = std::size_t(1) << 26, pieces_per_tally = 1 << 16;
 constexpr std::uint32_t lines_per_poll = 256;
+/// Boxes of triangles that lines are held against.
+constexpr std::uint64_t most_boxes = std::uint64_t(1) << 33, most_boxes_of_triangle = 1 << 14;
 
 /// \returns where the light is, of unit length.
 glm::dvec3 light_of(const ToneOptions& tone, const View& view) {
@@ -79,9 +81,15 @@ TonedScene::TonedScene(const Surfaces& surfaces, const View& view, const ToneOpt
 /// Hatches one triangle after another. Not for several threads at once.
 class TonedScene::Hatcher {
  public:
-  Hatcher(const TonedScene& scene, const Task& task, const std::vector<HatchRows>& rows, const Execution& execution)
-      : scene_(scene), task_(task), rows_(rows), execution_(execution), seen_(scene.eye_.occlusion) {
+  Hatcher(const TonedScene& scene, const Task& task, const std::vector<HatchRows>& rows, WorkLimit& work)
+      : scene_(scene), task_(task), rows_(rows), work_(work), seen_(scene.eye_.occlusion) {
     if (scene.light_) lit_.emplace(scene.light_->occlusion);
+  }
+
+  /// Counts the work since the last call. \throws Error limit_exceeded, cancelled.
+  void tell() {
+    work_.add(seen_.take_work() + (lit_ ? lit_->take_work() : 0),
+              [] { return std::string("hatch: too many triangles lie over each other"); });
   }
 
   void hatch(std::uint32_t number, std::vector<HatchPiece>& pieces) {
@@ -100,7 +108,7 @@ class TonedScene::Hatcher {
       const HatchRows::Range range = rows_[set].range_of(triangle);
       for (std::int32_t line = range.first; line <= range.last; ++line) {
         // A triangle may fill a very large picture.
-        if (++lines_ % lines_per_poll == 0) check_cancelled(execution_);
+        if (++lines_ % lines_per_poll == 0) tell();
         const std::optional<HatchSegment> segment = rows_[set].segment(triangle, line);
         if (segment)
           (this->*(task_.dots ? &Hatcher::add_dots : &Hatcher::add_pieces))(*segment, {set, line, 0, 0, instance},
@@ -223,7 +231,7 @@ class TonedScene::Hatcher {
   const TonedScene& scene_;
   const Task task_;
   const std::vector<HatchRows>& rows_;
-  const Execution& execution_;
+  WorkLimit& work_;
   std::uint32_t lines_ = 0;
   EdgeCutter seen_;
   std::optional<EdgeCutter> lit_;
@@ -239,13 +247,14 @@ std::vector<HatchPiece> TonedScene::pieces(const Task& task, const std::vector<H
   const std::size_t count = mesh_.triangles.size();
   std::vector<std::vector<HatchPiece>> lists((count + triangles_per_part - 1) / triangles_per_part);
   Pool<Hatcher> hatchers;
+  WorkLimit work(execution, most_boxes + most_boxes_of_triangle * count);
   std::atomic<std::size_t> done{0}, found{0};
   parallel_for(execution, count, triangles_per_part, [&](std::size_t begin, std::size_t end) {
-    const auto hatcher = hatchers.borrow([&] { return std::make_unique<Hatcher>(*this, task, rows, execution); });
+    const auto hatcher = hatchers.borrow([&] { return std::make_unique<Hatcher>(*this, task, rows, work); });
     std::vector<HatchPiece>& list = lists[begin / triangles_per_part];
     std::size_t counted = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      if (i % triangles_per_poll == 0) check_cancelled(execution);
+      if (i % triangles_per_poll == 0) hatcher->tell();
       hatcher->hatch(std::uint32_t(i), list);
       // A triangle alone may have as many as there are others before it, for every line.
       if (list.size() - counted < pieces_per_tally && i + 1 < end) continue;

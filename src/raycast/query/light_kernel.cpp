@@ -79,11 +79,14 @@ class LightPacket {
     tree_size_ = std::max({far.x, far.y, far.z});
   }
 
-  void Find(std::span<const TrianglePoint> points, std::uint8_t* lit) {
+  /// \returns how often exact numbers had to decide.
+  std::uint64_t Find(std::span<const TrianglePoint> points, std::uint8_t* lit) {
+    decided_ = 0;
     points_ = points;
     Place();
     Walk();
     for (std::size_t i = 0; i < points.size(); ++i) lit[i] = std::uint8_t(waiting_[i] != 0 || is_clear_[i]);
+    return decided_;
   }
 
  private:
@@ -370,6 +373,7 @@ class LightPacket {
   }
 
   HWY_NOINLINE void Decide(const RayLeaf& leaf, std::size_t lane, std::size_t ray) {
+    ++decided_;
     if (stands_before(leaf.corners_of(lane), points_[ray], to_light_) && !Passes(leaf, lane, ray)) Darken(ray);
   }
 
@@ -399,17 +403,20 @@ class LightPacket {
   alignas(64) std::int32_t waiting_[kLightRays];  ///< -1: nothing met so far
   bool is_clear_[kLightRays];
   std::size_t waiting_count_ = 0;
+  std::uint64_t decided_ = 0;
   float scale_ = 1, error_ = 0, reach_ = 0;
   glm::vec3 origin_{0};
   Bounds bounds_{}, block_[kLightRays / kLightLanes];  ///< of all; of each vector
   std::size_t block_count_ = 0;
 };
 
-void FindLit(const RayTree& tree, std::span<const TrianglePoint> points, const LightAim& light,
-             std::span<std::uint8_t> answers) {
+std::uint64_t FindLit(const RayTree& tree, std::span<const TrianglePoint> points, const LightAim& light,
+                      std::span<std::uint8_t> answers) {
   LightPacket packet(tree, light);
+  std::uint64_t decided = 0;
   for (std::size_t first = 0; first < points.size(); first += kLightRays)
-    packet.Find(points.subspan(first, std::min(kLightRays, points.size() - first)), answers.data() + first);
+    decided += packet.Find(points.subspan(first, std::min(kLightRays, points.size() - first)), answers.data() + first);
+  return decided;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -421,15 +428,14 @@ namespace frontmost::raycast_detail {
 
 FRONTMOST_KERNELS(FindLit);
 
-void find_lit(const RayTree& tree, std::span<const TrianglePoint> points, const LightAim& light,
-              std::span<std::uint8_t> answers, Isa isa) {
+std::uint64_t find_lit(const RayTree& tree, std::span<const TrianglePoint> points, const LightAim& light,
+                       std::span<std::uint8_t> answers, Isa isa) {
   const glm::vec3& to_light = light.to_light;
   const bool is_direction =
       std::isfinite(to_light.x) && std::isfinite(to_light.y) && std::isfinite(to_light.z) && to_light != glm::vec3(0);
-  if (tree.root == no_index || !is_direction)
-    std::fill_n(answers.data(), answers.size(), std::uint8_t(1));
-  else
-    kernel_for(FindLitKernels, isa)(tree, points, light, answers);
+  if (tree.root != no_index && is_direction) return kernel_for(FindLitKernels, isa)(tree, points, light, answers);
+  std::fill_n(answers.data(), answers.size(), std::uint8_t(1));
+  return 0;
 }
 
 }  // namespace frontmost::raycast_detail

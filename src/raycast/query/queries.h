@@ -38,8 +38,9 @@ enum class Want : std::uint8_t {
 void walk(const RayTree& tree, const Query& query, Want want, std::vector<RayHit>& hits, Isa isa);
 
 /// The hit of each query that `want`, closest or any, asks for; none where the query is not valid.
-/// Precondition: as many answers as queries.
-void walk_batch(const RayTree& tree, std::span<const Query> queries, Want want, std::span<RayHit> answers, Isa isa);
+/// Precondition: as many answers as queries. \returns how many nodes and leaves they have looked at.
+std::uint64_t walk_batch(const RayTree& tree, std::span<const Query> queries, Want want, std::span<RayHit> answers,
+                         Isa isa);
 
 /// Rays that walk the tree together: four pixels by four of four samples.
 inline constexpr std::size_t kLightRays = 64;
@@ -50,9 +51,9 @@ struct LightAim {
   bool is_one_way = false;  ///< Query::is_one_way, of rays that come from the light
 };
 
-/// are_lit() on this thread.
-void find_lit(const RayTree& tree, std::span<const TrianglePoint> points, const LightAim& light,
-              std::span<std::uint8_t> answers, Isa isa);
+/// are_lit() on this thread. \returns how often exact numbers had to decide, which takes microseconds.
+std::uint64_t find_lit(const RayTree& tree, std::span<const TrianglePoint> points, const LightAim& light,
+                       std::span<std::uint8_t> answers, Isa isa);
 
 /// With room for the answers. \throws Error as validate(camera) does.
 [[nodiscard]] RangeScan prepare_scan(const RayCamera& camera);

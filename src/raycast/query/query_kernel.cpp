@@ -279,7 +279,8 @@ struct QueryBatch {
   std::span<const Query> queries;
   Want want;
   std::span<RayHit> answers;
-  std::size_t next = 0;  ///< the first query that nobody has begun
+  std::size_t next = 0;     ///< the first query that nobody has begun
+  std::uint64_t steps = 0;  ///< nodes and leaves that were looked at
 };
 
 /// Walks for one query of a batch after the other.
@@ -302,6 +303,7 @@ class BatchWalk {
 
   /// \returns false where no query is left.
   bool Step() {
+    ++batch_.steps;
     if (walker_->Step()) return true;
     if (!hits_.empty()) batch_.answers[number_] = hits_[0];
     return Begin();
@@ -320,7 +322,7 @@ class BatchWalk {
 constexpr std::size_t kTurns = 8;
 constexpr std::size_t kTurnsFromBytes = std::size_t(8) << 20;
 
-void WalkBatch(const RayTree& tree, std::span<const Query> queries, Want want, std::span<RayHit> answers) {
+std::uint64_t WalkBatch(const RayTree& tree, std::span<const Query> queries, Want want, std::span<RayHit> answers) {
   QueryBatch batch{tree, queries, want, answers};
   const std::size_t bytes = tree.nodes.size() * sizeof(RayNode) + tree.leaves.size() * sizeof(RayLeaf);
   const std::size_t count = bytes < kTurnsFromBytes ? 1 : HWY_MIN(kTurns, queries.size());
@@ -328,7 +330,7 @@ void WalkBatch(const RayTree& tree, std::span<const Query> queries, Want want, s
     BatchWalk only(batch);
     if (only.Begin())
       while (only.Step()) continue;
-    return;
+    return batch.steps;
   }
   std::vector<BatchWalk> turns;
   turns.reserve(count);
@@ -345,6 +347,7 @@ void WalkBatch(const RayTree& tree, std::span<const Query> queries, Want want, s
         ++k;
       else
         active[k] = active[--active_count];
+  return batch.steps;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -361,8 +364,9 @@ void walk(const RayTree& tree, const Query& query, Want want, std::vector<RayHit
   kernel_for(WalkQueryKernels, isa)(tree, query, want, hits);
 }
 
-void walk_batch(const RayTree& tree, std::span<const Query> queries, Want want, std::span<RayHit> answers, Isa isa) {
-  kernel_for(WalkBatchKernels, isa)(tree, queries, want, answers);
+std::uint64_t walk_batch(const RayTree& tree, std::span<const Query> queries, Want want, std::span<RayHit> answers,
+                         Isa isa) {
+  return kernel_for(WalkBatchKernels, isa)(tree, queries, want, answers);
 }
 
 }  // namespace frontmost::raycast_detail

@@ -29,6 +29,7 @@ RayShadows::RayShadows(const RayIndex& index, std::span<const glm::ivec2> sample
       isa_(execution.isa),
       samples_(samples),
       rays_(execution, limit.most),
+      crowd_(execution, kMostOfCrowd),
       too_many_(std::move(limit.error)) {}
 
 /// Points that wait to be asked about together, and the fragments that they are of.
@@ -47,8 +48,10 @@ class RayShadows::LightQuestions {
   void ask() {
     shadows_.count(count_);
     std::array<std::uint8_t, kAtOnce> is_lit;
-    raycast_detail::find_lit(shadows_.index_.tree(), {points_.data(), count_}, {to_light_, shadows_.is_one_way_},
-                             {is_lit.data(), count_}, shadows_.isa_);
+    const std::uint64_t decided =
+        raycast_detail::find_lit(shadows_.index_.tree(), {points_.data(), count_}, {to_light_, shadows_.is_one_way_},
+                                 {is_lit.data(), count_}, shadows_.isa_);
+    shadows_.count_decided(decided, count_);
     for (std::size_t k = 0; k < count_; ++k) batch_.shadow[fragments_[k]] += is_lit[k];
     count_ = 0;
   }
@@ -85,8 +88,10 @@ class RayShadows::LampQuestions {
   void ask() {
     shadows_.count(count_);
     std::array<RayHit, kAtOnce> hits;
-    raycast_detail::walk_batch(shadows_.index_.tree(), {queries_.data(), count_}, raycast_detail::Want::closest,
-                               {hits.data(), count_}, shadows_.isa_);
+    const std::uint64_t steps =
+        raycast_detail::walk_batch(shadows_.index_.tree(), {queries_.data(), count_}, raycast_detail::Want::closest,
+                                   {hits.data(), count_}, shadows_.isa_);
+    shadows_.count_decided(steps / kStepsOfTriangle, count_);
     for (std::size_t k = 0; k < count_; ++k)
       batch_.shadow[fragments_[k]] += hits[k].primitive == no_primitive || hits[k].primitive == ids_[k] ? 1.0f : 0.0f;
     count_ = 0;
@@ -94,6 +99,7 @@ class RayShadows::LampQuestions {
 
  private:
   static constexpr std::size_t kAtOnce = 256;
+  static constexpr std::uint64_t kStepsOfTriangle = 16;  ///< of single rays, as long as one decision takes
 
   [[nodiscard]] glm::vec3 beside(const glm::dvec3& place, const glm::dvec3& normal) const {
     const glm::dvec3 to_lamp = glm::dvec3(lamp_) - place, size = glm::max(glm::abs(place), glm::abs(glm::dvec3(lamp_)));

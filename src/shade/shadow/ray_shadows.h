@@ -63,6 +63,15 @@ class RayShadows {
   void count(std::size_t rays) const {
     rays_.add(rays, [this] { return too_many_; });
   }
+  /// Triangles that exact numbers decided about; a few for each ray are usual, and do not count.
+  void count_decided(std::uint64_t triangles, std::size_t rays) const {
+    const std::uint64_t usual = kUsualOfRay * rays;
+    if (triangles <= usual) return;
+    crowd_.add(triangles - usual, [this] {
+      return "shade: too many of " + std::to_string(index_.triangle_count()) +
+             " triangles lie over each other for shadows by rays; ask for shadows by maps";
+    });
+  }
 
   const RayIndex& index_;
   glm::dvec3 eye_;
@@ -70,7 +79,8 @@ class RayShadows {
   Isa isa_;
   bool knows_ids_ = true, at_points_ = false;
   std::span<const glm::ivec2> samples_;
-  mutable WorkLimit rays_;
+  static constexpr std::uint64_t kMostOfCrowd = std::uint64_t(1) << 24, kUsualOfRay = 4;
+  mutable WorkLimit rays_, crowd_;
   std::string too_many_;
 };
 
