@@ -288,9 +288,9 @@ TEST(TooMuch, RaysOfFourThousandLights) {
 
 TEST(TooMuch, TrianglesInThePlaneOfEveryRaysStart) {
   const Scene scene = scene_of(nested_sheets(5000));
-  EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded,
-                       [&] { (void)picture(scene, front_view(512), Shadows::rays, Lights::key); }),
-            "shade: too many of 10000 triangles lie over each other for shadows by rays; ask for shadows by maps");
+  EXPECT_EQ(
+      refusal_of(ErrorCode::limit_exceeded, [&] { (void)picture(scene, front_view(512), Shadows::rays, Lights::key); }),
+      "shade: too many of 10000 triangles lie over each other for shadows by rays; ask for shadows by maps");
 }
 
 }  // namespace
