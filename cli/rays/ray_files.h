@@ -33,7 +33,7 @@ struct ScanPoints {
 
 /// A binary PLY with a vertex for every ray that meets something, by rings and then by steps: x, y, z and range
 /// (floats; in the coordinates of a model that lies far from zero x, y and z are doubles), object, triangle (within its
-/// object; of a curved one its sphere or patch), ring and step (32 bits), and the incidence (a float, degrees).
+/// object), ring and step (32 bits), and the incidence (a float, degrees).
 [[nodiscard]] std::string points_ply(const ScanPoints& points);
 
 }  // namespace frontmost::cli

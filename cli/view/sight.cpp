@@ -49,8 +49,7 @@ std::vector<RayHit> RayScene::closest(std::span<const Segment> segments, const E
 
 Image RayScene::ids(const RangeScan& scan, IdKind kind) const {
   const std::span<const PrimitiveId> primitives(scan.primitives.data(), scan.primitives.size());
-  return id_image(
-      scene(), [&](PrimitiveId id) { return surfaces.source(id); }, {scan.width, scan.height}, primitives, kind);
+  return id_image(surfaces, {scan.width, scan.height}, primitives, kind);
 }
 
 }  // namespace frontmost::cli

@@ -8,7 +8,6 @@
 #include <frontmost/ray_camera.h>
 #include <frontmost/raycast.h>
 
-#include <optional>
 #include <string_view>
 
 #include "cli/settings.h"

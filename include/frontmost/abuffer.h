@@ -46,10 +46,11 @@ struct FragmentLists {
   }
 };
 
-/// The most fragments that abuffer() returns: 2^30, 32 GiB. A pixel has at most 2^20 - 1 in every function here, and
-/// none goes through more than 2^28 and 1,024 for each triangle, at most 2^30, hidden ones too, or 64 for each pixel of
-/// larger pictures. They are estimated, by the areas of the triangles, before they are gathered. Of opaque triangles at one place the
-/// lowest id alone counts, for visible_layers() of others as many as there are layers, and for count_fragments() all.
+/// The most fragments that abuffer() returns: 2^30, 32 GiB. A pixel has at most 2^20 - 1 in every function here.
+/// Functions go through at most 2^28 fragments and 1,024 more for each triangle, 2^30 in all; or 64 for each pixel, if
+/// that is more. Hidden fragments count. How many there are is estimated by the areas of the triangles, before they are
+/// gathered. Of opaque triangles at one place the lowest id alone counts, for visible_layers() of others as many as
+/// there are layers, and for count_fragments() all.
 inline constexpr std::uint64_t most_fragments = std::uint64_t(1) << 30;
 
 /// All fragments of a view as data: 32 bytes each, twice that while it works.

@@ -71,7 +71,7 @@ struct FightAreas {
 /// ranges of depth overlap + samples): an area asks some thousand samples at most, but all of its own where none of
 /// those sees it. The same for any number of threads. \throws Error bad_argument as validate(view) does; limit_exceeded
 /// where more than 2^22 areas are found, 2^24 pairs of faces lie close to each other, 2^28 would have to be looked at,
-/// or 2^30 samples of areas, as where thousands lie in one place.
+/// or 2^30 samples of areas and 64 for each of the picture, as where thousands lie in one place.
 [[nodiscard]] FightAreas find_fighting_faces(const Surfaces& surfaces, const View& view, DepthFormat format,
                                              bool reversed = false, const Execution& execution = {});
 

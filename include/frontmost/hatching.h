@@ -74,7 +74,7 @@ struct HatchLine {
 /// O(segments) beside the grids of occluders that draw_lines() makes too; a triangle has a segment for every line over
 /// it. The result is the same to the bit for any number of threads and every instruction set. \throws Error as
 /// validate(view) does, bad_argument for options out of range, and limit_exceeded for more than 2^26 pieces, before
-/// they are joined.
+/// they are joined, and where lines are held against more than 2^33 boxes and 16,384 for each triangle.
 [[nodiscard]] std::vector<HatchLine> hatch(const Surfaces& surfaces, const View& view, const HatchOptions& options,
                                            const Execution& execution = {});
 

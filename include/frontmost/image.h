@@ -83,12 +83,6 @@ enum class IdKind : std::uint8_t { primitive, object, material };
 [[nodiscard]] Image id_image(const Surfaces& surfaces, const glm::ivec2& size, std::span<const PrimitiveId> primitives,
                              IdKind kind);
 
-/// The same of any other ids, of which `source` says where in `scene` they come from.
-struct PrimitiveSource;
-using SourceOfId = std::function<PrimitiveSource(PrimitiveId)>;
-[[nodiscard]] Image id_image(const Scene& scene, const SourceOfId& source, const glm::ivec2& size,
-                             std::span<const PrimitiveId> primitives, IdKind kind);
-
 /// How many pixels of an id_image() show each id below `count`, such as each object of Scene::instances. O(pixels).
 /// \throws Error bad_argument unless the image has one channel of integers.
 [[nodiscard]] std::vector<std::uint64_t> count_pixels(const Image& ids, std::size_t count);

@@ -68,8 +68,8 @@ struct ExactVisible {
 };
 
 /// O(triangles + covered samples); samples where doubles cannot decide cost microseconds each. The same on every
-/// machine. \throws Error as validate(view) does, and limit_exceeded where triangles lie over each other 2^29 times and
-/// 128 times more in each sample, of which those that doubles cannot decide count 64 times.
+/// machine. \throws Error as validate(view) does, and limit_exceeded for more than 2^29 steps, 128 more for each
+/// sample and 1,024 for each triangle; a triangle at a sample is one step, or 64 where doubles cannot decide.
 [[nodiscard]] ExactVisible find_exact_visible(const Surfaces& surfaces, const View& view,
                                               const Execution& execution = {});
 

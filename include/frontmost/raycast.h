@@ -44,6 +44,7 @@ class RayIndex {
   /// new index, which is made where `surfaces` has triangles to meet that this one does not hold. Ended by an error or
   /// by cancelling, the index is empty.
   void refit(const Surfaces& surfaces, const Execution& execution = {});
+
   /// Follows one instance to where Surfaces::move() has put it: the surfaces are those that the index was made of, or
   /// of the same scene. Answers are to the bit those of a new index, and queries grow slower as after refit().
   /// O(triangles of the instance log n), and O(n) the first time. Made anew where refit() would be, and where corners

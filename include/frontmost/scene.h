@@ -69,7 +69,6 @@ struct Mesh {
   std::vector<BezierPatch> patches;
 
   [[nodiscard]] bool is_curved() const { return !spheres.empty() || !patches.empty(); }
-  [[nodiscard]] std::size_t curved_count() const { return spheres.size() + patches.size(); }
   /// A set of texture coordinates as TextureUse::set numbers it; null where the mesh has none.
   [[nodiscard]] const Attribute<glm::vec2>* texcoord_set(std::uint32_t set) const {
     if (set > further_texcoords.size()) return nullptr;

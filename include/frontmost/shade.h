@@ -184,8 +184,8 @@ struct ScanInput {
 /// Where something is visible that can be seen through, or the opacity is below 1, the A-buffer of the same view says
 /// all that is seen, in true order at every sample: of 64 x 64 pixels at a time, or of all with a grid of sub-samples.
 /// \throws Error bad_argument for an opacity, a grid, ambient occlusion or light options out of range; limit_exceeded
-/// for more than 4096 lights that count; unsupported for depths of pixels. Borrows everything; O(covered pixels). The
-/// bytes do not depend on threads or instruction set.
+/// for more than 4096 lights that count, or where shadows by rays are too much work; unsupported for depths of pixels.
+/// Borrows everything; O(covered pixels). The bytes do not depend on threads or instruction set.
 [[nodiscard]] Image shade(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
                           const Execution& execution = {});
 
@@ -227,7 +227,7 @@ struct FigureOptions {
 /// (M. Newell, R. Newell, T. Sancha. A Solution to the Hidden Surface Problem. 1972.)
 /// \throws Error bad_argument for a Visible of more samples, options out of range; unsupported for an environment that
 /// is to be shown; limit_exceeded for more polygons than FigureOptions::most_polygons, or triangles that pass through
-/// each other too often.
+/// each other, or overlap, too often.
 [[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const ShadeInput& input, const FigureOptions& options = {},
                                  const Execution& execution = {});
 /// The same of a view, which need not have one sample. \throws Error as validate(view) does, too.

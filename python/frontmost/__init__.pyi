@@ -320,7 +320,7 @@ class Surfaces:
         """Everything that a view sees, as data: what each triangle covers of each pixel, in the order of depth.
 
         grid: sub-samples, 0 those of the view, or 2, 4 or 8 squared. opacity: below 1 nothing is cut off behind what is
-        opaque. Raises Error limit_exceeded beyond 2^30 fragments.
+        opaque. Raises Error limit_exceeded beyond 2^28 fragments and 1,024 for each triangle, 2^30 in all.
         """
     def draw_lines(self, view: View, *, crease_angle: float | None = None, counts_hidden: bool = False,
                    kinds: Sequence[EdgeKind] = ..., outlines: bool = False, threads: int = 0,

@@ -11,16 +11,9 @@
 #include <mutex>
 
 #include "abuffer/fragment_pass.h"
-#include "abuffer/plan/crowd.h"
 #include "abuffer/tile_parts.h"
 
 namespace frontmost {
-
-std::uint64_t abuffer_detail::most_gathered_fragments(const View& view, std::uint64_t triangles) {
-  constexpr std::uint64_t most_of_few = std::uint64_t(1) << 28, most_per_triangle = 1 << 10, most_per_pixel = 64;
-  return std::max(std::min(most_fragments, most_of_few + most_per_triangle * triangles),
-                  most_per_pixel * view.pixel_count());
-}
 
 FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferOptions& options,
                       const Execution& execution) {

@@ -84,16 +84,6 @@ Image id_image(const Surfaces& surfaces, const Visible& visible, IdKind kind) {
 }
 
 Image id_image(const Surfaces& surfaces, const glm::ivec2& size, std::span<const PrimitiveId> primitives, IdKind kind) {
-  const auto source = [&](PrimitiveId id) {
-    if (id >= surfaces.primitive_count())
-      throw Error(ErrorCode::bad_argument, "id image: the surfaces are not those that were seen");
-    return surfaces.source(id);
-  };
-  return id_image(surfaces.scene(), source, size, primitives, kind);
-}
-
-Image id_image(const Scene& scene, const SourceOfId& source, const glm::ivec2& size,
-               std::span<const PrimitiveId> primitives, IdKind kind) {
   if (size.x < 0 || size.y < 0 || primitives.size() != std::size_t(size.x) * std::size_t(size.y))
     throw Error(ErrorCode::bad_argument, "id image: the size does not fit the number of ids");
   Buffer<std::uint32_t> ids(primitives.size());
@@ -105,8 +95,9 @@ Image id_image(const Scene& scene, const SourceOfId& source, const glm::ivec2& s
     if (primitive != last_primitive) {
       last_primitive = last_id = primitive;
       if (primitive != no_primitive) {
-        const PrimitiveSource from = source(primitive);
-        if (kind != IdKind::primitive) last_id = id_of(scene, from, kind);
+        if (primitive >= surfaces.primitive_count())
+          throw Error(ErrorCode::bad_argument, "id image: the surfaces are not those that were seen");
+        if (kind != IdKind::primitive) last_id = id_of(surfaces.scene(), surfaces.source(primitive), kind);
       }
     }
     ids[i] = last_id;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "base/work_limit.h"
 
@@ -39,7 +40,8 @@ class PaintEffort {
   WorkLimit limit_;
 };
 
-/// Counts steps of ten to a hundred nanoseconds each, so that a cancelled run ends within a millisecond. One thread's.
+/// Counts steps of ten to a hundred nanoseconds each, so that a cancelled run ends within a millisecond. One thread's;
+/// of its last steps up to 4,095 do not count.
 class Poll {
  public:
   explicit Poll(PaintEffort& effort) : effort_(effort) {}

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 
 #include "base/parallel.h"
 #include "raycast/camera_rays.h"
@@ -113,10 +114,7 @@ class ScanCaster {
   int across_;  ///< packets beside each other
 };
 
-}  // namespace
-
-namespace raycast_detail {
-
+/// With room for the answers. \throws Error as validate(camera) does.
 RangeScan prepare_scan(const RayCamera& camera) {
   validate(camera);
   RangeScan result{camera, grid_of(camera).x, grid_of(camera).y, {}, {}};
@@ -126,16 +124,7 @@ RangeScan prepare_scan(const RayCamera& camera) {
   return result;
 }
 
-void cast_parts(const RangeScan& scan, const Execution& execution, const CastPart& cast) {
-  const auto count = double(scan.ranges.size());
-  std::atomic<std::size_t> done{0};
-  const auto cast_part = [&](std::size_t first, const std::vector<Ray>& rays) {
-    cast(first, rays);
-    report_progress(execution, "visible", double(done += rays.size()) / count);
-  };
-  std::visit([&](const auto& model) { for_each_part(scan, model, execution, cast_part); }, scan.camera.model);
-}
-
+/// Takes out what is met beyond the camera's limits of range.
 void keep_in_range(RangeScan& scan, const Execution& execution) {
   const double nearest = scan.camera.nearest, farthest = scan.camera.farthest;
   constexpr float nowhere = std::numeric_limits<float>::infinity();
@@ -149,6 +138,10 @@ void keep_in_range(RangeScan& scan, const Execution& execution) {
   });
 }
 
+/// Of what a sample meets, of any length.
+using NormalAt = std::function<glm::dvec3(std::size_t sample)>;
+
+/// incidence_angles() to these normals, which are asked for from several threads.
 Buffer<float> incidence_to(const NormalAt& normal_at, const RangeScan& scan, const Execution& execution) {
   Buffer<float> angles(scan.ranges.size());
   const auto measure = [&](std::size_t first, const std::vector<Ray>& rays) {
@@ -165,16 +158,16 @@ Buffer<float> incidence_to(const NormalAt& normal_at, const RangeScan& scan, con
   return angles;
 }
 
-}  // namespace raycast_detail
+}  // namespace
 
 RangeScan scan(const RayIndex& index, const RayCamera& camera, const Execution& execution) {
-  RangeScan result = raycast_detail::prepare_scan(camera);
+  RangeScan result = prepare_scan(camera);
   const auto cast = [&](const auto& model) {
     for (int sample = 0; sample < camera.samples; ++sample)
       ScanCaster(index.tree(), model, sample, result).cast(execution);
   };
   std::visit(cast, camera.model);
-  raycast_detail::keep_in_range(result, execution);
+  keep_in_range(result, execution);
   return result;
 }
 
@@ -184,7 +177,7 @@ Buffer<float> incidence_angles(const RangeScan& scan, const Surfaces& surfaces, 
     const glm::dvec3 first(corners[0]);
     return glm::cross(glm::dvec3(corners[1]) - first, glm::dvec3(corners[2]) - first);
   };
-  return raycast_detail::incidence_to(normal_at, scan, execution);
+  return incidence_to(normal_at, scan, execution);
 }
 
 glm::dvec3 point_of(const RangeScan& scan, int x, int y, int sample) {

@@ -22,7 +22,7 @@ using namespace zbuffer_detail;
 
 /// The work that some things are, where a sample of a triangle that doubles decide is one step: a triangle in a tile,
 /// two planes, and two depths, both compared exactly.
-constexpr std::uint64_t kStepsOfTriangle = 16, kStepsOfPlanes = 16, kStepsOfDepths = 64;
+constexpr std::uint64_t kStepsOfTriangle = 16, kStepsOfPlanes = 16, kStepsOfDepths = 64, kStepsAtOnce = 1 << 14;
 /// So that what takes minutes is an error. The triangles of a scene mostly lie in a few tiles, and few over each other.
 constexpr std::uint64_t kMostSteps = std::uint64_t(1) << 29, kMostStepsOfSample = 128, kMostStepsOfTriangle = 1024;
 
@@ -45,9 +45,7 @@ struct NearestBounds {
 
 class TileContest {
  public:
-  TileContest(NearestBounds& field, const PixelRect& tile) : field_(field), tile_(tile) {}
-  /// What was done, in samples of triangles that doubles decide.
-  [[nodiscard]] std::uint64_t steps() const { return steps_; }
+  TileContest(NearestBounds& field, const PixelRect& tile, WorkLimit& work) : field_(field), tile_(tile), work_(work) {}
 
   void enter(const TriangleRecord& r) {
     const View& view = field_.answer.view;
@@ -65,6 +63,14 @@ class TileContest {
         fragment(x, y, s, r.id, plane);
       });
     }
+    if (steps_ > kStepsAtOnce) tell();
+  }
+  /// Counts the steps since the last call. \throws Error limit_exceeded, cancelled.
+  void tell() {
+    work_.add(std::exchange(steps_, 0), [&] {
+      return "exact depths: too many of " + std::to_string(field_.surfaces.primitive_count()) +
+             " triangles lie over each other in the picture";
+    });
   }
 
  private:
@@ -90,7 +96,7 @@ class TileContest {
     best = bounds;
   }
 
-  /// Of `a`, in a plane with these bounds, and `b`, with those.
+  /// Compares the depths of `a` and `b` at a ray, where their bounds are `bounds` and `others`.
   [[nodiscard]] int compare_exactly(PrimitiveId a, PrimitiveId b, const BoundedPlane& plane, const DepthBounds& bounds,
                                     const DepthBounds& others, const SampleRay& ray) {
     const Rival& rival = rival_of(a, b);
@@ -118,7 +124,8 @@ class TileContest {
 
   NearestBounds& field_;
   PixelRect tile_;
-  std::uint64_t steps_ = 0;
+  WorkLimit& work_;
+  std::uint64_t steps_ = 0;       ///< in samples of triangles that doubles decide
   std::array<Rival, 16> rivals_;  // by the last digits of their ids
 };
 
@@ -134,7 +141,7 @@ ExactVisible find_exact_visible(const Surfaces& surfaces, const View& view, cons
   WorkLimit work(execution,
                  kMostSteps + kMostStepsOfSample * count + kMostStepsOfTriangle * surfaces.primitive_count());
   submit(surfaces, view, {0, surfaces.primitive_count()}, execution, [&](const Tile& tile, const OrderedBatch& batch) {
-    TileContest contest(field, tile.rect());
+    TileContest contest(field, tile.rect(), work);
     batch.visit_tile(
         tile,
         [&](std::span<const TileRun> runs) {
@@ -142,10 +149,7 @@ ExactVisible find_exact_visible(const Surfaces& surfaces, const View& view, cons
             for (std::size_t i = 0; i < run.count; ++i) contest.enter(batch.small().record(run.first + i));
         },
         [&](const SingleTriangle& single) { contest.enter(single.record); });
-    work.add(contest.steps(), [&] {
-      return "exact depths: too many of " + std::to_string(surfaces.primitive_count()) +
-             " triangles lie over each other in the picture";
-    });
+    contest.tell();
   });
   return answer;
 }

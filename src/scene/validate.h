@@ -5,7 +5,7 @@
 
 namespace frontmost {
 
-/// As validate(), but for the vertices that triangles name: for Surfaces, which look at all of those anyway.
+/// Validates all but the vertices that triangles name, which Surfaces checks itself.
 void validate_besides_vertices(const Scene& scene);
 
 }  // namespace frontmost

@@ -99,10 +99,10 @@ TEST(Copies, OfGlassAreRefusedBeforeTheyAreGathered) {
   const Surfaces surfaces(scene);
   const View view = front_view(700, 500);
   // The square covers the whole picture, within the eye's 0.9 radians: 100,000 times 700 x 500.
-  const std::string wanted =
-      "abuffer: about " + std::to_string(std::uint64_t(kCrowd) * 700 * 500) +
-      " fragments, and the most of a picture of 700 x 500 pixels are " +
-      std::to_string((std::uint64_t(1) << 28) + 1024 * 2 * std::uint64_t(kCrowd));
+  const std::string wanted = "abuffer: about " + std::to_string(std::uint64_t(kCrowd) * 700 * 500) +
+                             " fragments, and the most of " + std::to_string(2 * kCrowd) +
+                             " triangles in a picture of 700 x 500 pixels are " +
+                             std::to_string((std::uint64_t(1) << 28) + 1024 * 2 * std::uint64_t(kCrowd));
   EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { (void)abuffer(surfaces, view); }), wanted);
   EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { (void)flat_picture(surfaces, view); }), wanted);
   EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { (void)count_fragments(surfaces, view); }), wanted);

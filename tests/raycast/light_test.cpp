@@ -253,9 +253,9 @@ TEST(Light, HugeTinyAndEmptyTrianglesAreNoTrouble) {
   }
 }
 
-// The corners of such an instance's box are infinities of both signs, although its triangles are finite: its shadow
-// must not depend on which of NaN and a number is the greater one to a processor.
-TEST(Light, BoxesWithoutAnEndThrowTheSameShadowsOnEveryInstructionSet) {
+// Instances near the end of the floats: what overflows must not depend on which of NaN and a number is the greater one
+// to a processor.
+TEST(Light, InstancesNearTheEndOfFloatsThrowTheSameShadowsOnEveryInstructionSet) {
   Scene scene;
   Mesh receiver;
   receiver.positions = {{-1e30f, 0, -1e30f}, {1e30f, 0, -1e30f}, {0, 0, 1e30f}};

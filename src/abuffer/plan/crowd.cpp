@@ -154,16 +154,24 @@ const FragmentPlan& CrowdedFrame::thinned() {
   return *thinned_;
 }
 
+std::uint64_t most_gathered_fragments(const View& view, std::uint64_t triangles) {
+  constexpr std::uint64_t most_of_few = std::uint64_t(1) << 28, most_per_triangle = 1 << 10, most_per_pixel = 64;
+  return std::max(std::min(most_fragments, most_of_few + most_per_triangle * triangles),
+                  most_per_pixel * view.pixel_count());
+}
+
 void CrowdedFrame::make() {
   CopyFinder finder(plan_, rule_);
   const std::vector<TriangleNumber> hidden = finder.find();
   const View& view = plan_.view();
-  const std::uint64_t most = most_gathered_fragments(view, plan_.set().i0.size());
+  std::uint64_t triangles = 0;
+  for (const Cluster& cluster : plan_.set().clusters) triangles += cluster.triangle_count;
+  const std::uint64_t most = most_gathered_fragments(view, triangles);
   if (finder.area() > double(most))
     throw Error(ErrorCode::limit_exceeded, "abuffer: about " + std::to_string(std::uint64_t(finder.area())) +
-                                               " fragments, and the most of a picture of " +
-                                               std::to_string(view.width) + " x " + std::to_string(view.height) +
-                                               " pixels are " + std::to_string(most));
+                                               " fragments, and the most of " + std::to_string(triangles) +
+                                               " triangles in a picture of " + std::to_string(view.width) + " x " +
+                                               std::to_string(view.height) + " pixels are " + std::to_string(most));
   thinned_ = hidden.empty() ? &plan_ : &made_.emplace(plan_.without(hidden));
 }
 

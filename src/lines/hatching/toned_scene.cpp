@@ -262,6 +262,7 @@ std::vector<HatchPiece> TonedScene::pieces(const Task& task, const std::vector<H
         throw Error(ErrorCode::limit_exceeded, "hatch: more than " + std::to_string(most_pieces) + " pieces of lines");
       counted = list.size();
     }
+    hatcher->tell();
     report_progress(execution, "hatching", 0.2 + 0.7 * double(done += end - begin) / double(count));
   });
   return joined(lists);

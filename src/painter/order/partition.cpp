@@ -55,7 +55,8 @@ std::uint32_t choose(const Pieces& pieces, const std::vector<std::uint32_t>& mem
 }  // namespace
 
 Partition part(Pieces& pieces, const std::vector<std::uint32_t>& members, PaintSteps& steps, Poll& poll) {
-  poll.count(kMostCandidates * kMostWitnesses);
+  poll.count(std::min<std::size_t>(members.size(), kMostCandidates) *
+             std::min<std::size_t>(members.size(), kMostWitnesses));
   const std::uint32_t chosen = choose(pieces, members);
   const Plane plane = pieces.face(chosen).plane();
   const std::uint32_t number = pieces.add_plane(plane);

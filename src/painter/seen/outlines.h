@@ -75,7 +75,7 @@ class OutlineClipper {
   static constexpr double thin = 1.0 / 1024;
   /// When so many parts are left, none should be split any more: those go that are hidden whole.
   static constexpr std::size_t most_parts = 48;
-  /// Of a Poll, for each part that a cover is subtracted from.
+  /// Steps that a Poll counts for each part from which a cover is subtracted.
   static constexpr std::size_t steps_of_part = 4;
 
   void begin(Outline outline);

@@ -71,8 +71,6 @@ void fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execu
 /// Fills tree.nodes over the boxes, which are reordered.
 void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& execution);
 
-[[nodiscard]] RayTree make_tree(const Surfaces& surfaces, const Execution& execution);
-
 /// Moves one instance to where it is in `surfaces`, which are those that the tree is of. \returns false where the tree
 /// has to be made anew, because corners have become finite, are so no more, or are copies of others; it is then empty,
 /// as it is after an error.

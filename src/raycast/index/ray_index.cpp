@@ -26,8 +26,6 @@ std::size_t byte_count(const RayTree& tree) {
          (tree.copies ? byte_count(*tree.copies) : 0) + (tree.links ? byte_count(*tree.links) : 0);
 }
 
-}  // namespace
-
 RayTree make_tree(const Surfaces& surfaces, const Execution& execution) {
   const IeeeScope ieee;
   RayTree tree;
@@ -41,6 +39,8 @@ RayTree make_tree(const Surfaces& surfaces, const Execution& execution) {
   report_progress(execution, "index", 1);
   return tree;
 }
+
+}  // namespace
 
 RayIndex::RayIndex(const Surfaces& surfaces, const Execution& execution)
     : tree_(std::make_unique<RayTree>(make_tree(surfaces, execution))) {}

@@ -79,7 +79,7 @@ class LightPacket {
     tree_size_ = std::max({far.x, far.y, far.z});
   }
 
-  /// \returns how often exact numbers had to decide.
+  /// \returns how often exact numbers decided about a ray and a triangle whose boxes in the plane meet.
   std::uint64_t Find(std::span<const TrianglePoint> points, std::uint8_t* lit) {
     decided_ = 0;
     points_ = points;
@@ -296,6 +296,14 @@ class LightPacket {
     float edge_error, side_error;  ///< of a turn about an edge; of six times the volume below a start
     bool is_above;                 ///< all of it above all starts
     float high_d;                  ///< nothing of it is higher
+    float pad;                     ///< coordinates are wrong by at most so much
+
+    [[nodiscard]] bool box_holds(float x, float y) const {
+      const auto holds = [&](const float(&at)[3], float value) {
+        return value >= std::min({at[0], at[1], at[2]}) - pad && value <= std::max({at[0], at[1], at[2]}) + pad;
+      };
+      return holds(u, x) && holds(v, y);
+    }
   };
 
   [[nodiscard]] Outline OutlineOf(const Sheared& from, std::size_t lane) const {
@@ -303,6 +311,7 @@ class LightPacket {
     for (std::size_t k = 0; k < 3; ++k) t.u[k] = from.u[k][lane], t.v[k] = from.v[k][lane], t.d[k] = from.d[k][lane];
     // No difference of two coordinates is greater than `most`, nor wrong by more than `error`.
     const float own_error = kShearError * from.reach[lane];
+    t.pad = own_error;
     const float most = 2 * (from.reach[lane] + reach_), error = own_error + error_ + 0x1p-23f * most;
     // A turn is a difference of two products of differences: each of the four factors is wrong by `error` at most, and
     // two products and their difference round once. The last term stands for underflow.
@@ -322,8 +331,12 @@ class LightPacket {
       const Answer answer = MeetRays(outline, leaf.id[lane], first);
       for (std::uint32_t bits = LaneBits(answer.met); bits != 0; bits &= bits - 1)
         Meet(leaf, lane, first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
-      for (std::uint32_t bits = LaneBits(answer.doubtful); bits != 0; bits &= bits - 1)
-        Decide(leaf, lane, first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
+      for (std::uint32_t bits = LaneBits(answer.doubtful); bits != 0; bits &= bits - 1) {
+        const std::size_t ray = first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
+        // Whether others are asked about goes with the width of a vector.
+        decided_ += outline.box_holds(u_[ray], v_[ray]);
+        Decide(leaf, lane, ray);
+      }
     }
   }
 
@@ -373,7 +386,6 @@ class LightPacket {
   }
 
   HWY_NOINLINE void Decide(const RayLeaf& leaf, std::size_t lane, std::size_t ray) {
-    ++decided_;
     if (stands_before(leaf.corners_of(lane), points_[ray], to_light_) && !Passes(leaf, lane, ray)) Darken(ray);
   }
 

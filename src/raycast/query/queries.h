@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays that are asked for one by one or in batches: what the kernels of single rays and of rays to a light offer, and
-// the parts of a scan.
+// Rays that are asked for one by one or in batches: what the kernels of single rays and of rays to a light offer.
 //
 //    closest_hit, is_clear, all_hits, closest_hits ...   --> queries.cpp --> walk(), walk_batch()   query_kernel.cpp
 //    are_lit, and shade's shadows by rays                --> find_lit()                              light_kernel.cpp
-//    scan of a RayCamera                                 --> ray_camera.cpp --> cast_parts()
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
-#include "frontmost/ray_camera.h"
+#include "frontmost/raycast.h"
 #include "raycast/index/ray_tree.h"
 #include "raycast/query/query_rule.h"
 
@@ -54,23 +51,5 @@ struct LightAim {
 /// are_lit() on this thread. \returns how often exact numbers had to decide, which takes microseconds.
 std::uint64_t find_lit(const RayTree& tree, std::span<const TrianglePoint> points, const LightAim& light,
                        std::span<std::uint8_t> answers, Isa isa);
-
-/// With room for the answers. \throws Error as validate(camera) does.
-[[nodiscard]] RangeScan prepare_scan(const RayCamera& camera);
-
-/// For some rays of the grid, of which the first has the number `first`.
-using CastPart = std::function<void(std::size_t first, std::span<const Ray> rays)>;
-
-/// Calls cast() for all parts of the camera's grid, on all threads, and tells how far it is.
-void cast_parts(const RangeScan& scan, const Execution& execution, const CastPart& cast);
-
-/// Takes out what is met beyond the camera's limits of range.
-void keep_in_range(RangeScan& scan, const Execution& execution);
-
-/// Of what a sample meets, of any length.
-using NormalAt = std::function<glm::dvec3(std::size_t sample)>;
-
-/// incidence_angles() to these normals, which are asked for from several threads.
-[[nodiscard]] Buffer<float> incidence_to(const NormalAt& normal_at, const RangeScan& scan, const Execution& execution);
 
 }  // namespace frontmost::raycast_detail

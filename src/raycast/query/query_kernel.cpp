@@ -107,7 +107,7 @@ class QueryWalker {
   }
 
   /// How many of `count` are greater than number i, or equal and before it. Floats from 0 on are ordered as their bits
-  /// are, and these even where boxes of instances overflow to NaN.
+  /// are, and these even where they overflow to NaN.
   static HWY_INLINE std::size_t RankOf(const std::int32_t* at, std::size_t count, std::size_t i) {
     const QI d;
     const auto own = hn::Set(d, at[i]);

@@ -97,7 +97,7 @@ class HolePasser {
   [[nodiscard]] std::optional<double> entry(const glm::dvec3& low, const glm::dvec3& high) const {
     const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high));
     const double pad = 0x1p-17 * std::max({far.x, far.y, far.z});
-    if (!std::isfinite(pad)) return transform_.near;  // where instances take boxes beyond the floats they say nothing
+    if (!std::isfinite(pad)) return transform_.near;  // a box beyond the floats says nothing
     double enter = transform_.near - pad, leave = transform_.far + pad;
     for (int axis = 0; axis < 3; ++axis) {
       const double a = low[axis] - pad - start_[axis], b = high[axis] + pad - start_[axis], d = direction_[axis];

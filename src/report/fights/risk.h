@@ -49,7 +49,8 @@ struct RiskKeys {
 /// Tells which share of one area after another is seen, by samples. One thread's.
 class VisibleShares {
  public:
-  /// For so many areas: of each it looks at 4,096 samples, or fewer where that would be more than 2^28 of all.
+  /// For so many areas: of each it looks at about 4,096 samples, or at fewer, 64 at least, where that would be more
+  /// than 2^28 of all.
   VisibleShares(const Visible& visible, std::size_t areas);
 
   /// By the samples in the area; where there is none, by those of the pixel at its centre. 0 only where no sample is

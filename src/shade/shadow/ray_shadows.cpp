@@ -29,7 +29,7 @@ RayShadows::RayShadows(const RayIndex& index, std::span<const glm::ivec2> sample
       isa_(execution.isa),
       samples_(samples),
       rays_(execution, limit.most),
-      crowd_(execution, kMostOfCrowd),
+      crowd_(execution, kMostOfCrowd + kMostOfTriangle * index.triangle_count()),
       too_many_(std::move(limit.error)) {}
 
 /// Points that wait to be asked about together, and the fragments that they are of.
@@ -99,7 +99,7 @@ class RayShadows::LampQuestions {
 
  private:
   static constexpr std::size_t kAtOnce = 256;
-  static constexpr std::uint64_t kStepsOfTriangle = 16;  ///< of single rays, as long as one decision takes
+  static constexpr std::uint64_t kStepsOfTriangle = 64;  ///< of single rays, as long as one decision takes
 
   [[nodiscard]] glm::vec3 beside(const glm::dvec3& place, const glm::dvec3& normal) const {
     const glm::dvec3 to_lamp = glm::dvec3(lamp_) - place, size = glm::max(glm::abs(place), glm::abs(glm::dvec3(lamp_)));

@@ -79,7 +79,7 @@ class RayShadows {
   Isa isa_;
   bool knows_ids_ = true, at_points_ = false;
   std::span<const glm::ivec2> samples_;
-  static constexpr std::uint64_t kMostOfCrowd = std::uint64_t(1) << 24, kUsualOfRay = 4;
+  static constexpr std::uint64_t kMostOfCrowd = std::uint64_t(1) << 24, kMostOfTriangle = 64, kUsualOfRay = 4;
   mutable WorkLimit rays_, crowd_;
   std::string too_many_;
 };

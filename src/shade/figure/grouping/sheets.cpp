@@ -42,6 +42,8 @@ struct SheetOrder {
 
 /// 128 MB. With more, everything stays as it is.
 constexpr std::size_t kMostPairs = std::size_t(1) << 24;
+/// As many questions, and some for each polygon, are too many likewise.
+constexpr std::size_t kMostAsked = std::size_t(1) << 28, kMostAskedOfPolygon = 1 << 10, kAskedPerPoll = 1 << 12;
 
 void sort_out(std::vector<NodePair>& pairs) {
   std::sort(pairs.begin(), pairs.end());
@@ -53,15 +55,16 @@ void sort_out(std::vector<NodePair>& pairs) {
 std::optional<std::vector<NodePair>> find_over(const ColoredOrder& colored, const Execution& execution) {
   const std::vector<std::uint32_t> shape_of = colored.shapes_of_polygons();
   const Overlaps overlaps(colored);
-  painter_detail::PaintEffort effort(execution, shape_of.size());
-  painter_detail::Poll poll(effort);
+  const std::size_t most_asked = kMostAsked + kMostAskedOfPolygon * shape_of.size();
+  std::size_t asked = 0;
   std::vector<NodePair> over;
   std::vector<std::uint8_t> is_bound;
   for (const ColoredShape& shape : colored.shapes) is_bound.push_back(shape.color.a < 255);
   for (std::size_t i = 0; i < shape_of.size(); ++i) {
     const std::uint32_t node = shape_of[i];
     const bool is_full = overlaps.any_earlier(i, [&](std::size_t other) {
-      poll.count();
+      if (++asked % kAskedPerPoll == 0) check_cancelled(execution);
+      if (asked > most_asked) return true;
       const std::uint32_t below = shape_of[other];
       if (below == node || !is_bound[below]) return false;
       if (!over.empty() && over.back() == NodePair(below, node)) return false;
