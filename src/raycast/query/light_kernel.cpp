@@ -331,12 +331,8 @@ class LightPacket {
       const Answer answer = MeetRays(outline, leaf.id[lane], first);
       for (std::uint32_t bits = LaneBits(answer.met); bits != 0; bits &= bits - 1)
         Meet(leaf, lane, first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
-      for (std::uint32_t bits = LaneBits(answer.doubtful); bits != 0; bits &= bits - 1) {
-        const std::size_t ray = first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
-        // Whether others are asked about goes with the width of a vector.
-        decided_ += outline.box_holds(u_[ray], v_[ray]);
-        Decide(leaf, lane, ray);
-      }
+      for (std::uint32_t bits = LaneBits(answer.doubtful); bits != 0; bits &= bits - 1)
+        Decide(leaf, lane, outline, first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
     }
   }
 
@@ -385,7 +381,9 @@ class LightPacket {
     if ((point.lift == glm::vec3(0) || !is_own(leaf.corners_of(lane), point)) && !Passes(leaf, lane, ray)) Darken(ray);
   }
 
-  HWY_NOINLINE void Decide(const RayLeaf& leaf, std::size_t lane, std::size_t ray) {
+  HWY_NOINLINE void Decide(const RayLeaf& leaf, std::size_t lane, const Outline& outline, std::size_t ray) {
+    // Whether others are asked about goes with the width of a vector.
+    decided_ += outline.box_holds(u_[ray], v_[ray]);
     if (stands_before(leaf.corners_of(lane), points_[ray], to_light_) && !Passes(leaf, lane, ray)) Darken(ray);
   }
 
