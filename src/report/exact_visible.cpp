@@ -20,10 +20,10 @@ namespace {
 
 using namespace zbuffer_detail;
 
-/// The work that some things are, where a sample of a triangle that doubles decide is one step: a triangle in a tile,
-/// two planes, and two depths, both compared exactly.
+/// A triangle at a sample is one step of work where doubles decide. These are the steps of a triangle that is entered
+/// into a tile, of two planes that are compared exactly, and of two depths; a tile counts its steps so many at a time.
 constexpr std::uint64_t kStepsOfTriangle = 16, kStepsOfPlanes = 16, kStepsOfDepths = 64, kStepsAtOnce = 1 << 14;
-/// So that what takes minutes is an error. The triangles of a scene mostly lie in a few tiles, and few over each other.
+/// More steps are an error: so many in all, and for each sample and triangle.
 constexpr std::uint64_t kMostSteps = std::uint64_t(1) << 29, kMostStepsOfSample = 128, kMostStepsOfTriangle = 1024;
 
 /// What is known of a triangle beside another one: in models with faces in one plane thousands of samples ask.
@@ -125,7 +125,7 @@ class TileContest {
   NearestBounds& field_;
   PixelRect tile_;
   WorkLimit& work_;
-  std::uint64_t steps_ = 0;       ///< in samples of triangles that doubles decide
+  std::uint64_t steps_ = 0;       ///< that are not counted yet
   std::array<Rival, 16> rivals_;  // by the last digits of their ids
 };
 

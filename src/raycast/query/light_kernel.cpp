@@ -382,7 +382,7 @@ class LightPacket {
   }
 
   HWY_NOINLINE void Decide(const RayLeaf& leaf, std::size_t lane, const Outline& outline, std::size_t ray) {
-    // Whether others are asked about goes with the width of a vector.
+    // Whether rays outside of the triangle's box come here depends on the width of a vector: they do not count.
     decided_ += outline.box_holds(u_[ray], v_[ray]);
     if (stands_before(leaf.corners_of(lane), points_[ray], to_light_) && !Passes(leaf, lane, ray)) Darken(ray);
   }
