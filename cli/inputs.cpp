@@ -4,8 +4,8 @@
 #include "cli/inputs.h"
 
 #include <fmt/format.h>
-#include <frontmost/io.h>
-#include <frontmost/tessellate.h>
+#include <frontmost/files.h>
+#include <frontmost/view.h>
 #include <sys/stat.h>
 
 #include <optional>

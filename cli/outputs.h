@@ -3,7 +3,7 @@
 // work is done.
 #pragma once
 
-#include <frontmost/io.h>
+#include <frontmost/files.h>
 
 #include <optional>
 #include <string>

@@ -6,15 +6,14 @@
 // said.
 #pragma once
 
+#include <frontmost/accounting.h>
 #include <frontmost/base.h>
-#include <frontmost/datasets.h>
-#include <frontmost/depth_buffer.h>
+#include <frontmost/files.h>
 #include <frontmost/image.h>
-#include <frontmost/io.h>
-#include <frontmost/page.h>
-#include <frontmost/shade.h>
-#include <frontmost/sheet.h>
+#include <frontmost/pictures.h>
+#include <frontmost/sheets.h>
 #include <frontmost/view.h>
+#include <frontmost/zbuffer.h>
 
 #include <array>
 #include <optional>

@@ -2,7 +2,7 @@
 // Any bytes read as an environment: one that lighting can rely on, or an Error that names the file.
 #include <cstdlib>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace frontmost;

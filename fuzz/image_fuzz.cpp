@@ -2,7 +2,7 @@
 // Any bytes read as an image: a valid one or an Error. What was read can be compared, shown and hashed.
 #include <cstdlib>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace frontmost;

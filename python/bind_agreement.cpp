@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether two answers may both be right: every sample at which they part is put to exact arithmetic.
-#include <frontmost/agreement.h>
+#include <frontmost/precision.h>
 #include <pybind11/stl.h>
 
 #include <shared_mutex>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The depth buffer with OpenGL's state: triangles in the order of their numbers, depths as they are stored.
-#include <frontmost/depth_buffer.h>
+#include <frontmost/zbuffer.h>
 #include <pybind11/stl.h>
 
 #include <mutex>

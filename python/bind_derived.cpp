@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes made of others: cut by a plane, and with curved meshes as fine as a view needs them.
-#include <frontmost/section.h>
-#include <frontmost/tessellate.h>
+#include <frontmost/lines.h>
+#include <frontmost/view.h>
 
 #include <shared_mutex>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which faces a depth buffer cannot tell apart, where, and what ends it.
-#include <frontmost/fighting_faces.h>
+#include <frontmost/precision.h>
 #include <pybind11/stl.h>
 
 #include <shared_mutex>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Models as files: read and written; scenes made by code.
-#include <frontmost/io.h>
-#include <frontmost/model_file.h>
+#include <frontmost/files.h>
 #include <pybind11/stl.h>
 
 #include <shared_mutex>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures: shaded, as files, and as arrays.
-#include <frontmost/io.h>
-#include <frontmost/shade.h>
+#include <frontmost/files.h>
+#include <frontmost/pictures.h>
 
 #include <cmath>
 #include <cstring>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a depth buffer can tell apart: as a function of distance, and against the exact answer in a picture.
+#include <frontmost/pictures.h>
 #include <frontmost/precision.h>
-#include <frontmost/shade.h>
 #include <frontmost/zbuffer.h>
 #include <pybind11/stl.h>
 

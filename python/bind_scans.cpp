@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cameras that only rays can serve: panorama, fisheye, laser scanners.
-#include <frontmost/ray_camera.h>
+#include <frontmost/raycast.h>
 #include <pybind11/stl.h>
 
 #include <shared_mutex>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vectors on paper: sheets of hidden-line drawings, and figures of polygons.
-#include <frontmost/page.h>
-#include <frontmost/shade.h>
-#include <frontmost/sheet.h>
+#include <frontmost/pictures.h>
+#include <frontmost/sheets.h>
 #include <pybind11/stl.h>
 
 #include <shared_mutex>

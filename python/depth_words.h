@@ -2,7 +2,7 @@
 // The words of depth formats.
 #pragma once
 
-#include <frontmost/depth_buffer.h>
+#include <frontmost/zbuffer.h>
 
 #include "python/words.h"
 

@@ -6,11 +6,11 @@
 //   Visible   shares the surfaces, and the planes with the arrays that show them
 #pragma once
 
+#include <frontmost/pictures.h>
 #include <frontmost/raycast.h>
 #include <frontmost/scene.h>
-#include <frontmost/shade.h>
 #include <frontmost/surfaces.h>
-#include <frontmost/visible.h>
+#include <frontmost/view.h>
 #include <frontmost/zbuffer.h>
 #include <pybind11/pybind11.h>
 

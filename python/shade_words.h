@@ -2,7 +2,7 @@
 // The words of shading, and its options as arguments that several calls share.
 #pragma once
 
-#include <frontmost/shade.h>
+#include <frontmost/pictures.h>
 #include <pybind11/stl.h>
 
 #include <optional>

@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks the rules of the house that a compiler cannot: arrows, sizes, licences, unfinished work.
+"""Checks the rules of the house that a compiler cannot: arrows, budgets of lines, licences, unfinished work.
 
-The rooms and what each may include are read from the house block of docs/design.md, so the page cannot drift from the
-code: a line "  shade/   words   (image, zbuffer)" allows image, zbuffer and everything that those allow.
+The parts, their rooms, what each may include and how many lines a part may have are read from the house block of
+docs/design.md, so the page cannot drift from the code:
+
+  core/     base.h view.h        (nobody)                 12,000 lines     a part, its public headers, the parts below it
+    view/     words                (surfaces)             a room of it, and the rooms of its part that it may include
 """
 import pathlib
 import re
@@ -15,7 +18,6 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 MADE = {"build", "out", ".git"}  # by ./dev and git
 CODE = {".h", ".cpp"}
 MARKED = CODE | {".py", ".sh", ".cmake"}
-LONGEST_FILE = 800
 LARGEST_FILE = 512 * 1024  # bytes; what a command wrote is soon there by mistake, and stays in the history
 LIBRARY = {"include", "src", "cli", "python", "web"}  # a name has one meaning in all of these
 FACES = {"cli", "examples", "python", "web"}  # see include/frontmost alone; tests and benchmarks look inside
@@ -37,69 +39,100 @@ def read(path):
     return (ROOT / path).read_text(errors="replace")
 
 
-def allowed_rooms():
-    """Room -> all rooms that it may include, itself among them."""
-    direct = {}
-    for line in read("docs/design.md").splitlines():
-        match = re.match(r"^  ([a-z]+)/ .*\(([^()]*)\)$", line)
-        if match:
-            direct[match[1]] = [] if match[2] == "nobody" else match[2].split(", ")
-    closed = {}
+class House:
+    """What docs/design.md says of parts and rooms."""
 
-    def close(room):
-        if room not in closed:
-            closed[room] = {room}.union(*(close(below) for below in direct[room]))
-        return closed[room]
+    def __init__(self, page):
+        self.part_of_header, self.budgets, self.part_of_room = {}, {}, {}
+        parts, rooms, part = {}, {}, None
+        for line in page.splitlines():
+            if match := re.match(r"^  ([a-z]+)/ +(.*?) +\(([^()]*)\) +([\d,]+) lines$", line):
+                part, headers = match[1], match[2].split()
+                parts[part] = self.named(match[3])
+                self.budgets[part] = int(match[4].replace(",", ""))
+                self.part_of_header.update({name.removesuffix(".h"): part for name in [f"{part}.h", *headers]})
+            elif part and (match := re.match(r"^    ([a-z]+)/ .*\(([^()]*)\)$", line)):
+                self.part_of_room[match[1]] = part
+                rooms[match[1]] = self.named(match[2])
+        self.parts, self.rooms = self.closed(parts), self.closed(rooms)
 
-    for room in direct:
-        close(room)
-    return closed
+    @staticmethod
+    def named(words):
+        return [] if words == "nobody" else words.split(", ")
 
+    @staticmethod
+    def closed(direct):
+        """Name -> all that it may include, itself among them."""
+        found = {}
 
-def public_headers(rooms):
-    """Public header without ".h" -> its room: the one of its name, or that in brackets behind it in docs/design.md."""
-    block = re.search(r"^include/frontmost/ (.*?)^src/", read("docs/design.md"), re.M | re.S)[1]
-    headers = {room: room for room in rooms}
-    for names, room in re.findall(r"([^()]*)\(([a-z]+)\)", block):
-        headers.update({name: room for name in re.findall(r"([a-z_]+)\.h", names)})
-    del headers["frontmost"]  # all of them
-    return headers
+        def close(name):
+            if name not in found:
+                found[name] = {name}.union(*(close(below) for below in direct[name]))
+            return found[name]
 
+        for name in direct:
+            close(name)
+        return found
 
-def header_errors(headers):
-    """Every header of include/frontmost is of a room, but for the one that includes them all."""
-    for path in sorted((ROOT / "include/frontmost").glob("*.h")):
-        if path.stem not in {"frontmost", *headers}:
-            yield f"include/frontmost/{path.name}: docs/design.md does not say which room it is of"
-
-
-def included_rooms(text, headers):
-    """Rooms named by the includes of a file: "room/file.h" or "frontmost/header.h"."""
-    for number, line in enumerate(text.splitlines(), 1):
-        match = re.match(r'\s*#\s*include\s+["<](?:(frontmost)/)?([a-z_]+)(?:/|\.h)', line)
-        if match and (match[1] or headers.get(match[2]) == match[2]) and match[2] in headers:
-            yield number, headers[match[2]], match[1] is not None
+    def may_include(self, room, other):
+        """Rooms of parts below may be included, and of the own part those that the room's line allows."""
+        part, below = self.part_of_room[room], self.part_of_room[other]
+        return other in self.rooms[room] if part == below else below in self.parts[part]
 
 
-def arrow_errors(path, text, allowed, headers):
+def header_errors(house):
+    """Every header of include/frontmost is of a part, but for the one that includes them all."""
+    there = {path.stem for path in (ROOT / "include/frontmost").glob("*.h")} - {"frontmost"}
+    for name in sorted(there - house.part_of_header.keys()):
+        yield f"include/frontmost/{name}.h: docs/design.md does not say which part it is of"
+    for name in sorted(house.part_of_header.keys() - there):
+        yield f"docs/design.md: there is no include/frontmost/{name}.h"
+
+
+def arrow_errors(path, text, house):
     top = path.parts[0]
-    home = path.parts[1] if top == "src" and len(path.parts) > 2 else None
-    if top == "src" and home and home not in allowed:
-        yield f"{path}: room {home} is not in docs/design.md"
-        return
-    for number, room, public in included_rooms(text, headers):
-        if home and room not in allowed[home]:
-            yield f"{path}:{number}: {home} must not include {room}"
-        if top in FACES and not public:
-            yield f"{path}:{number}: {top} sees include/frontmost alone, not {room}'s own headers"
+    if top == "src" and len(path.parts) > 3:
+        part, room = path.parts[1:3]
+        if house.part_of_room.get(room) != part:
+            yield f"{path}: docs/design.md has no room {room} in {part}"
+            return
+    elif top == "include":
+        part, room = house.part_of_header.get(path.stem), None  # frontmost.h is of none
+    else:
+        part = room = None
+    for number, line in enumerate(text.splitlines(), 1):
+        match = re.match(r'\s*#\s*include\s+["<](?:(frontmost)/([a-z_]+)\.h|([a-z]+)/)', line)
+        if not match:
+            continue
+        if match[1] and part and house.part_of_header.get(match[2], part) not in house.parts[part]:
+            yield f"{path}:{number}: {part} must not include {match[2]}.h"
+        if match[3] in house.part_of_room:
+            if room and not house.may_include(room, match[3]):
+                yield f"{path}:{number}: {room} must not include {match[3]}"
+            if top in FACES:
+                yield f"{path}:{number}: {top} sees include/frontmost alone, not {match[3]}'s own headers"
+
+
+def budget_errors(texts, house):
+    """The lines of a part are those of its folder and of its public headers."""
+    lines = dict.fromkeys(house.budgets, 0)
+    for path, text in texts.items():
+        part = path.parts[1] if path.parts[0] == "src" else house.part_of_header.get(path.stem) if path.parts[0] == "include" else None
+        if part in lines:
+            lines[part] += text.count("\n")
+    for part, budget in house.budgets.items():
+        if lines[part] > budget:
+            yield f"src/{part}: {lines[part]} lines, more than the {budget} of docs/design.md"
+        elif lines[part] < budget - 500:
+            yield f"src/{part}: {lines[part]} lines; lower the budget of {budget} in docs/design.md"
 
 
 def lost_includes(texts):
     """Every include in quotes of a header of the house names one that is there: a header that was merged into another one
     may still be asked for by a file that was written meanwhile. `texts`: path -> text."""
     there = {str(path) for path in texts}
-    homes = ("", "src/", "include/", "tests/", "bench/")
-    ours = {path.parts[0] for path in texts} | {path.parts[1] for path in texts if len(path.parts) > 2}
+    homes = ("", "include/", "tests/", "bench/", *{f"src/{path.parts[1]}/" for path in texts if path.parts[0] == "src"})
+    ours = {part for path in texts for part in path.parts[:3][:-1]}
     for path, text in texts.items():
         for number, line in enumerate(text.splitlines(), 1):
             match = re.match(r'\s*#\s*include\s+(?:"([^"]+)"|<(frontmost/[^>]+)>)', line)
@@ -156,7 +189,7 @@ def name_errors(places):
 
 def highway_errors(path, text):
     """Highway's operations are included by way of base/highway-inl.h: they may be precompiled."""
-    if path.parts[:2] == ("src", "base") and path.name in {"highway-inl.h", "all_targets.h"}:
+    if path.parts[:3] == ("src", "core", "base") and path.name in {"highway-inl.h", "all_targets.h"}:
         return
     for number, line in enumerate(text.splitlines(), 1):
         if re.match(r"\s*#\s*include\s+[\"<]hwy/(highway|foreach_target|contrib/|ops/)", line):
@@ -165,8 +198,6 @@ def highway_errors(path, text):
 
 def file_errors(path, text):
     lines = text.splitlines()
-    if path.suffix in CODE and len(lines) > LONGEST_FILE:
-        yield f"{path}: {len(lines)} lines, more than {LONGEST_FILE}"
     if path.suffix in MARKED:
         if not any("SPDX-License-Identifier: Apache-2.0" in line for line in lines[:3]):
             yield f"{path}: no SPDX line at its top"
@@ -177,11 +208,10 @@ def file_errors(path, text):
 
 
 def main():
-    allowed = allowed_rooms()
-    if len(allowed) < 8:
+    house = House(read("docs/design.md"))
+    if len(house.parts) < 7 or len(house.rooms) < 15:
         sys.exit("docs/design.md: the house block was not understood")
-    headers = public_headers(allowed)
-    errors, sources, types, texts = list(header_errors(headers)), 0, [], {}
+    errors, sources, types, texts = list(header_errors(house)), 0, [], {}
     for path in tracked_files():
         if (size := (ROOT / path).stat().st_size) > LARGEST_FILE:
             errors.append(f"{path}: {size} bytes, more than {LARGEST_FILE}")
@@ -191,15 +221,16 @@ def main():
         sources += path.suffix in CODE
         errors += file_errors(path, text)
         if path.suffix in CODE:
-            errors += arrow_errors(path, text, allowed, headers)
+            errors += arrow_errors(path, text, house)
             errors += highway_errors(path, text)
             texts[path] = text
             if path.parts[0] in LIBRARY:
                 types += [(path, *found) for found in types_of(text)]
+    errors += budget_errors(texts, house)
     errors += name_errors(types)
     errors += lost_includes(texts)
     errors += cli_folder_errors(texts)
-    print("\n".join(errors) if errors else f"house: {sources} C++ files in order, {len(allowed)} rooms")
+    print("\n".join(errors) if errors else f"house: {sources} C++ files in order, {len(house.rooms)} rooms in {len(house.parts)} parts")
     sys.exit(bool(errors))
 
 

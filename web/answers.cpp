@@ -2,8 +2,6 @@
 // What the workbench says of a view: what lies under a pixel, of every object how much is seen and why, and which faces
 // are seen from anywhere.
 #include <frontmost/accounting.h>
-#include <frontmost/explain.h>
-#include <frontmost/visible_faces.h>
 
 #include <numeric>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files of the last view, by the library's own writers: into the module's memory, from where the page takes them.
-#include <frontmost/page.h>
-#include <frontmost/sheet.h>
+#include <frontmost/sheets.h>
 
 #include "web/exr.h"
 #include "web/workbench.h"

@@ -4,7 +4,7 @@
 //   load() -- asks for pixels --> GivenImages: not there, noted --> the page decodes what was noted --> load() again
 #pragma once
 
-#include <frontmost/io.h>
+#include <frontmost/files.h>
 
 #include <map>
 #include <mutex>

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <frontmost/abuffer.h>
-#include <frontmost/io.h>
+#include <frontmost/files.h>
+#include <frontmost/pictures.h>
 #include <frontmost/raycast.h>
-#include <frontmost/shade.h>
 #include <frontmost/zbuffer.h>
 
 #include <optional>

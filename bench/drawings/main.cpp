@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "frontmost/hatching.h"
+#include "frontmost/lines.h"
 #include "harness/program.h"
 #include "harness/stage.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which pairs of faces a depth buffer cannot tell apart, beside the picture that it starts from.
-#include <frontmost/fighting_faces.h>
+#include <frontmost/precision.h>
 
 #include "harness/stage.h"
 #include "harness/tables.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scans from inside a model: rays in packets, and the same rays one by one, in turn.
-#include <frontmost/io.h>
-#include <frontmost/ray_camera.h>
+#include <frontmost/files.h>
+#include <frontmost/raycast.h>
 
 #include <filesystem>
 

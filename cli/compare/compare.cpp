@@ -5,7 +5,7 @@
 //
 // The processes come before this one has threads, because a process with threads cannot be split safely; the answers
 // are compared afterwards, here.
-#include <frontmost/output_folder.h>
+#include <frontmost/base.h>
 
 #include <filesystem>
 #include <optional>

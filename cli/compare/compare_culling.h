@@ -3,7 +3,7 @@
 #pragma once
 
 #include <frontmost/surfaces.h>
-#include <frontmost/visible.h>
+#include <frontmost/view.h>
 
 #include <cstdint>
 #include <vector>

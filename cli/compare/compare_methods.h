@@ -4,7 +4,7 @@
 #pragma once
 
 #include <frontmost/surfaces.h>
-#include <frontmost/visible.h>
+#include <frontmost/view.h>
 
 #include <optional>
 #include <span>

@@ -6,9 +6,8 @@
 // a page whose pictures belong to another run would be worse than none.
 #include <fmt/format.h>
 #include <frontmost/base.h>
-#include <frontmost/io.h>
-#include <frontmost/output_folder.h>
-#include <frontmost/shade.h>
+#include <frontmost/files.h>
+#include <frontmost/pictures.h>
 
 #include <algorithm>
 #include <utility>

@@ -2,7 +2,7 @@
 // The child runs, and sends what it found through a pipe: first how it ended, then numbers and planes as they lie in
 // memory.
 #include <fmt/format.h>
-#include <frontmost/io.h>
+#include <frontmost/files.h>
 #include <malloc.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>

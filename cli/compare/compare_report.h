@@ -2,7 +2,7 @@
 // What frontmost compare found out: as text, as JSON, in words, and as a page, one HTML file that holds its pictures.
 #pragma once
 
-#include <frontmost/agreement.h>
+#include <frontmost/precision.h>
 
 #include "cli/compare/compare_culling.h"
 #include "cli/compare/compare_methods.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost info: what is in a model, as text and as JSON, and what its unit of length may be.
 #include <fmt/format.h>
+#include <frontmost/lines.h>
 #include <frontmost/report.h>
-#include <frontmost/rounds.h>
 #include <frontmost/surfaces.h>
 
 #include <algorithm>

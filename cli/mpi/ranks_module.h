@@ -4,7 +4,7 @@
 // an MPI.
 #pragma once
 
-#include <frontmost/stream.h>
+#include <frontmost/streams.h>
 
 namespace frontmost::cli {
 

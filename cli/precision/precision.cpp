@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost precision: what a depth buffer can tell apart, alone or on a model.
 #include <fmt/format.h>
-#include <frontmost/shade.h>
+#include <frontmost/pictures.h>
 
 #include "cli/command.h"
 #include "cli/console.h"

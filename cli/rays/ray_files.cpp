@@ -4,7 +4,7 @@
 #include "cli/rays/ray_files.h"
 
 #include <fmt/format.h>
-#include <frontmost/io.h>
+#include <frontmost/files.h>
 
 #include <algorithm>
 #include <cstring>

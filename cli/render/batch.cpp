@@ -4,7 +4,7 @@
 // The text is gone through twice: once to count, which keeps nothing, and once to read. The library's own parser with a
 // callback goes through all views again for every one.
 #include <fmt/format.h>
-#include <frontmost/io.h>
+#include <frontmost/files.h>
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 // frontmost batch-merge: whether the shards of a batch make all of it, and all of it in one folder.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <frontmost/output_folder.h>
+#include <frontmost/base.h>
 
 #include <algorithm>
 #include <filesystem>

@@ -2,11 +2,11 @@
 // Whether a picture shows anything: why it is blank, and whether what is in it can be told from its background.
 #pragma once
 
-#include <frontmost/figure.h>
 #include <frontmost/image.h>
-#include <frontmost/stream.h>
+#include <frontmost/sheets.h>
+#include <frontmost/streams.h>
 #include <frontmost/surfaces.h>
-#include <frontmost/visible.h>
+#include <frontmost/view.h>
 
 #include <array>
 #include <mutex>

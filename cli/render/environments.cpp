@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/render/environments.h"
 
-#include <frontmost/io.h>
+#include <frontmost/files.h>
 
 namespace frontmost::cli {
 namespace {

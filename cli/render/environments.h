@@ -2,7 +2,7 @@
 // The environments that the views of a run are lit by: each is read, or made, once.
 #pragma once
 
-#include <frontmost/shade.h>
+#include <frontmost/pictures.h>
 
 #include <map>
 #include <string>

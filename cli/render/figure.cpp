@@ -5,8 +5,8 @@
 // have to be found again. How large files will be is told before they are written: a model of a million triangles makes
 // a file that few viewers open.
 #include <fmt/format.h>
-#include <frontmost/page.h>
-#include <frontmost/shade.h>
+#include <frontmost/pictures.h>
+#include <frontmost/sheets.h>
 #include <frontmost/zbuffer.h>
 
 #include "cli/console.h"
@@ -39,8 +39,8 @@ Figure figure_of(const Job& job, const RenderContext& context, const Sights& sig
   std::optional<Visible> seen;
   if (!is_there(job, context, sights)) seen = seen_at_centres(context, view);
   try {
-    Figure figure = context.shader.draw_figure({seen ? *seen : sights.for_maps().visible, nullptr, context.index},
-                                               options, context.execution);
+    Figure figure = draw_figure(context.shader, {seen ? *seen : sights.for_maps().visible, nullptr, context.index},
+                                options, context.execution);
     figure.title = job.name;
     return figure;
   } catch (const Error& error) {

@@ -4,7 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <frontmost/base.h>
-#include <frontmost/io.h>
+#include <frontmost/files.h>
 #include <frontmost/version.h>
 #include <unistd.h>
 

@@ -6,7 +6,7 @@
 // that goes into a PNG file alone is never made in floats.
 #include "cli/render/output_writer.h"
 
-#include <frontmost/io.h>
+#include <frontmost/files.h>
 
 #include <algorithm>
 #include <cstdlib>

@@ -2,7 +2,7 @@
 // A run that several ranks share: one of them writes and speaks, and all of them end alike.
 #pragma once
 
-#include <frontmost/stream.h>
+#include <frontmost/streams.h>
 
 #include <functional>
 #include <memory>

@@ -2,8 +2,8 @@
 // Panoramas and fisheyes: rays instead of a view, ranges instead of depths. Everything that follows is what a pinhole's
 // picture goes through, with the maps that such a camera can have, which have one ray a pixel.
 #include <fmt/format.h>
-#include <frontmost/ray_camera.h>
-#include <frontmost/shade.h>
+#include <frontmost/pictures.h>
+#include <frontmost/raycast.h>
 
 #include <algorithm>
 

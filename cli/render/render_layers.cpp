@@ -2,7 +2,7 @@
 // render --layers: the A-buffer finds the nearest K surfaces of every sample at once, and each layer is then a picture,
 // and maps, of its own, shaded as if nothing were before it.
 #include <frontmost/abuffer.h>
-#include <frontmost/shade.h>
+#include <frontmost/pictures.h>
 
 #include <algorithm>
 

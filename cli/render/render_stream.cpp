@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <frontmost/shade.h>
+#include <frontmost/pictures.h>
 
 #include "cli/render/output_writer.h"
 #include "cli/render/render_view.h"

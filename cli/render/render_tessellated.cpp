@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/render/render_tessellated.h"
 
-#include <frontmost/tessellate.h>
+#include <frontmost/view.h>
 
 #include "cli/inputs.h"
 #include "cli/view/view_options.h"

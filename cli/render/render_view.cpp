@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 #include <frontmost/abuffer.h>
-#include <frontmost/shade.h>
+#include <frontmost/pictures.h>
 
 #include <algorithm>
 

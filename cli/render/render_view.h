@@ -11,11 +11,11 @@
 // files as it does.
 #pragma once
 
-#include <frontmost/ray_camera.h>
-#include <frontmost/shade.h>
-#include <frontmost/stream.h>
+#include <frontmost/pictures.h>
+#include <frontmost/raycast.h>
+#include <frontmost/streams.h>
 #include <frontmost/surfaces.h>
-#include <frontmost/visible.h>
+#include <frontmost/view.h>
 #include <frontmost/zbuffer.h>
 
 #include <optional>

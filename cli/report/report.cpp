@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost report: how much of every object is seen, and who hides the rest.
 #include <fmt/format.h>
-#include <frontmost/io.h>
+#include <frontmost/files.h>
 #include <frontmost/surfaces.h>
 #include <frontmost/zbuffer.h>
 

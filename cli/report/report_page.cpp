@@ -5,9 +5,9 @@
 #include "cli/report/report_page.h"
 
 #include <fmt/format.h>
-#include <frontmost/io.h>
-#include <frontmost/output_folder.h>
-#include <frontmost/shade.h>
+#include <frontmost/base.h>
+#include <frontmost/files.h>
+#include <frontmost/pictures.h>
 
 #include <algorithm>
 #include <filesystem>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Camera poses in files: 16 numbers, however they are separated.
 #include <fmt/format.h>
-#include <frontmost/io.h>
+#include <frontmost/files.h>
 
 #include <filesystem>
 

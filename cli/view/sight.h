@@ -3,10 +3,9 @@
 // state that the user asked for; and along single rays.
 #pragma once
 
-#include <frontmost/depth_buffer.h>
 #include <frontmost/image.h>
-#include <frontmost/ray_camera.h>
 #include <frontmost/raycast.h>
+#include <frontmost/zbuffer.h>
 
 #include <string_view>
 

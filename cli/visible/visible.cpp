@@ -5,9 +5,9 @@
 //   --views FILE \  faces_ever_seen()    of every face that is ever seen in how many views, and its largest share
 //   --sphere N   /
 #include <fmt/format.h>
-#include <frontmost/model_file.h>
+#include <frontmost/accounting.h>
+#include <frontmost/files.h>
 #include <frontmost/version.h>
-#include <frontmost/visible_faces.h>
 
 #include <algorithm>
 #include <filesystem>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "frontmost/surfaces.h"
-#include "frontmost/visible.h"
+#include "frontmost/view.h"
 
 namespace frontmost {
 

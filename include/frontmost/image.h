@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "frontmost/base.h"
-#include "frontmost/visible.h"
+#include "frontmost/view.h"
 
 namespace frontmost {
 
@@ -64,7 +64,7 @@ void validate(const DeepImage& image);
 /// \throws Error bad_argument for such sizes, or bytes that are not four a pixel.
 void validate(const Bitmap& bitmap);
 
-/// The greatest value of a pixel of an environment (environment.h): sums over all pixels stay far within a float.
+/// The greatest value of a pixel of an environment (pictures.h): sums over all pixels stay far within a float.
 inline constexpr float max_environment_value = 16777216.0f;
 
 /// Maps of a Visible's first sample (sample 0 of views with more samples than one), one channel each.

@@ -12,7 +12,6 @@
 
 #include "frontmost/surfaces.h"
 #include "frontmost/view.h"
-#include "frontmost/visible.h"
 
 namespace frontmost {
 

@@ -15,8 +15,8 @@
 
 namespace frontmost {
 
-struct PlacedScene;  // src/surfaces/placed_scene.h, and
-struct ClusterSet;   // src/surfaces/cluster_set.h: what the methods read
+struct PlacedScene;  // src/core/surfaces/placed_scene.h, and
+struct ClusterSet;   // src/core/surfaces/cluster_set.h: what the methods read
 
 /// Where a primitive id comes from.
 struct PrimitiveSource {

@@ -198,4 +198,118 @@ struct FrameOptions {
 /// far / 10000 in perspective.
 [[nodiscard]] ClipDistances fit_clip(const Box& bounds, const glm::dmat4& world_from_eye, bool orthographic);
 
+// Curved surfaces as triangles, as fine as a view needs them: how the methods for triangles draw spheres and patches.
+//
+//         ____
+//     .-~'    `~-.       the curved surface
+//   /--------------\     a side of a triangle between two of its points
+//          |
+//          at most so many pixels, as the eye sees them: near parts are cut finely, distant ones coarsely
+
+/// True when a mesh of the scene that is placed is curved.
+[[nodiscard]] bool has_curved(const Scene& scene);
+
+/// The scene with its curved meshes cut into triangles anew, so fine that in `view` no point of a triangle is farther
+/// than `pixels` from the point of the curved surface that it stands for; so every outline is where it should be to
+/// that many pixels. The bound is proven from second derivatives, and mostly two to four times too large; snapping of
+/// corners to 1/256 pixel comes on top of it. What lies before the near plane does not count, and is cut coarsely.
+/// (D. Filip, R. Magedson, R. Markot. Surface algorithms using bounds on derivatives. 1986.)
+///
+/// Every patch is a grid of its own fineness, a power of two each way. Patches of a mesh that share a whole edge, its
+/// four control points to the bit in either order, are given the same points along it: nothing leaks between them.
+/// Corners have the normals and texture coordinates of the surface. A sphere is a globe of rings.
+///
+/// Instances stay as they are, but for the number of their mesh: those that need another fineness have their own. The
+/// meshes stay curved, and Mesh::face_ids says which curved primitive a triangle comes from; other meshes stay as they
+/// are. O(size of the scene + triangles made).
+/// \throws Error bad_argument unless pixels > 0; limit_exceeded beyond 2^26 triangles made, naming instance and mesh;
+/// and as validate() does of scene and view.
+[[nodiscard]] Scene tessellate(const Scene& scene, const View& view, double pixels);
+
+// Visible: what every method answers, one primitive and one depth for every sample of a view.
+//
+//   primitives, keys   | sample 0 of all pixels          | sample 1 of all pixels          | ...
+//                      | row 0       | row 1       | ... | row 0       | row 1       | ... |
+//                        x = 0, 1, ...
+//
+// Sample 0 alone is thus a plane of its own, as maps want it. What is visible is the minimum over (depth, primitive
+// id), so that parts of a scene can be answered one by one, in any order and on any machine, and merged.
+
+/// The front-most primitive at every sample, and how deep it is. Planes are ordered [sample][y][x], top row first.
+struct Visible {
+  View view;
+  Buffer<PrimitiveId> primitives;  ///< no_primitive where nothing is seen
+  /// The depth that was compared: near / distance in perspective, (far - distance) / (far - near) in parallel
+  /// projection, as a float in [0, 1], greater is nearer; 0 where nothing is seen.
+  Buffer<float> keys;
+
+  [[nodiscard]] std::size_t index(int x, int y, int sample = 0) const {
+    return (std::size_t(sample) * std::size_t(view.height) + std::size_t(y)) * std::size_t(view.width) + std::size_t(x);
+  }
+};
+
+/// Planar distance along the viewing axis for a key of `view`; +inf for key 0 in perspective.
+[[nodiscard]] float depth_of_key(const View& view, float key);
+
+/// Planar depth at every sample, in the order of Visible; +inf where nothing is seen.
+[[nodiscard]] Buffer<float> depths_of(const Visible& visible);
+
+/// A Visible of `view` in which nothing is seen: what merging begins with. \throws Error as validate(view) does.
+[[nodiscard]] Visible nothing_visible(const View& view);
+
+/// Lays what another part of a scene shows over `into`: at every sample the greater key stays, at equal keys the lower
+/// id. That is commutative, associative and idempotent, so parts may come in any order and from any machine, and all of
+/// them merged are to the bit what the whole scene shows. `first_id` is added to the ids of `other`: the place of its
+/// first triangle among those of the whole. O(samples), in parallel.
+/// \throws Error bad_argument unless both have the same view; limit_exceeded where an id would reach no_primitive, and
+/// then `into` is merged in part.
+void merge(Visible& into, const Visible& other, PrimitiveId first_id = 0, const Execution& execution = {});
+
+/// Every sample as one number, of which the greater is what merge() keeps: the bits of the key in the upper half, those
+/// of the id inverted in the lower; 0 where nothing is seen. So whatever knows the maximum of uint64, such as MPI_MAX,
+/// merges parts that lie on different machines. `first_id` is added to ids, as by merge(). O(samples), in parallel.
+/// \throws Error bad_argument for planes that are not of the size of their view; limit_exceeded where an id would reach
+/// no_primitive.
+[[nodiscard]] Buffer<std::uint64_t> pack(const Visible& visible, PrimitiveId first_id = 0,
+                                         const Execution& execution = {});
+/// The way back. \throws Error bad_argument unless there is a number for every sample of the view, and every key is in
+/// [0, 1]; as validate(view) does.
+[[nodiscard]] Visible unpack(const View& view, std::span<const std::uint64_t> packed, const Execution& execution = {});
+
+/// A hash of ids and depths: equal for equal answers, on every machine and for any number of threads. FNV-1a over
+/// the two planes, sample by sample. O(samples), on one thread.
+[[nodiscard]] std::uint64_t content_hash(const Visible& visible);
+
+// VisiblePixels: what a view of several samples shows, kept once wherever all samples of a pixel see the same.
+//
+//   first        | row 0     | row 1     | ...     what sample 0 of every pixel sees: primitive and key
+//   mixed        0 0 0 1 1 0 0 ...                 a bit for each pixel whose samples see different primitives
+//   others             | 1, 2, 3 | 1, 2, 3 |       for those alone what samples 1 and up see, as `places` tells
+//
+// Of most pictures it is a fifth of what a Visible takes, so that it is written and read in a fifth of the time: what
+// colour needs, for which the depths of samples other than the first do not count.
+
+/// The front-most primitive at every sample of a view.
+struct VisiblePixels {
+  static constexpr int run = 16;  ///< pixels of a row, from a multiple of as many on, that share a number of `mixed`
+
+  View view;      ///< of all samples
+  Visible first;  ///< of sample 0, as planes of one sample
+  /// [y][x / run]: bit x % run is set where the samples of a pixel see different primitives.
+  Buffer<std::uint16_t> mixed;
+  /// [y][x / run]: where in `others` the first mixed pixel of the run is; undefined without one.
+  Buffer<std::uint32_t> places;
+  /// Ids of samples 1 and up of one mixed pixel after another; the first `other_count` are used.
+  Buffer<PrimitiveId> others;
+  std::size_t other_count = 0;
+
+  [[nodiscard]] std::size_t runs_across() const { return std::size_t((view.width + run - 1) / run); }
+};
+
+/// The same of planes: runs follow each other as pixels do. O(samples).
+[[nodiscard]] VisiblePixels pixels_of(const Visible& visible);
+
+/// Of a view, with nothing in it: every plane has its size, and is undefined. \throws Error as validate(view) does.
+[[nodiscard]] VisiblePixels undefined_pixels(const View& view);
+
 }  // namespace frontmost

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Models with spheres and patches: triangles as fine as is asked for, whatever meets them.
-#include <frontmost/io.h>
+#include <frontmost/files.h>
 #include <gmock/gmock.h>
 
 #include <cmath>

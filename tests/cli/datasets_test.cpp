@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost report --views with --coco, --bop and --masks: all views in one set of files; objects that are left out.
-#include <frontmost/io.h>
+#include <frontmost/files.h>
 #include <gmock/gmock.h>
 #include <signal.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost render with a depth buffer: state from flags and batch files, stored values out, wrong usage.
-#include <frontmost/io.h>
+#include <frontmost/files.h>
 #include <gmock/gmock.h>
 
 #include "program.h"

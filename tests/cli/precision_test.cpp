@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost precision: tables, reports, plots, and what it finds on models.
-#include <frontmost/io.h>
+#include <frontmost/files.h>
 #include <gmock/gmock.h>
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost render: every output, every report, and the same bytes whatever it runs on.
 #include <frontmost/base.h>
-#include <frontmost/io.h>
+#include <frontmost/files.h>
 #include <gmock/gmock.h>
 
 #include <cmath>

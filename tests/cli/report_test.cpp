@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost report: the table, the report, and the files that it writes.
-#include <frontmost/io.h>
+#include <frontmost/files.h>
 #include <gmock/gmock.h>
 
 #include "report_squares.h"

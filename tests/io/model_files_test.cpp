@@ -5,8 +5,7 @@
 
 #include <filesystem>
 
-#include "frontmost/io.h"
-#include "frontmost/model_file.h"
+#include "frontmost/files.h"
 #include "frontmost/surfaces.h"
 #include "support/scratch_folder.h"
 

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tables as files: the text of CSV, the bytes of NPY, and what neither takes.
-#include "frontmost/table.h"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "support/scratch_folder.h"
 
 namespace frontmost::test {

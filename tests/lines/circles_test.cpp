@@ -7,8 +7,8 @@
 #include <map>
 #include <numbers>
 
-#include "frontmost/io.h"
-#include "frontmost/strokes.h"
+#include "frontmost/files.h"
+#include "frontmost/lines.h"
 #include "support/models.h"
 #include "support/random_scene.h"
 

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "frontmost/strokes.h"
+#include "frontmost/lines.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {

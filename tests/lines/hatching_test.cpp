@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hatch lines on known shapes, and against every triangle of random scenes, point by point.
-#include "frontmost/hatching.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 
+#include "frontmost/lines.h"
 #include "support/effort.h"
 #include "support/hatch_oracle.h"
 #include "support/random_scene.h"

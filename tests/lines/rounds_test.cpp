@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Circles and cylinders of known sizes are found in their triangles, nothing else is, and their centre lines are where
 // a drafter draws them.
-#include "frontmost/rounds.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +8,8 @@
 #include <functional>
 #include <numbers>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
+#include "frontmost/lines.h"
 #include "support/models.h"
 #include "support/random_scene.h"
 

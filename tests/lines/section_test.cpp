@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What planes cut of shapes whose cuts are known, of random ones beside the sum over their triangles, and of what no
 // solid is; and that what is left is closed to the bit.
-#include "frontmost/section.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,9 +11,8 @@
 #include <map>
 #include <numbers>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "frontmost/lines.h"
-#include "frontmost/strokes.h"
 #include "scene/shapes.h"
 #include "support/models.h"
 #include "support/random_scene.h"

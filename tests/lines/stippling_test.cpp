@@ -6,8 +6,8 @@
 #include <limits>
 #include <set>
 
-#include "frontmost/hatching.h"
-#include "lines/hatching/dot_grid.h"
+#include "frontmost/lines.h"
+#include "hatching/dot_grid.h"
 #include "support/effort.h"
 #include "support/hatch_oracle.h"
 #include "support/random_scene.h"

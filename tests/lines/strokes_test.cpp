@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Strokes: known counts, every line once, arcs where arcs are, and pens that travel little.
-#include "frontmost/strokes.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 #include <random>
 
+#include "frontmost/lines.h"
 #include "support/effort.h"
 #include "support/meshes.h"
 #include "support/seeds.h"

@@ -2,7 +2,7 @@
 // What is said to be hidden is never seen: neither along rays between the samples, nor in the z-buffer's pictures.
 #include <gtest/gtest.h>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "frontmost/occlusion.h"
 #include "frontmost/zbuffer.h"
 #include "occlusion/hidden_scene.h"

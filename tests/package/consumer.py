@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Installs a build into a fresh folder, compares what was laid down with the stored list, and builds and runs the
-consumer against it, once found by CMake and once by pkg-config.
+consumer against it, once found by CMake and once by pkg-config; and a program that asks for the methods alone.
 
     consumer.py BUILD            the test; exit status 0 when all is well
     consumer.py BUILD --update   stores the lists anew
@@ -16,6 +16,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 STORED = HERE / "installed.txt"
+MOST_BYTES = 1_500_000  # of the program that asks for the methods alone
 
 
 def run(*command, **options):
@@ -55,6 +56,24 @@ def check_output(text):
         sys.exit("the consumer ran, and said something else")
 
 
+def check_small(folder):
+    """A program with a z-buffer of its own meshes looks for no library of images, models or pages, and is small."""
+    run("cmake", "--build", folder)
+    picture = run(folder / "small")
+    print(picture, end="")
+    if not {"0", "1", "."} <= set(picture):
+        sys.exit("the small program does not see both of its triangles")
+    asked_for = (folder / "CMakeCache.txt").read_text()
+    linked = run("readelf", "--dynamic", folder / "small")
+    for name in ["png", "jpeg", "exr", "webp", "zip", "expat", "draco", "meshopt", "isal", "zlib", "libz.so"]:
+        if re.search(name, asked_for + linked, re.IGNORECASE):
+            sys.exit(f"the small program has to do with {name}")
+    size = (folder / "small").stat().st_size
+    print(f"{size} bytes: the small program, with the library in it")
+    if size > MOST_BYTES and "libfrontmost" not in linked:
+        sys.exit(f"more than {MOST_BYTES} bytes")
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("build", type=pathlib.Path)
@@ -71,6 +90,10 @@ def main():
         run("cmake", "-S", HERE / "consumer", "-B", folder / "by_cmake", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
         run("cmake", "--build", folder / "by_cmake")
         check_output(run(folder / "by_cmake" / "consumer", cwd=folder))
+
+        run("cmake", "-S", HERE / "small", "-B", folder / "small", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+            f"-DCMAKE_PREFIX_PATH={prefix}")
+        check_small(folder / "small")
 
         modules = next(prefix.rglob("frontmost.pc")).parent
         environment = dict(os.environ, PKG_CONFIG_PATH=str(modules))

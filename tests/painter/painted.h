@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "frontmost/agreement.h"
 #include "frontmost/painter.h"
+#include "frontmost/precision.h"
 #include "frontmost/zbuffer.h"
 
 namespace frontmost::test {

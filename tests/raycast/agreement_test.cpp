@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ray caster and the z-buffer have no code in common; where they differ, there is a reason.
 
-#include "frontmost/agreement.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
+#include "frontmost/precision.h"
 #include "frontmost/raycast.h"
 #include "frontmost/zbuffer.h"
 #include "support/effort.h"

@@ -7,7 +7,7 @@
 
 #include "base/exact_vector.h"
 #include "frontmost/surfaces.h"
-#include "frontmost/visible.h"
+#include "frontmost/view.h"
 #include "support/random_scene.h"
 #include "view/screen_transform.h"
 

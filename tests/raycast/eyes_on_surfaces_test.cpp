@@ -6,8 +6,7 @@
 #include <algorithm>
 
 #include "eye_oracle.h"
-#include "frontmost/agreement.h"
-#include "frontmost/ray_camera.h"
+#include "frontmost/precision.h"
 #include "frontmost/raycast.h"
 #include "frontmost/zbuffer.h"
 #include "indexed_scene.h"

@@ -17,7 +17,7 @@ namespace {
 
 using Corners = std::array<glm::vec3, 3>;
 
-/// What src/raycast says in doubles and expansions, in fractions.
+/// What src/methods/raycast says in doubles and expansions, in fractions.
 RationalVector position_of(const TrianglePoint& p) {
   RationalVector sum{0, 0, 0};
   for (int i = 0; i < 3; ++i)

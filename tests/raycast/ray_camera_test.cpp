@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Panoramas, fisheyes and laser scanners: known directions, exact ranges in a box, the same answers as six pinholes.
-#include "frontmost/ray_camera.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
+#include "frontmost/raycast.h"
 #include "indexed_scene.h"
 #include "support/effort.h"
 #include "support/odd_numbers.h"

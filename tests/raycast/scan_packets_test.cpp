@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "frontmost/ray_camera.h"
+#include "frontmost/raycast.h"
 #include "indexed_scene.h"
 #include "support/cutout_scene.h"
 #include "support/effort.h"

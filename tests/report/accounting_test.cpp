@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "frontmost/explain.h"
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "frontmost/zbuffer.h"
 #include "occlusion/hidden_scene.h"
 #include "report/accounting_reference.h"

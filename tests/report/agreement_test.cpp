@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Right answers are explained, wrong ones are found, whatever the mistake.
-#include "frontmost/agreement.h"
-
 #include <gtest/gtest.h>
 
+#include "frontmost/precision.h"
 #include "frontmost/raycast.h"
 #include "frontmost/zbuffer.h"
 #include "support/effort.h"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "frontmost/depth_buffer.h"
 #include "frontmost/precision.h"
+#include "frontmost/zbuffer.h"
 #include "support/odd_numbers.h"
 #include "support/random_scene.h"
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "frontmost/explain.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "frontmost/io.h"
+#include "frontmost/accounting.h"
+#include "frontmost/files.h"
 #include "frontmost/zbuffer.h"
 #include "occlusion/hidden_scene.h"
 #include "report/accounting_reference.h"

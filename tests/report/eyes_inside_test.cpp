@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "frontmost/abuffer.h"
-#include "frontmost/agreement.h"
-#include "frontmost/io.h"
+#include "frontmost/files.h"
+#include "frontmost/precision.h"
 #include "frontmost/raycast.h"
 #include "frontmost/zbuffer.h"
 #include "support/effort.h"

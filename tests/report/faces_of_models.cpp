@@ -12,9 +12,9 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "frontmost/io.h"
+#include "frontmost/accounting.h"
+#include "frontmost/files.h"
 #include "frontmost/precision.h"
-#include "frontmost/visible_faces.h"
 #include "support/models.h"
 #include "support/random_scene.h"
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Areas at risk against what depth buffers show, and against all pairs looked at one by one.
-#include "frontmost/fighting_faces.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
 
+#include "frontmost/precision.h"
 #include "frontmost/zbuffer.h"
 #include "report/fights/face_pairs.h"
 #include "report/fights/risk.h"

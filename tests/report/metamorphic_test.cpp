@@ -7,12 +7,8 @@
 
 #include "frontmost/abuffer.h"
 #include "frontmost/accounting.h"
-#include "frontmost/agreement.h"
-#include "frontmost/depth_buffer.h"
-#include "frontmost/explain.h"
 #include "frontmost/precision.h"
 #include "frontmost/raycast.h"
-#include "frontmost/visible_faces.h"
 #include "frontmost/zbuffer.h"
 #include "support/effort.h"
 #include "support/random_scene.h"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "frontmost/report.h"
 
 namespace frontmost {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "frontmost/agreement.h"
 #include "frontmost/precision.h"
 #include "frontmost/zbuffer.h"
 #include "support/random_scene.h"

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which triangles are seen, and how much of them: against every triangle less all that lie before it, and against what
 // can be worked out on paper.
-#include "frontmost/visible_faces.h"
-
 #include <gmock/gmock.h>
 
 #include <glm/gtc/constants.hpp>
 
+#include "frontmost/accounting.h"
 #include "support/effort.h"
 #include "support/face_oracle.h"
 #include "support/meshes.h"

@@ -2,7 +2,8 @@
 // The picture in bytes is that in floats, converted.
 #include <gtest/gtest.h>
 
-#include "frontmost/shade.h"
+#include "frontmost/pictures.h"
+#include "frontmost/sheets.h"
 #include "frontmost/zbuffer.h"
 #include "image/srgb_pixels.h"
 #include "support/same_visible.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Colours by their cells: the same as one by one.
-#include "shade/figure/coloring/color_groups.h"
+#include "figures/coloring/color_groups.h"
 
 #include <gtest/gtest.h>
 

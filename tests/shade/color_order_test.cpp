@@ -6,8 +6,8 @@
 #include <map>
 
 #include "base/srgb.h"
+#include "figures/colored_order.h"
 #include "frontmost/zbuffer.h"
-#include "shade/figure/colored_order.h"
 #include "shade/figure_support.h"
 
 namespace frontmost {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Environments: what is made of a picture of all directions, held against sums over all of them.
-#include "frontmost/environment.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <functional>
 #include <limits>
 
+#include "frontmost/pictures.h"
 #include "shade/environment/prefiltered.h"
 #include "support/odd_numbers.h"
 

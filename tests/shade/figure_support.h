@@ -2,7 +2,7 @@
 // Figures made by hand, and the areas of what becomes of them.
 #pragma once
 
-#include "shade/figure/colored_order.h"
+#include "figures/colored_order.h"
 #include "shade/support.h"
 
 namespace frontmost::test {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "frontmost/shade.h"
+#include "frontmost/pictures.h"
 #include "frontmost/zbuffer.h"
 #include "shade/layers/opaque_part.h"
 #include "shade/support.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "frontmost/abuffer.h"
-#include "frontmost/shade.h"
+#include "frontmost/pictures.h"
 #include "frontmost/zbuffer.h"
 #include "shade/support.h"
 #include "support/effort.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <memory>
 
-#include "frontmost/environment.h"
+#include "frontmost/pictures.h"
 #include "shade/light/lighting.h"
 
 namespace frontmost::test {

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "frontmost/shade.h"
+#include "frontmost/pictures.h"
 #include "frontmost/zbuffer.h"
 #include "shade/light/layers.h"
 #include "shade/light/sheen.h"

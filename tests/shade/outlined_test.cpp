@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "figures/colored_order.h"
+#include "figures/side_net.h"
 #include "frontmost/zbuffer.h"
-#include "shade/figure/colored_order.h"
-#include "shade/figure/side_net.h"
 #include "shade/figure_support.h"
 
 namespace frontmost {

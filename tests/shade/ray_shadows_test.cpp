@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
+#include "frontmost/pictures.h"
 #include "frontmost/raycast.h"
-#include "frontmost/shade.h"
 #include "frontmost/zbuffer.h"
 #include "scene/shapes.h"
 #include "shade/support.h"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "frontmost/pictures.h"
 #include "frontmost/raycast.h"
-#include "frontmost/shade.h"
 #include "frontmost/zbuffer.h"
 #include "shade/scan/scan_tile.h"
 #include "shade/support.h"

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole pictures of small scenes whose colours are known.
-#include "frontmost/shade.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "base/srgb.h"
-#include "frontmost/io.h"
+#include "frontmost/files.h"
+#include "frontmost/pictures.h"
 #include "frontmost/zbuffer.h"
 #include "shade/support.h"
 #include "support/effort.h"

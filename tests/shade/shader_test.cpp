@@ -93,7 +93,7 @@ TEST(Shader, FiguresAndDeepImagesAreThoseOfTheFunctions) {
     EXPECT_EQ(std::memcmp(expected.channels[0].floats().data(), found.channels[0].floats().data(),
                           expected.channels[0].floats().size() * sizeof(float)),
               0);
-    const Figure figure = draw_figure(surfaces, visible), again = shader.draw_figure(visible);
+    const Figure figure = draw_figure(surfaces, visible), again = draw_figure(shader, visible);
     ASSERT_EQ(figure.shapes.size(), again.shapes.size());
     for (std::size_t s = 0; s < figure.shapes.size(); ++s)
       ASSERT_EQ(figure.shapes[s].color, again.shapes[s].color) << s;

@@ -6,7 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "frontmost/abuffer.h"
-#include "frontmost/shade.h"
+#include "frontmost/pictures.h"
 #include "frontmost/zbuffer.h"
 #include "shade/support.h"
 

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "support/meshes.h"
 #include "support/models.h"
 #include "support/seeds.h"

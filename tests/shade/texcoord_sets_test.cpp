@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "frontmost/abuffer.h"
+#include "frontmost/pictures.h"
 #include "frontmost/raycast.h"
-#include "frontmost/shade.h"
 #include "frontmost/zbuffer.h"
 #include "shade/support.h"
 

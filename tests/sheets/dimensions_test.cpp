@@ -9,7 +9,7 @@
 #include <memory>
 #include <numbers>
 
-#include "frontmost/lettering.h"
+#include "frontmost/sheets.h"
 #include "sheets/dimensions/obstacles.h"
 #include "support/random_scene.h"
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lettering: where texts stand and how large, and that every letter keeps to its width.
-#include "frontmost/lettering.h"
-
 #include <map>
 #include <numbers>
 
-#include "io/drawings/arc.h"
+#include "frontmost/sheets.h"
 #include "io/drawings/sample_page.h"
+#include "pages/arc.h"
 
 namespace frontmost::test {
 namespace {

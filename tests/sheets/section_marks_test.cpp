@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "frontmost/lettering.h"
+#include "frontmost/sheets.h"
 #include "sheets/sections/sections.h"
 
 namespace frontmost::test {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole sheets by one call: sizes that can be worked out, what a sheet tells of itself, and what it refuses.
-#include "frontmost/sheet.h"
-
 #include <gmock/gmock.h>
 
 #include <limits>
 #include <set>
 
 #include "frontmost/scene.h"
+#include "frontmost/sheets.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {

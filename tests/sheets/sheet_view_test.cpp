@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sheets: where strokes land on the page, in which layer and group, with which pen.
-#include "frontmost/sheet_view.h"
-
 #include <cmath>
 #include <numbers>
 
+#include "frontmost/sheets.h"
 #include "io/drawings/sample_page.h"
 #include "support/random_scene.h"
 

@@ -6,8 +6,8 @@
 
 #include <cstring>
 
-#include "frontmost/shade.h"
-#include "frontmost/stream.h"
+#include "frontmost/pictures.h"
+#include "frontmost/streams.h"
 #include "frontmost/zbuffer.h"
 #include "support/scratch_folder.h"
 

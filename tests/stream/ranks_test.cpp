@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
-#include "frontmost/stream.h"
+#include "frontmost/streams.h"
 #include "stream/as_whole.h"
 #include "stream/message.h"
 #include "stream/shared.h"

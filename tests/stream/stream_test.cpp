@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A stream shows to the bit what the model shows that is read whole, however small its pieces are.
-#include "frontmost/stream.h"
-
 #include <gmock/gmock.h>
 
+#include "frontmost/streams.h"
 #include "stream/as_whole.h"
 #include "support/meshes.h"
 #include "support/random_scene.h"

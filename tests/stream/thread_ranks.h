@@ -5,7 +5,7 @@
 #include <barrier>
 #include <thread>
 
-#include "frontmost/stream.h"
+#include "frontmost/streams.h"
 
 namespace frontmost::test {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "frontmost/depth_buffer.h"
+#include "frontmost/zbuffer.h"
 #include "support/oracle.h"
 
 namespace frontmost::test {

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "frontmost/abuffer.h"
-#include "frontmost/shade.h"
+#include "frontmost/pictures.h"
 #include "frontmost/zbuffer.h"
 
 namespace frontmost::test {

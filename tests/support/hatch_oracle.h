@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "frontmost/hatching.h"
+#include "frontmost/lines.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {

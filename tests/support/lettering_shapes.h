@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "frontmost/lettering.h"
+#include "frontmost/sheets.h"
 
 namespace frontmost::test {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // For libraries without the room io: programs link whose tests of files are not run.
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 
 namespace frontmost {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "frontmost/visible.h"
+#include "frontmost/view.h"
 #include "surfaces/cluster_set.h"
 #include "view/clip.h"
 #include "view/screen_cutout.h"

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "io/models/obj/mtl.h"
 #include "support/threemf_maker.h"
 

@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include "base/parallel.h"
-#include "frontmost/visible.h"
+#include "frontmost/view.h"
 #include "frontmost/zbuffer.h"
 #include "support/effort.h"
 #include "support/random_scene.h"

@@ -7,8 +7,8 @@
 // asked of the triangles themselves, by lines of sight.
 #pragma once
 
+#include "frontmost/pictures.h"
 #include "frontmost/raycast.h"
-#include "frontmost/shade.h"
 #include "frontmost/zbuffer.h"
 #include "shade/geometry/triangle_setup.h"
 #include "shade/light/lighting.h"

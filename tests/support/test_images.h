@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "support/seeds.h"
 
 namespace frontmost::test {

@@ -2,10 +2,10 @@
 // Surfaces whose instances move, and what follows them, against those made anew of the scene as it is then.
 #include <gtest/gtest.h>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "frontmost/occlusion.h"
+#include "frontmost/pictures.h"
 #include "frontmost/raycast.h"
-#include "frontmost/shade.h"
 #include "frontmost/zbuffer.h"
 #include "occlusion/hidden_scene.h"
 #include "support/cutout_scene.h"

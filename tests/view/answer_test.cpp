@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 
 #include "frontmost/image.h"
+#include "frontmost/pictures.h"
 #include "frontmost/precision.h"
-#include "frontmost/shade.h"
 #include "frontmost/zbuffer.h"
 
 namespace frontmost::test {

@@ -2,7 +2,7 @@
 // Merging what parts show: known answers, and the laws that streaming and compositing rest on.
 #include <gtest/gtest.h>
 
-#include "frontmost/visible.h"
+#include "frontmost/view.h"
 #include "frontmost/zbuffer.h"
 #include "support/random_scene.h"
 

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "frontmost/view.h"
-#include "frontmost/visible.h"
 
 namespace frontmost {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "frontmost/visible.h"
+#include "frontmost/view.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 #include "support/rational_vector.h"

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles for a view: how far they are from the surface, on the screen, and whether they hang together.
-#include "frontmost/tessellate.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <tuple>
 
 #include "frontmost/surfaces.h"
+#include "frontmost/view.h"
 #include "scene/bezier_patch.h"
 #include "scene/shapes.h"
 #include "view/tessellate/level.h"

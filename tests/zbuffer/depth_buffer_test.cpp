@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The depth buffer against the state machine, to the bit: functions, formats, masks, ranges, offsets, instruction sets.
-#include "frontmost/depth_buffer.h"
-
 #include <gtest/gtest.h>
 
 #include <cfenv>

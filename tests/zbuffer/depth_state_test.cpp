@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "frontmost/depth_buffer.h"
+#include "frontmost/zbuffer.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {

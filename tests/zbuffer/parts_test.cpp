@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "frontmost/depth_buffer.h"
+#include "frontmost/zbuffer.h"
 #include "support/oracle.h"
 #include "support/random_scene.h"
 #include "zbuffer/tile/tile_lists.h"

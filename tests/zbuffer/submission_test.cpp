@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "frontmost/depth_buffer.h"
+#include "frontmost/zbuffer.h"
 #include "support/depth_oracle.h"
 #include "support/random_scene.h"
 

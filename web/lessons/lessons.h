@@ -5,7 +5,7 @@
 
 #include <frontmost/image.h>
 #include <frontmost/surfaces.h>
-#include <frontmost/visible.h>
+#include <frontmost/view.h>
 
 #include <array>
 #include <span>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Projection and depth: how depth runs along a segment on the screen, how fine formats tell depths apart, and what a
 // picture shows where they do not.
+#include <frontmost/pictures.h>
 #include <frontmost/precision.h>
-#include <frontmost/shade.h>
 #include <frontmost/zbuffer.h>
 
 #include "web/camera.h"

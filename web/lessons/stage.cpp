@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes of the lessons.
-#include <frontmost/io.h>
-#include <frontmost/shade.h>
+#include <frontmost/files.h>
+#include <frontmost/pictures.h>
 
 #include <algorithm>
 #include <array>

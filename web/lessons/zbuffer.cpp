@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The z-buffer's lesson: a DepthBuffer after every triangle, and what each triangle brings to every sample.
-#include <frontmost/depth_buffer.h>
+#include <frontmost/zbuffer.h>
 
 #include "web/lessons/lessons.h"
 

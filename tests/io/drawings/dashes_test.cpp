@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "frontmost/sheet_view.h"
+#include "frontmost/sheets.h"
 #include "support/effort.h"
 
 namespace frontmost::test {

@@ -2,7 +2,7 @@
 // What a page may be, and that its files are whole, the same every time, or not there.
 #include <limits>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "io/drawings/sample_page.h"
 
 namespace frontmost::test {

@@ -4,7 +4,7 @@
 
 #include <zlib.h>
 
-#include "frontmost/page.h"
+#include "frontmost/sheets.h"
 #include "support/scratch_folder.h"
 
 namespace frontmost::test {

@@ -8,8 +8,8 @@
 #include <OpenEXR/ImfPartType.h>
 #include <gtest/gtest.h>
 
-#include "frontmost/io.h"
-#include "frontmost/shade.h"
+#include "frontmost/files.h"
+#include "frontmost/pictures.h"
 #include "frontmost/zbuffer.h"
 #include "support/random_scene.h"
 #include "support/scratch_folder.h"

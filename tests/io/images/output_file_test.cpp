@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files are whole or not there, whatever happens on the way.
-#include "io/output_file.h"
+#include "base/output_file.h"
 
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -12,7 +12,7 @@
 #include <system_error>
 #include <thread>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "support/scratch_folder.h"
 #include "support/test_images.h"
 

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "io/models/gltf/compressed.h"
 #include "io/models/gltf_maker.h"
 

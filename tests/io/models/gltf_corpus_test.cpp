@@ -7,7 +7,7 @@
 #include <iterator>
 #include <map>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "io/images/decode.h"
 #include "io/models/gltf/compressed.h"
 

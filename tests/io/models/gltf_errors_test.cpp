@@ -2,7 +2,7 @@
 // What a glTF file may get wrong, one mistake at a time, and the words for each: file, place, reason.
 #include <gmock/gmock.h>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "io/models/gltf_maker.h"
 
 namespace frontmost {

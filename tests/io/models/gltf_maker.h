@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 
 namespace frontmost::test {
 

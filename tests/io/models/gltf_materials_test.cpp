@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "io/image_bytes.h"
 #include "io/models/gltf_maker.h"
 

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "support/models.h"
 
 namespace frontmost {

@@ -2,7 +2,7 @@
 // glTF by parts: small files made here, with answers known beforehand.
 #include <gmock/gmock.h>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "io/models/gltf/data.h"
 #include "io/models/gltf_maker.h"
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "support/models.h"
 
 namespace frontmost {

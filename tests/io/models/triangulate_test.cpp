@@ -11,7 +11,7 @@
 #include <set>
 
 #include "base/orientation.h"
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "support/models.h"
 #include "support/seeds.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "frontmost/io.h"
+#include "frontmost/files.h"
 #include "support/scratch_folder.h"
 
 namespace frontmost::test {

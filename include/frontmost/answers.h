@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is seen, what hides it, and what a depth buffer cannot tell apart.
+#pragma once
+
+#include "frontmost/accounting.h"  // IWYU pragma: export
+#include "frontmost/precision.h"   // IWYU pragma: export
+#include "frontmost/report.h"      // IWYU pragma: export

@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: Apache-2.0
+// First every sample is looked at alone: do ids differ, are keys right. Then every triangle of the scene is held
+// against the samples that differ, whatever the methods made of it, for a surface that rules an answer out.
+//
+//   samples   --ids differ--> Contest: two claims --every triangle over them--> is a claim impossible?
+//                                                                                    neither: edge or depth
+//                                                                                    one:     unexplained
+//
+// Few samples differ, and all triangles must be asked; so the samples are kept by cells of 16 x 16 pixels, in which a
+// triangle finds those that it may cover.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "base/parallel.h"
+#include "frontmost/precision.h"
+#include "report/sample_square.h"
+#include "surfaces/cluster_set.h"
+#include "view/facing_rule.h"
+#include "view/screen_cutout.h"
+#include "view/screen_transform.h"
+
+namespace frontmost {
+namespace {
+
+constexpr std::size_t kRowGrain = 8, kTriangleGrain = 8192;
+// Samples that differ are found by cells of this many pixels squared.
+constexpr int kCell = 16;
+
+bool are_finite(const std::array<glm::vec3, 3>& corners) {
+  return is_finite(corners[0]) && is_finite(corners[1]) && is_finite(corners[2]);
+}
+
+/// Everything that is asked about one view of one scene.
+struct Question {
+  const Surfaces& surfaces;
+  const View& view;
+  const SampleRays rays;
+  const ScreenRays screen_rays;
+  const std::span<const glm::ivec2> offsets;
+  const FacingRule facing;
+
+  [[nodiscard]] SampleSquare square(std::size_t sample) const {
+    const std::size_t pixel = sample % view.pixel_count(), width = std::size_t(view.width);
+    return SampleSquare(rays, int(pixel % width), int(pixel / width), offsets[sample / view.pixel_count()]);
+  }
+  /// None for ids that no triangle has, and for triangles that are never seen.
+  [[nodiscard]] std::optional<ViewedTriangle> triangle(PrimitiveId id) const {
+    if (id >= surfaces.primitive_count()) return std::nullopt;
+    const std::array<glm::vec3, 3> corners = surfaces.corners(id);
+    if (!are_finite(corners)) return std::nullopt;
+    return ViewedTriangle(corners, rays);
+  }
+  [[nodiscard]] bool is_culled(const ViewedTriangle& triangle, PrimitiveId id) const {
+    if (facing.culling() == Culling::none) return false;
+    const bool is_front = (triangle.facing() < 0) != surfaces.is_mirrored(surfaces.source(id).instance);
+    return !facing.keeps(id, is_front);
+  }
+  /// Whether a triangle with holes lets the ray of a sample pass: asked as the methods ask.
+  [[nodiscard]] bool is_hole(PrimitiveId id, std::size_t sample) const {
+    const Cutouts* const cutouts = surfaces.placed().cutouts.get();
+    if (!cutouts || !cutouts->has(id)) return false;
+    const std::size_t pixel = sample % view.pixel_count(), width = std::size_t(view.width);
+    const glm::ivec2 at = glm::ivec2(pixel % width, pixel / width) * kSubPixels + offsets[sample / view.pixel_count()];
+    return ScreenCutout((*cutouts)[id], screen_rays).is_hole(at.x, at.y);
+  }
+  /// As a method sees it: one that is left out is not there, except where it is so thin that snapping may turn it; nor
+  /// is one that has a hole.
+  [[nodiscard]] LineMeeting meeting(const ViewedTriangle& triangle, PrimitiveId id, const SampleSquare& square,
+                                    std::size_t sample) const {
+    const LineMeeting meeting = triangle.meeting(square);
+    if (meeting != LineMeeting::misses && is_hole(id, sample)) return LineMeeting::misses;
+    return meeting == LineMeeting::contains && is_culled(triangle, id) ? LineMeeting::misses : meeting;
+  }
+  /// A key as nearness.
+  [[nodiscard]] double nearness_of(float key) const {
+    if (view.projection.orthographic) return double(key) * (rays.far() - rays.near()) - rays.far();
+    return double(key) / rays.near();
+  }
+};
+
+/// Whether keys are right, triangle by triangle: neighbours mostly show the same.
+class KeyCheck {
+ public:
+  explicit KeyCheck(const Question& question) : question_(question) {}
+
+  [[nodiscard]] bool is_right(PrimitiveId id, float key, const SampleSquare& square) {
+    if (id == no_primitive) return key == 0;
+    if (id != id_) {
+      triangle_ = question_.triangle(id);
+      id_ = id;
+    }
+    if (!triangle_) return false;
+    const double nearness = question_.nearness_of(key);
+    const NearnessRange range = triangle_->nearness(square);
+    return nearness >= range.least.low - triangle_->resolution(range.least.low) &&
+           nearness <= range.greatest.high + triangle_->resolution(range.greatest.high);
+  }
+
+ private:
+  const Question& question_;
+  std::optional<ViewedTriangle> triangle_;
+  PrimitiveId id_ = no_primitive;
+};
+
+/// What one answer shows at a sample that differs.
+struct Claim {
+  PrimitiveId id;
+  std::optional<ViewedTriangle> triangle;  ///< none: nothing
+  LineMeeting meeting = LineMeeting::contains;
+};
+
+/// A sample where the answers differ. Only `impossible` changes, and only ever to true.
+struct Contest {
+  std::size_t sample;
+  SampleSquare square;
+  std::array<Claim, 2> claims;
+};
+
+/// The samples that differ, to be found by their place.
+class ContestMap {
+ public:
+  ContestMap(const View& view, const std::vector<Contest>& contests)
+      : view_(view), columns_((view.width + kCell - 1) / kCell), rows_((view.height + kCell - 1) / kCell) {
+    starts_.assign(std::size_t(columns_) * std::size_t(rows_) + 1, 0);
+    for (const Contest& contest : contests) ++starts_[cell_of(contest) + 1];
+    for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
+    numbers_.resize(contests.size());
+    std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
+    for (std::size_t i = 0; i < contests.size(); ++i) numbers_[next[cell_of(contests[i])]++] = i;
+  }
+
+  /// Visits the contests in the cells that a rectangle of the screen, in pixels, touches.
+  template <class Visit>
+  void in_rect(const glm::dvec2& low, const glm::dvec2& high, const Visit& visit) const {
+    const auto cell = [](double at, int count) { return int(std::clamp(std::floor(at / kCell), 0.0, count - 1.0)); };
+    if (high.x < 0 || high.y < 0 || low.x > view_.width || low.y > view_.height) return;
+    const int last_x = cell(high.x, columns_), last_y = cell(high.y, rows_);
+    for (int y = cell(low.y, rows_); y <= last_y; ++y)
+      for (int x = cell(low.x, columns_); x <= last_x; ++x) {
+        const std::size_t c = std::size_t(y) * std::size_t(columns_) + std::size_t(x);
+        for (std::size_t i = starts_[c]; i < starts_[c + 1]; ++i) visit(numbers_[i]);
+      }
+  }
+
+ private:
+  [[nodiscard]] std::size_t cell_of(const Contest& contest) const {
+    const std::size_t pixel = contest.sample % view_.pixel_count(), width = std::size_t(view_.width);
+    return pixel / width / kCell * std::size_t(columns_) + pixel % width / kCell;
+  }
+
+  const View& view_;
+  int columns_, rows_;
+  std::vector<std::size_t> starts_, numbers_;
+};
+
+/// A rectangle of the screen, in pixels, that holds all of a triangle that may be seen.
+struct ScreenRect {
+  glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+};
+
+class ScreenRects {
+ public:
+  explicit ScreenRects(const View& view)
+      : view_(view), eye_from_world_(glm::inverse(view.world_from_eye)), clip_(view.projection.clip) {}
+
+  [[nodiscard]] ScreenRect of(const std::array<glm::vec3, 3>& corners) const {
+    std::array<glm::dvec3, 3> c;
+    for (std::size_t i = 0; i < 3; ++i) c[i] = glm::dvec3(eye_from_world_ * glm::dvec4(corners[i], 1));
+    ScreenRect rect;
+    const double near = -0.99 * clip_.near;  // generous: keys decide about the plane itself
+    for (std::size_t i = 0; i < 3; ++i) {
+      const glm::dvec3 &a = c[i], &b = c[(i + 1) % 3];
+      if (view_.projection.orthographic || a.z <= near) include(a, rect);
+      if (!view_.projection.orthographic && (a.z <= near) != (b.z <= near))
+        include(a + (near - a.z) / (b.z - a.z) * (b - a), rect);
+    }
+    // A pixel to spare, many times what doubles and the squares need.
+    return {rect.low - 1.0, rect.high + 1.0};
+  }
+
+ private:
+  void include(const glm::dvec3& at, ScreenRect& rect) const {
+    const Projection& p = view_.projection;
+    const double scale = p.orthographic ? 1 : -1 / at.z;
+    const glm::dvec2 place((at.x * scale - p.left) / (p.right - p.left) * view_.width,
+                           (p.top - at.y * scale) / (p.top - p.bottom) * view_.height);
+    rect.low = glm::min(rect.low, place);
+    rect.high = glm::max(rect.high, place);
+  }
+
+  const View& view_;
+  glm::dmat4 eye_from_world_;
+  ClipDistances clip_;
+};
+
+/// For both claims of every contest, whether the scene rules them out.
+using Verdicts = std::vector<std::array<std::atomic<bool>, 2>>;
+
+/// What triangle `id` says about a contest, if it surely is there.
+void testify(const Question& question, PrimitiveId id, const ViewedTriangle& triangle, const Contest& contest,
+             std::array<std::atomic<bool>, 2>& impossible) {
+  bool is_there = false;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Claim& claim = contest.claims[i];
+    if (claim.id == id || impossible[i].load(std::memory_order_relaxed)) continue;
+    is_there = is_there || question.meeting(triangle, id, contest.square, contest.sample) == LineMeeting::contains;
+    if (!is_there) return;
+    if (!claim.triangle || is_surely_nearer(triangle, *claim.triangle, contest.square))
+      impossible[i].store(true, std::memory_order_relaxed);
+  }
+}
+
+void hear_all_triangles(const Question& question, const std::vector<Contest>& contests, Verdicts& impossible,
+                        const Execution& execution) {
+  if (contests.empty()) return;
+  const ContestMap map(question.view, contests);
+  const ScreenRects rects(question.view);
+  parallel_for(execution, question.surfaces.primitive_count(), kTriangleGrain, [&](std::size_t begin, std::size_t end) {
+    for (auto id = PrimitiveId(begin); id < end; ++id) {
+      const std::array<glm::vec3, 3> corners = question.surfaces.corners(id);
+      if (!are_finite(corners)) continue;
+      std::optional<ViewedTriangle> triangle;
+      const ScreenRect rect = rects.of(corners);
+      map.in_rect(rect.low, rect.high, [&](std::size_t number) {
+        if (!triangle) triangle.emplace(corners, question.rays);
+        testify(question, id, *triangle, contests[number], impossible[number]);
+      });
+    }
+  });
+}
+
+Contest contest_at(const Question& question, std::size_t sample, PrimitiveId a, PrimitiveId b) {
+  Contest contest{sample, question.square(sample), {Claim{a, {}}, Claim{b, {}}}};
+  for (Claim& claim : contest.claims) {
+    if (claim.id == no_primitive) continue;
+    claim.triangle = question.triangle(claim.id);
+    claim.meeting =
+        claim.triangle ? question.meeting(*claim.triangle, claim.id, contest.square, sample) : LineMeeting::misses;
+  }
+  return contest;
+}
+
+Difference verdict(const Contest& contest, const std::array<std::atomic<bool>, 2>& impossible) {
+  bool all_contain = true;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Claim& claim = contest.claims[i];
+    if (impossible[i] || claim.meeting == LineMeeting::misses) return Difference::unexplained;
+    all_contain = all_contain && claim.meeting == LineMeeting::contains && claim.id != no_primitive;
+  }
+  return all_contain ? Difference::depth : Difference::edge;
+}
+
+/// Marks samples whose ids differ as `edge` for now, and those with a wrong key as `unexplained`.
+void look_at_samples(const Question& question, const Visible& a, const Visible& b, const Execution& execution,
+                     Agreement& result) {
+  const std::size_t width = std::size_t(question.view.width), rows = question.view.sample_count() / width;
+  parallel_for(execution, rows, kRowGrain, [&](std::size_t begin, std::size_t end) {
+    std::array<KeyCheck, 2> checks{KeyCheck(question), KeyCheck(question)};
+    for (std::size_t i = begin * width; i < end * width; ++i) {
+      Difference& difference = result.differences[i];
+      const PrimitiveId ids[] = {a.primitives[i], b.primitives[i]};
+      const float keys[] = {a.keys[i], b.keys[i]};
+      difference = ids[0] == ids[1] ? Difference::none : Difference::edge;
+      // Most of most pictures.
+      if (ids[0] == no_primitive && ids[1] == no_primitive && keys[0] == 0 && keys[1] == 0) continue;
+      const SampleSquare square = question.square(i);
+      for (std::size_t k = 0; k < 2; ++k)
+        if (!checks[k].is_right(ids[k], keys[k], square)) difference = Difference::unexplained;
+    }
+  });
+}
+
+std::vector<Contest> contests_of(const Question& question, const Visible& a, const Visible& b,
+                                 const Agreement& result) {
+  std::vector<Contest> contests;
+  for (std::size_t i = 0; i < result.differences.size(); ++i)
+    if (result.differences[i] == Difference::edge)
+      contests.push_back(contest_at(question, i, a.primitives[i], b.primitives[i]));
+  return contests;
+}
+
+void check_views(const Visible& a, const Visible& b) {
+  const View &v = a.view, &w = b.view;
+  const std::size_t count = v.sample_count();
+  if (v.width != w.width || v.height != w.height || v.samples != w.samples || v.world_from_eye != w.world_from_eye ||
+      a.primitives.size() != count || b.primitives.size() != count || a.keys.size() != count || b.keys.size() != count)
+    throw Error(ErrorCode::bad_argument, "agreement: the two answers are of different views");
+}
+
+}  // namespace
+
+std::string_view name(Difference difference) {
+  constexpr std::string_view kNames[] = {"none", "edge", "depth", "translucent", "unexplained"};
+  return kNames[std::size_t(difference)];
+}
+
+std::uint64_t Agreement::differing() const {
+  std::uint64_t sum = 0;
+  for (const Difference d : {Difference::edge, Difference::depth, Difference::translucent, Difference::unexplained})
+    sum += count(d);
+  return sum;
+}
+
+Agreement check_agreement(const Surfaces& surfaces, const Visible& a, const Visible& b, const Execution& execution) {
+  validate(a.view);
+  check_views(a, b);
+  const IeeeScope ieee;
+  Agreement result;
+  result.view = a.view;
+  result.differences = Buffer<Difference>(a.primitives.size());
+  const Question question{surfaces,
+                          result.view,
+                          SampleRays(a.view),
+                          ScreenRays(a.view),
+                          sample_offsets(a.view.samples),
+                          FacingRule(a.view.culling, surfaces.placed().sides.get())};
+  look_at_samples(question, a, b, execution, result);
+  const std::vector<Contest> contests = contests_of(question, a, b, result);
+  Verdicts impossible(contests.size());
+  hear_all_triangles(question, contests, impossible, execution);
+  for (std::size_t i = 0; i < contests.size(); ++i)
+    result.differences[contests[i].sample] = verdict(contests[i], impossible[i]);
+  for (const Difference difference : result.differences) ++result.counts[std::size_t(difference)];
+  return result;
+}
+
+void see_through(Agreement& agreement, const Surfaces& surfaces, const Visible& front, const Visible& behind) {
+  check_views(front, behind);
+  if (agreement.differences.size() != front.primitives.size())
+    throw Error(ErrorCode::bad_argument, "agreement: the layers are of different views");
+  const Scene& scene = surfaces.scene();
+  const auto lets_light_through = [&](PrimitiveId id) {
+    if (id >= surfaces.primitive_count()) return false;
+    const PrimitiveSource source = surfaces.source(id);
+    const std::uint32_t material = scene.meshes[source.mesh].material_of(source.triangle);
+    return material != no_index && scene.materials[material].is_see_through();
+  };
+  for (std::size_t i = 0; i < agreement.differences.size(); ++i) {
+    Difference& difference = agreement.differences[i];
+    if (difference != Difference::none || behind.primitives[i] == no_primitive) continue;
+    --agreement.counts[std::size_t(difference)];
+    difference = lets_light_through(front.primitives[i]) ? Difference::translucent : Difference::unexplained;
+    ++agreement.counts[std::size_t(difference)];
+  }
+}
+
+}  // namespace frontmost

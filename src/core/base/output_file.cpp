@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// Output that is there whole or not at all: written beside its place without a name, and named when it is complete.
+
+#include "base/output_file.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+
+#include "frontmost/base.h"
+
+namespace frontmost {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr mode_t new_file_mode = 0666;  // less the umask
+
+/// Where a chain of symbolic links leads, whether something is there or not.
+fs::path follow_links(fs::path path) {
+  constexpr int longest_chain = 40;  // as Linux counts
+  std::error_code ignored;
+  for (int i = 0; i < longest_chain && fs::is_symlink(fs::symlink_status(path, ignored)); ++i) {
+    const fs::path next = fs::read_symlink(path, ignored);
+    if (next.empty()) break;
+    path = path.parent_path() / next;  // an absolute `next` replaces all
+  }
+  return path;
+}
+
+fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
+
+#ifdef O_TMPFILE
+std::string link_of(int descriptor) { return "/proc/self/fd/" + std::to_string(descriptor); }
+#endif
+
+/// Tries `make` with hidden names beside `target` until one is free. \returns that name; empty with errno set on error.
+template <class Make>
+fs::path make_beside(const fs::path& target, Make&& make) {
+  constexpr std::size_t longest_stem = 200;  // file names have 255 bytes
+  const std::string stem = target.filename().string().substr(0, longest_stem);
+  for (int attempt = 0; attempt < 1000; ++attempt) {
+    const fs::path name =
+        folder_of(target) / ("." + stem + "." + std::to_string(::getpid()) + "-" + std::to_string(attempt) + ".tmp");
+    if (make(name)) return name;
+    if (errno != EEXIST) break;
+  }
+  return {};
+}
+
+}  // namespace
+
+OutputFile::OutputFile(const std::string& path, Staging staging)
+    : name_(path == "-" ? "standard output" : path), target_(follow_links(path)) {
+  if (path == "-") {
+    kind_ = Kind::standard_output;
+    descriptor_ = STDOUT_FILENO;
+    return;
+  }
+  struct ::stat status {};
+  errno = 0;
+  const bool exists = ::stat(target_.c_str(), &status) == 0;
+  if (!exists && errno != ENOENT) fail("cannot write");
+  if (exists && S_ISDIR(status.st_mode)) throw Error(ErrorCode::file_unwritable, name_ + ": is a folder");
+  // Devices and pipes are written to, not replaced: nobody wants /dev/null to become a file.
+  if (exists && !S_ISREG(status.st_mode)) {
+    open_direct();
+    return;
+  }
+  if (exists) {
+    // Renaming needs no permission for the file that goes away; take its owner by their word all the same.
+    if (::access(target_.c_str(), W_OK) != 0) fail("cannot write");
+    mode_ = status.st_mode & 0777;
+  }
+  open_staged(staging);
+}
+
+OutputFile::~OutputFile() {
+  if (kind_ != Kind::standard_output && descriptor_ >= 0) ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void OutputFile::fail(const char* doing) const {
+  // Before anything else is called: making a string may change it.
+  const int code = errno;
+  throw Error(ErrorCode::file_unwritable, name_ + ": " + doing + ": " + std::generic_category().message(code));
+}
+
+void OutputFile::open_direct() {
+  kind_ = Kind::direct;
+  descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor_ < 0) fail("cannot open");
+}
+
+void OutputFile::open_staged(Staging staging) {
+  if (!target_.has_filename()) throw Error(ErrorCode::file_unwritable, name_ + ": is not a file name");
+  // A file without a name goes by itself when the process ends, however it ends; a hidden one would stay behind.
+  if (staging == Staging::named || !open_unnamed()) open_named();
+}
+
+bool OutputFile::open_unnamed() {
+#ifdef O_TMPFILE
+  descriptor_ = ::open(folder_of(target_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, new_file_mode);
+  if (descriptor_ >= 0 && ::access(link_of(descriptor_).c_str(), F_OK) == 0) {
+    kind_ = Kind::unnamed;
+    return true;
+  }
+  if (descriptor_ >= 0) ::close(descriptor_);  // no /proc, so it could never be named
+  descriptor_ = -1;
+#endif
+  return false;
+}
+
+void OutputFile::open_named() {
+  kind_ = Kind::named;
+  temporary_ = make_beside(target_, [&](const fs::path& path) {
+    descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, new_file_mode);
+    return descriptor_ >= 0;
+  });
+  if (temporary_.empty()) fail("cannot create");
+}
+
+void OutputFile::write(std::span<const std::byte> bytes) {
+  constexpr std::size_t most = std::size_t(1) << 30;  // Linux takes less than 2 GiB a call
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), std::min(bytes.size(), most));
+    if (written >= 0) {
+      bytes = bytes.subspan(std::size_t(written));
+    } else if (errno == EAGAIN) {  // a pipe that someone made non-blocking
+      pollfd ready{descriptor_, POLLOUT, 0};
+      ::poll(&ready, 1, -1);
+    } else if (errno != EINTR) {
+      fail("cannot write");
+    }
+  }
+}
+
+void OutputFile::commit() {
+  if (kind_ == Kind::standard_output) return;
+  // Before the file has its name, so that nobody can open it with other permissions than the old one had.
+  if (mode_ && kind_ != Kind::direct && ::fchmod(descriptor_, *mode_) != 0) fail("cannot set permissions");
+  if (kind_ == Kind::unnamed) give_name();
+  close();
+  if (temporary_.empty()) return;
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot replace");
+  temporary_.clear();
+}
+
+/// Links the nameless file to its place or, as links never replace anything, to a name from where it can be renamed.
+void OutputFile::give_name() {
+#ifdef O_TMPFILE
+  const std::string source = link_of(descriptor_);
+  const auto link_to = [&](const fs::path& path) {
+    return ::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0;
+  };
+  // Straight to its place where there was nothing; if something has come there meanwhile it is replaced, below.
+  if (!mode_ && link_to(target_)) return;
+  temporary_ = make_beside(target_, link_to);
+  if (temporary_.empty()) fail("cannot create");
+#endif
+}
+
+void OutputFile::close() {
+  // Some file systems find only now that the disk is full.
+  const int descriptor = descriptor_;
+  descriptor_ = -1;
+  if (::close(descriptor) != 0 && errno != EINTR) fail("cannot write");
+}
+
+void save_text(std::string_view text, const std::string& path) {
+  OutputFile file(path);
+  file.write(std::as_bytes(std::span(text.data(), text.size())));
+  file.commit();
+}
+
+}  // namespace frontmost

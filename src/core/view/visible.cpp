@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is seen of a view: whether it can be read, its depths, a hash that stands for it in tests, and several made into
+// one by the z-buffer's own comparison, sample by sample:
+//
+//   (key, id) wins over (key', id')  where  key > key',  or  key == key' and id < id'
+//
+// The rule does not care which comes first or how often, so parts of a scene may be merged in any order, twice, or by a
+// tree of machines.
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <string>
+
+#include "base/parallel.h"
+#include "frontmost/view.h"
+#include "view/answer.h"
+#include "view/packed.h"
+
+namespace frontmost {
+namespace {
+
+// FNV-1a, but over words of 64 bits where the original takes bytes: eight times as fast, and what is hashed is no text.
+constexpr std::uint64_t kOffset = 0xCBF29CE484222325u, kPrime = 0x100000001B3u;
+
+void hash_word(std::uint64_t& hash, std::uint64_t word) { hash = (hash ^ word) * kPrime; }
+
+bool same_projection(const Projection& a, const Projection& b) {
+  return a.orthographic == b.orthographic && a.left == b.left && a.right == b.right && a.bottom == b.bottom &&
+         a.top == b.top && a.clip.near == b.clip.near && a.clip.far == b.clip.far;
+}
+
+bool same_view(const View& a, const View& b) {
+  // To the bit: keys of views that differ in the last place cannot be compared.
+  return a.width == b.width && a.height == b.height && a.samples == b.samples && a.world_from_eye == b.world_from_eye &&
+         a.culling == b.culling && same_projection(a.projection, b.projection);
+}
+
+constexpr std::size_t packed_at_once = 1u << 16;
+
+/// Without branches, so that the compiler takes several samples at a time. \returns the greatest new id of all seen.
+std::uint64_t merge_run(Visible& into, const Visible& other, PrimitiveId first_id, std::size_t begin, std::size_t end) {
+  PrimitiveId* ids = into.primitives.data();
+  float* keys = into.keys.data();
+  const PrimitiveId* other_ids = other.primitives.data();
+  const float* other_keys = other.keys.data();
+  PrimitiveId greatest = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const bool is_seen = other_ids[i] != no_primitive;
+    greatest = std::max(greatest, is_seen ? other_ids[i] : 0u);
+    const PrimitiveId id = is_seen ? other_ids[i] + first_id : no_primitive;
+    // Bitwise, not logical: both sides are cheap, and a jump is not.
+    const bool wins = (other_keys[i] > keys[i]) | ((other_keys[i] == keys[i]) & (id < ids[i]));
+    ids[i] = wins ? id : ids[i];
+    keys[i] = wins ? other_keys[i] : keys[i];
+  }
+  return std::uint64_t(greatest) + first_id;
+}
+
+}  // namespace
+
+void check_planes(const Visible& visible, const char* who) {
+  const std::size_t count = visible.view.sample_count();
+  if (visible.primitives.size() != count || visible.keys.size() != count)
+    throw Error(ErrorCode::bad_argument, std::string(who) + ": the planes do not have the size of their view");
+}
+
+void check_ids(std::span<const PrimitiveId> ids, std::uint32_t primitive_count, const char* who,
+               const Execution& execution) {
+  std::atomic<bool> is_of_others{false};
+  constexpr std::size_t ids_at_once = 1u << 17;
+  parallel_for(execution, ids.size(), ids_at_once, [&](std::size_t begin, std::size_t end) {
+    // One more than each id, so that no_primitive becomes the least: one maximum, without a branch.
+    std::uint32_t most = 0;
+    for (std::size_t i = begin; i < end; ++i) most = std::max(most, ids[i] + 1);
+    if (most > primitive_count) is_of_others = true;
+  });
+  if (is_of_others)
+    throw Error(ErrorCode::bad_argument, std::string(who) + ": the surfaces are not those that were seen");
+}
+
+void check_answer(const Visible& visible, std::uint32_t primitive_count, const char* who, const Execution& execution) {
+  check_planes(visible, who);
+  check_ids({visible.primitives.data(), visible.primitives.size()}, primitive_count, who, execution);
+}
+
+float depth_of_key(const View& view, float key) {
+  const ClipDistances& clip = view.projection.clip;
+  if (view.projection.orthographic) return float(clip.far - double(key) * (clip.far - clip.near));
+  // Kernels divide the near plane as a float by the distance: the same float here gives it back.
+  return key > 0 ? float(double(float(clip.near)) / double(key)) : std::numeric_limits<float>::infinity();
+}
+
+Buffer<float> depths_of(const Visible& visible) {
+  check_planes(visible, "depths_of");
+  Buffer<float> depth(visible.keys.size());
+  for (std::size_t i = 0; i < depth.size(); ++i)
+    depth[i] = visible.primitives[i] == no_primitive ? std::numeric_limits<float>::infinity()
+                                                     : depth_of_key(visible.view, visible.keys[i]);
+  return depth;
+}
+
+std::uint64_t content_hash(const Visible& visible) {
+  std::uint64_t hash = kOffset;
+  hash_word(hash, std::uint64_t(visible.view.width));
+  hash_word(hash, std::uint64_t(visible.view.height));
+  hash_word(hash, std::uint64_t(visible.view.samples));
+  for (std::size_t i = 0; i < visible.keys.size(); ++i) {
+    std::uint32_t key;
+    // The bits, not the number: two pictures are equal only to the last bit.
+    std::memcpy(&key, &visible.keys[i], sizeof key);
+    hash_word(hash, std::uint64_t(key) << 32 | visible.primitives[i]);
+  }
+  return hash;
+}
+
+Visible nothing_visible(const View& view) {
+  validate(view);
+  const std::size_t count = view.sample_count();
+  return {view, Buffer<PrimitiveId>(count, no_primitive), Buffer<float>(count, 0.0f)};
+}
+
+void merge(Visible& into, const Visible& other, PrimitiveId first_id, const Execution& execution) {
+  if (!same_view(into.view, other.view)) throw Error(ErrorCode::bad_argument, "merge: the two views are not the same");
+  check_planes(into, "merge");
+  check_planes(other, "merge");
+  // Asked for once a run and not for every sample: an error is rare, and what was merged by then is lost anyhow.
+  std::atomic<bool> is_full{false};
+  constexpr std::size_t samples_at_once = 1u << 16;
+  parallel_for(execution, into.keys.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
+    if (merge_run(into, other, first_id, begin, end) >= no_primitive) is_full = true;
+  });
+  if (is_full) throw Error(ErrorCode::limit_exceeded, "merge: more triangles than ids can tell apart (4294967294)");
+}
+
+Buffer<std::uint64_t> pack(const Visible& visible, PrimitiveId first_id, const Execution& execution) {
+  check_planes(visible, "pack");
+  Buffer<std::uint64_t> packed(visible.keys.size());
+  std::atomic<bool> is_full{false};
+  parallel_for(execution, packed.size(), packed_at_once, [&](std::size_t begin, std::size_t end) {
+    std::uint64_t greatest = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const PrimitiveId id = visible.primitives[i];
+      greatest = std::max(greatest, id == no_primitive ? 0 : std::uint64_t(id) + first_id);
+      packed[i] = packed_sample(id == no_primitive ? id : id + first_id, visible.keys[i]);
+    }
+    if (greatest >= no_primitive) is_full = true;
+  });
+  if (is_full) throw Error(ErrorCode::limit_exceeded, "pack: more triangles than ids can tell apart (4294967294)");
+  return packed;
+}
+
+Visible unpack(const View& view, std::span<const std::uint64_t> packed, const Execution& execution) {
+  validate(view);
+  if (packed.size() != view.sample_count())
+    throw Error(ErrorCode::bad_argument, "unpack: the numbers are not as many as the samples of the view");
+  Visible visible{view, Buffer<PrimitiveId>(packed.size()), Buffer<float>(packed.size())};
+  std::atomic<bool> is_wrong{false};
+  parallel_for(execution, packed.size(), packed_at_once, [&](std::size_t begin, std::size_t end) {
+    constexpr std::uint32_t bits_of_one = 0x3F800000u;  // those of floats in [0, 1] are as ordered as these are
+    std::uint32_t greatest = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      greatest = std::max(greatest, std::uint32_t(packed[i] >> 32));
+      unpack_sample(packed[i], visible.primitives[i], visible.keys[i]);
+    }
+    if (greatest > bits_of_one) is_wrong = true;
+  });
+  if (is_wrong) throw Error(ErrorCode::bad_argument, "unpack: a key is not within 0 and 1");
+  return visible;
+}
+
+}  // namespace frontmost

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+// A cut is looked for in this order, and the first that is found is taken:
+//
+//    colours change evenly (a plane through them leaves a tenth)    the border of the middle band
+//    texels are 4 pixels wide and more                              their border nearest to the middle
+//    else: texture coordinates, eight directions, and the           the line that leaves the least sum of
+//    direction in which the colours of the best cut differ          squared differences on both sides
+//
+// For the last, samples are sorted by their distance from a line of that direction; running sums then give what every
+// place of the line would gain, so a direction costs one sort. Equal gains go to the line that was tried first,
+// whatever rounding says, because files must not depend on the machine.
+#include "figures/coloring/color_cut.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace frontmost::shading {
+namespace {
+
+constexpr std::size_t kMostSamples = 256;
+constexpr int kDirections = 8;
+/// The direction across which the colour changes is found from a cut, and a better cut from that: so often.
+constexpr int kRounds = 2;
+/// The part of squared differences that a plane through the colours leaves, where they change evenly.
+constexpr double kEven = 0.1;
+constexpr std::size_t kFewestOfChange = 4;
+/// Texels: a cut that near to the border of two texels is that border.
+constexpr double kTexelReach = 0.25;
+/// Pixels: texels of that size are parted one by one.
+constexpr double kLargeTexel = 4;
+
+/// Of the longest axis of the ellipse that a symmetric matrix stands for.
+glm::dvec2 main_axis(double xx, double xy, double yy) {
+  const double half = (xx - yy) * 0.5, root = std::sqrt(half * half + xy * xy);
+  const glm::dvec2 axis = half > 0 ? glm::dvec2(half + root, xy) : glm::dvec2(xy, root - half);
+  const double length = glm::length(axis);
+  return length > 0 ? axis / length : glm::dvec2(1, 0);
+}
+
+/// Colours as an affine function of the place.
+struct EvenChange {
+  glm::dvec4 by_x{0}, by_y{0};  ///< steps per pixel
+  glm::dvec2 direction{1, 0};   ///< in which they change most
+  [[nodiscard]] double steps_per_pixel(const glm::dvec2& way) const {
+    const glm::dvec4 change = glm::abs(by_x * way.x + by_y * way.y);
+    return std::max({change.x, change.y, change.z, change.w});
+  }
+};
+
+/// By least squares; none where much is left.
+std::optional<EvenChange> find_even_change(std::span<const ColorSample> samples) {
+  const double count = double(samples.size());
+  glm::dvec2 place(0);
+  glm::dvec4 color(0);
+  for (const ColorSample& sample : samples) {
+    place += sample.at;
+    color += glm::dvec4(sample.color);
+  }
+  place /= count;
+  color /= count;
+  double xx = 0, xy = 0, yy = 0, whole = 0;
+  glm::dvec4 with_x(0), with_y(0);
+  for (const ColorSample& sample : samples) {
+    const glm::dvec2 p = sample.at - place;
+    const glm::dvec4 c = glm::dvec4(sample.color) - color;
+    xx += p.x * p.x;
+    xy += p.x * p.y;
+    yy += p.y * p.y;
+    with_x += c * p.x;
+    with_y += c * p.y;
+    whole += glm::dot(c, c);
+  }
+  const double determinant = xx * yy - xy * xy;
+  if (!(determinant > 1e-9 * xx * yy)) return std::nullopt;
+  EvenChange change{(with_x * yy - with_y * xy) / determinant, (with_y * xx - with_x * xy) / determinant};
+  const double explained = glm::dot(change.by_x, with_x) + glm::dot(change.by_y, with_y);
+  if (!(whole - explained <= kEven * whole)) return std::nullopt;
+  change.direction = main_axis(glm::dot(change.by_x, change.by_x), glm::dot(change.by_x, change.by_y),
+                               glm::dot(change.by_y, change.by_y));
+  return change;
+}
+
+/// A cut of samples in two, by the values of a function.
+struct Split {
+  double gain = 0;               ///< by how much the sum of squared differences gets smaller
+  double threshold = 0;          ///< of the function
+  glm::vec4 below{0}, above{0};  ///< mean colours
+};
+
+class CutFinder {
+ public:
+  CutFinder(const ColorPiece& piece, std::span<const TexcoordLines> texture) : piece_(piece), texture_(texture) {
+    const std::size_t stride = std::max<std::size_t>((piece.samples.size() + kMostSamples - 1) / kMostSamples, 1);
+    for (std::size_t i = 0; i < piece.samples.size(); i += stride) samples_.push_back(piece.samples[i]);
+    for (const ColorSample& sample : samples_) total_ += sample.color;
+  }
+
+  [[nodiscard]] std::optional<ScreenLine> find() {
+    if (const std::optional<ScreenLine> border = border_of_bands()) return border;
+    if (const std::optional<ScreenLine> border = border_of_texels()) return border;
+    for (const TexcoordLines& lines : texture_) try_texture(lines);
+    for (int i = 0; i < kDirections; ++i) {
+      const double angle = i * 3.14159265358979323846 / kDirections;
+      try_direction({std::cos(angle), std::sin(angle)});
+    }
+    for (int i = 0; i < kRounds && line_; ++i)
+      if (const std::optional<glm::dvec2> direction = direction_of_change()) try_direction(*direction);
+    return line_;
+  }
+
+ private:
+  struct Range {
+    double least, greatest;
+  };
+  /// The middle one where colours change evenly, across the way in which the piece goes through most of them.
+  [[nodiscard]] std::optional<ScreenLine> border_of_bands() const {
+    if (samples_.size() < kFewestOfChange) return std::nullopt;
+    const std::optional<EvenChange> change = find_even_change(samples_);
+    if (!change) return std::nullopt;
+    std::optional<ScreenLine> line;
+    double most = 0;
+    for (const glm::dvec2& way : {change->direction, glm::dvec2(-change->direction.y, change->direction.x)}) {
+      const Range all = reach({way, 0});
+      const double width = all.greatest - all.least, steps = width * change->steps_per_pixel(way);
+      const double bands = std::max(std::ceil(steps / piece_.range), 2.0);
+      if (steps <= most || !(width >= 2 * bands * piece_.least_width)) continue;
+      most = steps;
+      line = ScreenLine{way, all.least + width * std::floor(bands / 2) / bands};
+    }
+    return line;
+  }
+
+  /// Where texels are large, their border that is nearest to the middle of the piece: of a chessboard no single cut
+  /// parts the colours, and pieces of other shapes have ragged rims.
+  [[nodiscard]] std::optional<ScreenLine> border_of_texels() const {
+    std::optional<ScreenLine> line;
+    double widest = 0;
+    for (const TexcoordLines& lines : texture_) {
+      double least = lines.at(piece_.corners[0]), greatest = least;
+      for (const glm::dvec2& corner : piece_.corners) {
+        least = std::min(least, lines.at(corner));
+        greatest = std::max(greatest, lines.at(corner));
+      }
+      const double border = std::round((least + greatest) * 0.5);
+      const std::optional<ScreenLine> found = lines.line(border);
+      if (!found || !(border > least && border < greatest)) continue;
+      const Range sides = reach(*found);
+      const double texel = std::min(-sides.least / (border - least), sides.greatest / (greatest - border));
+      const bool parts = -sides.least >= piece_.least_width && sides.greatest >= piece_.least_width;
+      if (!parts || texel < kLargeTexel || sides.greatest - sides.least <= widest) continue;
+      widest = sides.greatest - sides.least;
+      line = found;
+    }
+    return line;
+  }
+
+  /// How far the piece reaches on either side of a line.
+  [[nodiscard]] Range reach(const ScreenLine& line) const {
+    Range range{line.distance(piece_.corners[0]), line.distance(piece_.corners[0])};
+    for (const glm::dvec2& corner : piece_.corners) {
+      const double distance = line.distance(corner);
+      range = {std::min(range.least, distance), std::max(range.greatest, distance)};
+    }
+    return range;
+  }
+
+  /// The best split by a function of the place, at a value within a range.
+  template <class Function>
+  [[nodiscard]] Split split_by(const Function& function, const Range& allowed) {
+    keys_.clear();
+    for (std::uint32_t i = 0; i < samples_.size(); ++i) keys_.push_back({function(samples_[i].at), i});
+    std::sort(keys_.begin(), keys_.end());
+    Split best;
+    glm::dvec4 below(0);
+    const glm::dvec4 total(total_);
+    const double count = double(samples_.size()), whole = glm::dot(total, total) / count;
+    for (std::size_t i = 0; i + 1 < keys_.size(); ++i) {
+      below += glm::dvec4(samples_[keys_[i].second].color);
+      const double threshold = (keys_[i].first + keys_[i + 1].first) * 0.5;
+      if (!(keys_[i].first < keys_[i + 1].first) || threshold < allowed.least || threshold > allowed.greatest) continue;
+      const double n = double(i + 1);
+      const glm::dvec4 above = total - below;
+      const double gain = glm::dot(below, below) / n + glm::dot(above, above) / (count - n) - whole;
+      if (gain <= best.gain * (1 + 1e-9)) continue;  // equal ones: the first, whatever rounding says
+      best = {gain, threshold, glm::vec4(below / n), glm::vec4(above / (count - n))};
+    }
+    return best;
+  }
+
+  void take(const Split& split, const ScreenLine& line) {
+    best_ = split;
+    line_ = line;
+  }
+  [[nodiscard]] bool is_better(const Split& split) const { return split.gain > best_.gain * (1 + 1e-9) + 1e-9; }
+
+  void try_direction(const glm::dvec2& normal) {
+    const Range all = reach({normal, 0});
+    const Split split = split_by([&](const glm::dvec2& p) { return glm::dot(normal, p); },
+                                 {all.least + piece_.least_width, all.greatest - piece_.least_width});
+    if (is_better(split)) take(split, {normal, split.threshold});
+  }
+
+  void try_texture(const TexcoordLines& lines) {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    Split split = split_by([&](const glm::dvec2& p) { return lines.at(p); }, {-infinite, infinite});
+    if (!is_better(split)) return;
+    const double border = std::round(split.threshold);
+    if (std::abs(split.threshold - border) < kTexelReach) split.threshold = border;
+    const std::optional<ScreenLine> line = lines.line(split.threshold);
+    if (!line) return;
+    const Range sides = reach(*line);
+    if (sides.least <= -piece_.least_width && sides.greatest >= piece_.least_width) take(split, *line);
+  }
+
+  /// That in which samples lie apart that are more like one or more like the other side of the best split.
+  [[nodiscard]] std::optional<glm::dvec2> direction_of_change() const {
+    const glm::vec4 way = best_.above - best_.below, middle = (best_.above + best_.below) * 0.5f;
+    const double length = double(glm::dot(way, way));
+    glm::dvec2 mean(0), covariance(0);
+    double xx = 0, xy = 0, yy = 0;
+    for (const ColorSample& sample : samples_) mean += sample.at;
+    mean /= double(samples_.size());
+    for (const ColorSample& sample : samples_) {
+      const double side = std::clamp(double(glm::dot(sample.color - middle, way)) / length, -0.5, 0.5);
+      const glm::dvec2 p = sample.at - mean;
+      covariance += p * side;
+      xx += p.x * p.x;
+      xy += p.x * p.y;
+      yy += p.y * p.y;
+    }
+    const glm::dvec2 direction(yy * covariance.x - xy * covariance.y, xx * covariance.y - xy * covariance.x);
+    const double size = glm::length(direction);
+    if (!(size > 0)) return std::nullopt;
+    return direction / size;
+  }
+
+  const ColorPiece& piece_;
+  std::span<const TexcoordLines> texture_;
+  std::vector<ColorSample> samples_;
+  std::vector<std::pair<double, std::uint32_t>> keys_;
+  glm::vec4 total_{0};
+  Split best_;
+  std::optional<ScreenLine> line_;
+};
+
+}  // namespace
+
+TexcoordLines::TexcoordLines(const TriangleSetup& setup, const std::array<double, 3>& coordinate) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Affine& a = setup.weight[k];
+    const double x = double(a.step_x), y = double(a.step_y);
+    const double constant = double(a.at_reference) - x * double(setup.reference.x) - y * double(setup.reference.y);
+    const auto add = [&](Plane& plane, double factor) {
+      plane.constant += factor * constant;
+      plane.x += factor * x;
+      plane.y += factor * y;
+    };
+    add(weight_, 1);
+    add(weighted_, coordinate[k]);
+  }
+}
+
+double TexcoordLines::at(const glm::dvec2& p) const {
+  const double weight = weight_.constant + weight_.x * p.x + weight_.y * p.y;
+  const double value = (weighted_.constant + weighted_.x * p.x + weighted_.y * p.y) / weight;
+  return std::isfinite(value) ? value : 0;
+}
+
+std::optional<ScreenLine> TexcoordLines::line(double value) const {
+  const glm::dvec2 normal(weighted_.x - value * weight_.x, weighted_.y - value * weight_.y);
+  const double length = glm::length(normal);
+  if (!(length > 1e-300)) return std::nullopt;
+  return ScreenLine{normal / length, (value * weight_.constant - weighted_.constant) / length};
+}
+
+std::optional<ScreenLine> best_cut(const ColorPiece& piece, std::span<const TexcoordLines> texture) {
+  return CutFinder(piece, texture).find();
+}
+
+}  // namespace frontmost::shading

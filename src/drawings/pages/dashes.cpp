@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+// Dashes as lines of their own.
+//
+// A path is a ruler from corner to corner; between two corners the pattern is stretched so that it begins and ends with
+// a dash (ISO 128-2, 5.2), which then meets the next one around the corner.
+//
+//   corner                                     corner
+//     +-----  -----  -----  -----  -----  -------+        one span: a whole number of periods, and a dash more
+//                                                |
+//                                                |        around the corner the two dashes are one path
+//   a closed path without corners has no span: its pattern goes around a whole number of times
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "pages/arc.h"
+
+namespace frontmost {
+namespace {
+
+using detail::Arc;
+using detail::Join;
+
+constexpr double sharp = 0.906;  // the cosine of 25 degrees: arcs and their chords turn by less
+constexpr std::size_t most_dashes = 20'000'000;
+
+struct Span {
+  double begin, end;
+};
+
+/// A path by its length.
+class Ruler {
+ public:
+  Ruler(const PageGroup& group, const PagePath& path) : is_closed_(path.is_closed) {
+    for (std::uint32_t i = 0; i < detail::join_count(path); ++i) {
+      const Join join = detail::join_of(group, path, i);
+      Leg leg{join, detail::arc_between(join.from, join.to, join.bulge), length_, 0};
+      leg.length = leg.arc ? leg.arc->radius * std::abs(leg.arc->turn) : glm::distance(join.from, join.to);
+      length_ += leg.length;
+      if (leg.length > 0) legs_.push_back(leg);
+    }
+  }
+
+  [[nodiscard]] double length() const { return length_; }
+  [[nodiscard]] bool is_empty() const { return legs_.empty(); }
+
+  /// From corner to corner. A closed path is one span where it has none, and otherwise begins at one.
+  [[nodiscard]] std::vector<Span> spans() const {
+    std::vector<double> corners;
+    if (!is_closed_) corners.push_back(0);
+    for (std::size_t i = is_closed_ ? 0 : 1; i < legs_.size(); ++i) {
+      const Leg& before = legs_[i == 0 ? legs_.size() - 1 : i - 1];
+      if (glm::dot(direction(before, true), direction(legs_[i], false)) < sharp) corners.push_back(legs_[i].begin);
+    }
+    if (!is_closed_)
+      corners.push_back(length_);
+    else if (!corners.empty())
+      corners.push_back(corners.front() + length_);
+    std::vector<Span> spans;
+    for (std::size_t i = 1; i < corners.size(); ++i) spans.push_back({corners[i - 1], corners[i]});
+    return spans;
+  }
+
+  /// Adds what lies within the span, which may reach once over the end of a closed path, as a path.
+  void cut(const Span& span, PageGroup& group) const {
+    PagePath path{std::uint32_t(group.points.size()), 0, false};
+    for (int round = 0; round < (is_closed_ ? 2 : 1); ++round)
+      for (auto leg = first_leg(span.begin - round * length_); leg != legs_.end(); ++leg) {
+        const double start = leg->begin + round * length_;
+        if (start >= span.end) break;
+        const double begin = std::max(span.begin - start, 0.0), end = std::min(span.end - start, leg->length);
+        if (!(begin < end)) continue;
+        const double share = (end - begin) / leg->length;
+        if (group.points.size() == path.first) add(group, at(*leg, begin));
+        if (leg->arc) group.bulges.back() = std::tan(leg->arc->turn * share / 4);
+        add(group, at(*leg, end));
+      }
+    path.count = std::uint32_t(group.points.size()) - path.first;
+    if (path.count > 0) group.paths.push_back(path);
+  }
+
+ private:
+  struct Leg {
+    Join join;
+    std::optional<Arc> arc;
+    double begin, length;
+  };
+
+  /// The last leg that begins at `along` or before; the first where none does.
+  [[nodiscard]] std::vector<Leg>::const_iterator first_leg(double along) const {
+    const auto after = std::upper_bound(legs_.begin(), legs_.end(), along,
+                                        [](double place, const Leg& leg) { return place < leg.begin; });
+    return after == legs_.begin() ? after : after - 1;
+  }
+
+  static void add(PageGroup& group, const glm::dvec2& point) {
+    group.points.push_back(point);
+    group.bulges.push_back(0);
+  }
+
+  [[nodiscard]] static glm::dvec2 at(const Leg& leg, double along) {
+    // The ends to the bit.
+    if (along <= 0) return leg.join.from;
+    if (along >= leg.length) return leg.join.to;
+    if (!leg.arc) return leg.join.from + (leg.join.to - leg.join.from) * (along / leg.length);
+    const double angle = leg.arc->begin + leg.arc->turn * (along / leg.length);
+    return leg.arc->centre + leg.arc->radius * glm::dvec2(std::cos(angle), std::sin(angle));
+  }
+
+  [[nodiscard]] static glm::dvec2 direction(const Leg& leg, bool at_end) {
+    if (!leg.arc) return glm::normalize(leg.join.to - leg.join.from);
+    const double angle = leg.arc->begin + (at_end ? leg.arc->turn : 0);
+    return std::copysign(1.0, leg.arc->turn) * glm::dvec2(-std::sin(angle), std::cos(angle));
+  }
+
+  const bool is_closed_;
+  std::vector<Leg> legs_;
+  double length_ = 0;
+};
+
+/// A pen's dashes: drawn, left out, drawn and so on.
+class Pattern {
+ public:
+  explicit Pattern(const std::vector<double>& dashes) : dashes_(dashes) {
+    for (const double dash : dashes) period_ += dash;
+  }
+
+  /// About how many dashes a line of that length has.
+  [[nodiscard]] double count_on(double length) const { return length / period_ * double(dashes_.size() / 2); }
+
+  /// The dashes of a span that begins and ends with the first of them; all of it where it is too short for a gap.
+  void fill(const Span& span, std::vector<Span>& drawn) const {
+    const double length = span.end - span.begin, times = std::round((length - dashes_[0]) / period_);
+    if (times < 1) return append(span, drawn);
+    const double stretch = length / (times * period_ + dashes_[0]);
+    double at = span.begin;
+    for (double k = 0; k < times; ++k) at = draw_period(at, stretch, drawn);
+    append({at, span.end}, drawn);
+  }
+
+  /// Dashes all around a closed line without corners.
+  void fill_around(double length, std::vector<Span>& drawn) const {
+    const double times = std::max(1.0, std::round(length / period_));
+    double at = 0;
+    for (double k = 0; k < times; ++k) at = draw_period(at, length / (times * period_), drawn);
+  }
+
+ private:
+  double draw_period(double at, double stretch, std::vector<Span>& drawn) const {
+    for (std::size_t i = 0; i < dashes_.size(); ++i) {
+      const double end = at + dashes_[i] * stretch;
+      if (i % 2 == 0) append({at, end}, drawn);
+      at = end;
+    }
+    return at;
+  }
+
+  /// Goes on with a dash that ends where this one begins: around a corner.
+  static void append(const Span& span, std::vector<Span>& drawn) {
+    if (!drawn.empty() && drawn.back().end == span.begin)
+      drawn.back().end = span.end;
+    else
+      drawn.push_back(span);
+  }
+
+  const std::vector<double>& dashes_;
+  double period_ = 0;
+};
+
+/// Turns one group's dashes into paths.
+class DashCutter {
+ public:
+  /// `most` is how many dashes there may be.
+  DashCutter(const PageGroup& group, std::size_t most, const Execution& execution)
+      : group_(group),
+        most_(double(most)),
+        execution_(execution),
+        pattern_(group.pen.dashes),
+        cut_{group.name, group.pen} {
+    cut_.pen.dashes.clear();
+  }
+
+  PageGroup run() {
+    for (const PagePath& path : group_.paths) cut(path);
+    if (group_.bulges.empty()) cut_.bulges.clear();
+    return std::move(cut_);
+  }
+
+ private:
+  void cut(const PagePath& path) {
+    poll();
+    const Ruler ruler(group_, path);
+    if (ruler.is_empty()) {  // a dot
+      cut_.paths.push_back({std::uint32_t(cut_.points.size()), 1, false});
+      cut_.points.push_back(group_.points[path.first]);
+      cut_.bulges.push_back(0);
+      return;
+    }
+    if (double(cut_.paths.size()) + pattern_.count_on(ruler.length()) > most_)
+      throw Error(ErrorCode::limit_exceeded, "dashes: more than 20000000 of them");
+    for (const Span& span : drawn_of(ruler, path.is_closed)) {
+      poll();
+      ruler.cut(span, cut_);
+    }
+  }
+
+  [[nodiscard]] std::vector<Span> drawn_of(const Ruler& ruler, bool is_closed) const {
+    const std::vector<Span> spans = ruler.spans();
+    std::vector<Span> drawn;
+    for (const Span& span : spans) pattern_.fill(span, drawn);
+    if (spans.empty()) pattern_.fill_around(ruler.length(), drawn);
+    // The last dash of a closed path goes on with the first.
+    if (is_closed && drawn.size() > 1 && drawn.back().end == drawn.front().begin + ruler.length()) {
+      drawn.back().end = drawn.front().end + ruler.length();
+      drawn.erase(drawn.begin());
+    }
+    return drawn;
+  }
+
+  /// Now and then: looking at the watch takes longer than a dash.
+  void poll() {
+    if (++steps_ % 1024 == 0) check_cancelled(execution_);
+  }
+
+  const PageGroup& group_;
+  const double most_;
+  const Execution& execution_;
+  const Pattern pattern_;
+  PageGroup cut_;
+  std::size_t steps_ = 0;
+};
+
+}  // namespace
+
+Page with_real_dashes(Page page, const Execution& execution) {
+  validate(page);
+  check_cancelled(execution);
+  std::size_t dashes = 0;
+  for (PageLayer& layer : page.layers)
+    for (PageGroup& group : layer.groups) {
+      if (group.pen.dashes.empty() || !group.fills.empty()) continue;
+      group = DashCutter(group, most_dashes - std::min(dashes, most_dashes), execution).run();
+      dashes += group.paths.size();
+    }
+  return page;
+}
+
+}  // namespace frontmost

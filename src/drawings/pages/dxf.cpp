@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+// DXF of AutoCAD release 12 (AC1009), which everything reads: pairs of lines, a group code and its value.
+//
+//   0           a group code: what follows is the kind of an entity
+//   LINE
+//   8           the layer that it is on
+//   2_VISIBLE
+//   10          its first x
+//   297.000
+//
+// Release 12 has neither groups nor widths, so what a page says by them is said by layers: each group is one, and has
+// its line type and colour from there. Layers have names of 31 characters at most, in which the page's layer comes
+// first, so that programs can choose all of it. A page's y runs down and DXF's up: places are turned over, and arcs
+// change their direction.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "pages/arc.h"
+#include "pages/formats.h"
+#include "pages/page_text.h"
+
+namespace frontmost::detail {
+namespace {
+
+/// Release 12 takes capitals, digits, $, - and _.
+std::string table_text(const std::string& name) {
+  std::string clean;
+  for (const char c : name) {
+    const bool is_lower = c >= 'a' && c <= 'z';
+    const bool is_fine = (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+    if (is_lower || is_fine)
+      clean += is_lower ? char(c - 'a' + 'A') : c;
+    else if (clean.empty() || clean.back() != '_')
+      clean += '_';
+  }
+  return clean;
+}
+
+/// Names that differ, of at most 31 characters.
+class TableNames {
+ public:
+  std::string add(const std::string& name) {
+    constexpr std::size_t longest = 26;  // leaves room for _ and a number below `most_layers`
+    const std::string clean = name.empty() ? "LAYER" : name.substr(0, longest);
+    std::string unique = clean;
+    for (int& number = next_.try_emplace(clean, 2).first->second; !taken_.insert(unique).second; ++number)
+      unique = clean + "_" + std::to_string(number);
+    return unique;
+  }
+
+ private:
+  std::set<std::string> taken_ = {"0"};  // every drawing has that one
+  std::map<std::string, int> next_;
+};
+
+/// More in one list are of no use to anybody.
+constexpr std::size_t most_layers = 1000;
+
+struct Layer {
+  std::string name;
+  Pen pen;
+  int color = 7;
+};
+
+/// The nearest of the colours that have a number everywhere.
+int color_number(const PageColor& color) {
+  struct Numbered {
+    int number, red, green, blue;
+  };
+  // 7 is black on white paper and white on a black screen.
+  constexpr Numbered all[] = {{7, 0, 0, 0},   {1, 255, 0, 0},   {2, 255, 255, 0},   {3, 0, 255, 0},    {4, 0, 255, 255},
+                              {5, 0, 0, 255}, {6, 255, 0, 255}, {8, 128, 128, 128}, {9, 192, 192, 192}};
+  const auto distance = [&](const Numbered& n) {
+    const int r = n.red - color.red, g = n.green - color.green, b = n.blue - color.blue;
+    return r * r + g * g + b * b;
+  };
+  return std::min_element(std::begin(all), std::end(all),
+                          [&](const Numbered& a, const Numbered& b) { return distance(a) < distance(b); })
+      ->number;
+}
+
+/// What a layer's lines are coloured: black ones by their class, which a page's layers begin their names with, so that
+/// programs and lasers can tell them apart; release 12 has no widths that could.
+int layer_color(const std::string& page_layer, const Pen& pen) {
+  const int color = color_number(pen.color);
+  // Hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame, sections: all are seen on black and
+  // on white.
+  constexpr int of_classes[] = {7, 6, 7, 5, 8, 9, 1, 3, 4, 3};
+  const bool is_numbered = !page_layer.empty() && page_layer[0] >= '0' && page_layer[0] <= '9';
+  return color == 7 && is_numbered ? of_classes[page_layer[0] - '0'] : color;
+}
+
+/// The DXF layers of a page, and which of them each group is on.
+struct Layers {
+  explicit Layers(const Page& page) {
+    std::size_t groups = 0;
+    for (const PageLayer& layer : page.layers) groups += layer.groups.size() + 1;
+    TableNames names;
+    for (const PageLayer& layer : page.layers) {
+      const std::string of_class = table_text(layer.name);
+      of_groups.emplace_back();
+      std::optional<std::size_t> common;
+      if (layer.groups.empty()) list.push_back({names.add(of_class), {}, layer_color(layer.name, {})});
+      for (const PageGroup& group : layer.groups) {
+        if (groups <= most_layers && !group.name.empty()) {
+          of_groups.back().push_back(list.size());
+          // The class comes whole, so that programs can choose all of it.
+          list.push_back({names.add(of_class.substr(0, 11) + "-" + table_text(group.name)), group.pen,
+                          layer_color(layer.name, group.pen)});
+          continue;
+        }
+        if (!common) {
+          common = list.size();
+          list.push_back({names.add(of_class), group.pen, layer_color(layer.name, group.pen)});
+        }
+        of_groups.back().push_back(*common);
+      }
+    }
+  }
+
+  std::vector<Layer> list;
+  std::vector<std::vector<std::size_t>> of_groups;  ///< by layer of the page
+};
+
+constexpr int by_layer = 256;
+
+class DxfWriter {
+ public:
+  DxfWriter(const Page& page, OutputFile& file, const Execution& execution)
+      : page_(page), layers_(page), sink_(file), out_(sink_), progress_(std::span(&page, 1), execution) {
+    for (const PageLayer& layer : page.layers)
+      for (const PageGroup& group : layer.groups) types_.try_emplace(type_name(group.pen), group.pen.dashes);
+  }
+
+  void write() {
+    out_ << "999\nmillimetres\n";
+    write_header();
+    write_tables();
+    section("BLOCKS");
+    end_section();
+    section("ENTITIES");
+    for (std::size_t i = 0; i < page_.layers.size(); ++i)
+      for (std::size_t k = 0; k < page_.layers[i].groups.size(); ++k)
+        write_group(page_.layers[i], page_.layers[i].groups[k], layers_.list[layers_.of_groups[i][k]]);
+    end_section();
+    text(0, "EOF");
+    out_.flush();
+  }
+
+ private:
+  // A group code is one short line, its value another.
+  void text(int code, std::string_view value) { out_.integer(code) << '\n' << value << '\n'; }
+  void integer(int code, int value) {
+    out_.integer(code) << '\n';
+    out_.integer(value) << '\n';
+  }
+  void number(int code, double value, int digits = 3) {
+    out_.integer(code) << '\n';
+    out_.decimal(value, digits) << '\n';
+  }
+  void section(std::string_view name) {
+    text(0, "SECTION");
+    text(2, name);
+  }
+  void end_section() { text(0, "ENDSEC"); }
+  /// From y down to y up.
+  void point(const glm::dvec2& p, int code = 10) {
+    number(code, p.x);
+    number(code + 10, page_.height - p.y);
+    number(code + 20, 0);
+  }
+
+  void write_header() {
+    section("HEADER");
+    text(9, "$ACADVER");
+    text(1, "AC1009");
+    // Later than release 12, which skips what it does not know: 4 is millimetres.
+    text(9, "$INSUNITS");
+    integer(70, 4);
+    text(9, "$MEASUREMENT");
+    integer(70, 1);
+    text(9, "$EXTMIN");
+    point({0, page_.height});
+    text(9, "$EXTMAX");
+    point({page_.width, 0});
+    text(9, "$LIMMIN");
+    number(10, 0);
+    number(20, 0);
+    text(9, "$LIMMAX");
+    number(10, page_.width);
+    number(20, page_.height);
+    end_section();
+  }
+
+  /// Some readers know line types by their standard names alone, and draw all others solid. A name says how many dashes
+  /// a period has; "2" and "X2" behind it stand for a period about half or twice as long as that of the first such pen.
+  [[nodiscard]] std::string type_name(const Pen& pen) const {
+    constexpr const char* names[] = {"CONTINUOUS", "HIDDEN", "CENTER", "PHANTOM"};
+    const std::string name = names[std::min(pen.dashes.size() / 2, std::size(names) - 1)];
+    const auto first = types_.find(name);
+    if (first == types_.end() || pen.dashes.empty()) return name;
+    const double ratio = period_of(pen.dashes) / period_of(first->second);
+    return ratio < 0.7 ? name + "2" : ratio > 1.4 ? name + "X2" : name;
+  }
+  [[nodiscard]] static double period_of(const std::vector<double>& dashes) {
+    return std::accumulate(dashes.begin(), dashes.end(), 0.0);
+  }
+
+  void line_type(const std::string& name, const std::vector<double>& dashes) {
+    text(0, "LTYPE");
+    text(2, name);
+    integer(70, 0);
+    text(3, dashes.empty() ? "Solid line" : "Dashed, in millimetres");
+    integer(72, 'A');
+    integer(73, int(dashes.size()));
+    number(40, period_of(dashes));
+    for (std::size_t i = 0; i < dashes.size(); ++i) number(49, i % 2 == 0 ? dashes[i] : -dashes[i]);
+  }
+
+  void table(std::string_view name, std::size_t entries) {
+    text(0, "TABLE");
+    text(2, name);
+    integer(70, int(entries));
+  }
+
+  void write_tables() {
+    section("TABLES");
+    table("LTYPE", types_.size());
+    for (const auto& [name, dashes] : types_) line_type(name, dashes);
+    text(0, "ENDTAB");
+    table("LAYER", layers_.list.size());
+    for (const Layer& layer : layers_.list) {
+      text(0, "LAYER");
+      text(2, layer.name);
+      integer(70, 0);
+      integer(62, layer.color);
+      text(6, type_name(layer.pen));
+    }
+    text(0, "ENDTAB");
+    end_section();
+  }
+
+  void write_group(const PageLayer& of_page, const PageGroup& group, const Layer& layer) {
+    if (group.pen.width == 0 || group.pen.color.opacity == 0) return;
+    own_type_ = type_name(group.pen);
+    if (own_type_ == type_name(layer.pen)) own_type_.clear();
+    own_color_ = layer_color(of_page.name, group.pen);
+    if (own_color_ == layer.color) own_color_ = by_layer;
+    for (const PagePath& path : group.paths) {
+      progress_.step();
+      write_path(group, path, layer.name);
+    }
+  }
+
+  /// What is not said is as the layer has it, and changes with it.
+  void entity(std::string_view kind, const std::string& layer) {
+    text(0, kind);
+    text(8, layer);
+    if (!own_type_.empty()) text(6, own_type_);
+    if (own_color_ != by_layer) integer(62, own_color_);
+  }
+
+  void write_path(const PageGroup& group, const PagePath& path, const std::string& layer) {
+    if (path.count == 1) {
+      entity("POINT", layer);
+      point(group.points[path.first]);
+    } else if (const std::optional<Arc> arc = whole_arc(group, path)) {
+      write_arc(*arc, path.is_closed, layer);
+    } else if (path.count == 2) {
+      entity("LINE", layer);
+      point(group.points[path.first]);
+      point(group.points[path.first + 1], 11);
+    } else {
+      write_polyline(group, path, layer);
+    }
+  }
+
+  /// DXF counts degrees anticlockwise with y up: the other way round, and from the other end. An ARC between two equal
+  /// angles would be nothing to some readers, so a whole turn is a CIRCLE, whether its path is closed or not.
+  void write_arc(const Arc& arc, bool is_closed, const std::string& layer) {
+    constexpr double whole = 6.28318529;  // short of it by less than the last digit of an angle
+    const bool is_whole = is_closed || std::abs(arc.turn) > whole;
+    entity(is_whole ? "CIRCLE" : "ARC", layer);
+    point(arc.centre);
+    number(40, arc.radius);
+    if (is_whole) return;
+    const double low = arc.turn > 0 ? arc.begin : arc.begin + arc.turn, high = low + std::abs(arc.turn);
+    const auto degrees = [](double angle) {
+      const double turned = std::fmod(-angle * 57.295779513082321, 360);
+      return turned < 0 ? turned + 360 : turned;
+    };
+    number(50, degrees(high), 6);
+    number(51, degrees(low), 6);
+  }
+
+  void write_polyline(const PageGroup& group, const PagePath& path, const std::string& layer) {
+    entity("POLYLINE", layer);
+    integer(66, 1);
+    point({0, page_.height});
+    integer(70, path.is_closed ? 1 : 0);
+    for (std::uint32_t i = 0; i < path.count; ++i) {
+      text(0, "VERTEX");
+      text(8, layer);
+      point(group.points[path.first + i]);
+      const double bulge = group.bulges.empty() ? 0 : group.bulges[path.first + i];
+      if (bulge != 0) number(42, -bulge, 9);
+    }
+    text(0, "SEQEND");
+    text(8, layer);
+  }
+
+  const Page& page_;
+  const Layers layers_;
+  FileSink sink_;
+  PageText out_;
+  WritingProgress progress_;
+  std::map<std::string, std::vector<double>> types_{{"CONTINUOUS", {}}};  ///< line types: the dashes of each name
+  /// Of the group that is written, where it differs from its layer.
+  std::string own_type_;
+  int own_color_ = by_layer;
+};
+
+}  // namespace
+
+void save_dxf(const Page& page, OutputFile& file, const Execution& execution) {
+  for (const PageLayer& layer : page.layers)
+    for (const PageGroup& group : layer.groups)
+      if (!group.fills.empty())
+        throw Error(ErrorCode::unsupported, file.name() + ": DXF holds lines alone, no filled polygons");
+  DxfWriter(page, file, execution).write();
+}
+
+}  // namespace frontmost::detail

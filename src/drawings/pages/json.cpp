@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// A page as JSON, for programs that do something else with it.
+//
+//   {"width": ..., "layers": [{"name": ..., "groups": [{"pen": {...}, "paths": [{"points": [[x, y], ...]}, ...]}]}]}
+//
+// Everything that a page holds is there under the names of the library's types, with as many digits as other formats
+// have.
+#include "pages/formats.h"
+#include "pages/page_text.h"
+
+namespace frontmost::detail {
+namespace {
+
+void write_color(PageText& out, const PageColor& color) {
+  out << "[";
+  for (const std::uint8_t part : {color.red, color.green, color.blue}) out.integer(part) << ", ";
+  out.integer(color.opacity) << "]";
+}
+
+void write_pen(PageText& out, const Pen& pen) {
+  out << "{\"width\": ";
+  out.decimal(pen.width) << ", \"color\": ";
+  write_color(out, pen.color);
+  out << ", \"dashes\": [";
+  for (std::size_t i = 0; i < pen.dashes.size(); ++i) {
+    if (i > 0) out << ", ";
+    out.decimal(pen.dashes[i]);
+  }
+  out << "]";
+  out << "}";
+}
+
+void write_path(PageText& out, const PageGroup& group, std::size_t i) {
+  const PagePath& path = group.paths[i];
+  out << (i == 0 ? "\n" : ",\n") << "{\"closed\": " << (path.is_closed ? "true" : "false");
+  if (path.is_part) out << ", \"part\": true";
+  if (!group.fills.empty()) {
+    out << ", \"fill\": ";
+    write_color(out, group.fills[i]);
+  }
+  out << ", \"points\": [";
+  bool has_arcs = false;
+  for (std::uint32_t k = path.first; k < path.first + path.count; ++k) {
+    out << (k == path.first ? "[" : ", [");
+    out.decimal(group.points[k].x) << ", ";
+    out.decimal(group.points[k].y) << "]";
+    has_arcs |= !group.bulges.empty() && group.bulges[k] != 0;
+  }
+  out << "]";
+  if (has_arcs) {
+    out << ", \"bulges\": [";
+    for (std::uint32_t k = path.first; k < path.first + path.count; ++k) {
+      if (k != path.first) out << ", ";
+      out.decimal(group.bulges[k], 9);
+    }
+    out << "]";
+  }
+  out << "}";
+}
+
+}  // namespace
+
+void save_json(const Page& page, OutputFile& file, const Execution& execution) {
+  FileSink sink(file);
+  PageText out(sink);
+  WritingProgress progress(std::span(&page, 1), execution);
+  out << "{\"unit\": \"mm\", \"width\": ";
+  out.decimal(page.width) << ", \"height\": ";
+  out.decimal(page.height) << ", \"title\": " << json_text(page.title) << ", \"layers\": [";
+  for (const PageLayer& layer : page.layers) {
+    out << (&layer == page.layers.data() ? "\n" : ",\n") << "{\"name\": " << json_text(layer.name) << ", \"groups\": [";
+    for (const PageGroup& group : layer.groups) {
+      out << (&group == layer.groups.data() ? "\n" : ",\n") << "{\"name\": " << json_text(group.name) << ", \"pen\": ";
+      write_pen(out, group.pen);
+      if (group.opacity < 255) {
+        out << ", \"opacity\": ";
+        out.integer(group.opacity);
+      }
+      out << ", \"paths\": [";
+      for (std::size_t i = 0; i < group.paths.size(); ++i) {
+        progress.step();
+        write_path(out, group, i);
+      }
+      out << "]}";
+    }
+    out << "]}";
+  }
+  out << "]}\n";
+  out.flush();
+}
+
+}  // namespace frontmost::detail

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pages are checked at this door, so that their writers have no error paths. What is checked is what a format could not
+// write: numbers that are not finite or have too many digits, lists that do not belong together, paths of points that
+// are not there.
+#include <cmath>
+#include <filesystem>
+
+#include "base/parallel.h"
+#include "frontmost/sheets.h"
+#include "pages/arc.h"
+#include "pages/formats.h"
+
+namespace frontmost {
+namespace {
+
+constexpr double least_side = 0.01, most_side = 1e5, farthest = 1e6, most_width = 1000, most_bulge = 10;
+
+[[noreturn]] void refuse(const std::string& where, const char* reason) {
+  throw Error(ErrorCode::bad_argument, where + ": " + reason);
+}
+
+void check_pen(const Pen& pen, const std::string& where) {
+  // Written so that NaN fails, here as below.
+  if (!(pen.width >= 0 && pen.width <= most_width)) refuse(where, "the pen's width must be from 0 to 1000 mm");
+  if (pen.dashes.size() % 2 != 0) refuse(where, "dashes and gaps must come in pairs");
+  for (const double dash : pen.dashes)
+    if (!(dash >= 0.001 && dash <= most_side)) refuse(where, "dashes and gaps must be from 0.001 to 100000 mm");
+}
+
+void check_group(const PageGroup& group, const std::string& where) {
+  check_pen(group.pen, where);
+  if (group.points.size() > 0xFFFFFFFFu) throw Error(ErrorCode::limit_exceeded, where + ": over 2^32 points");
+  for (const glm::dvec2& p : group.points)
+    if (!(std::abs(p.x) <= farthest && std::abs(p.y) <= farthest))
+      refuse(where, "a point is not finite, or further than 1000 m from the page");
+  if (!group.bulges.empty() && group.bulges.size() != group.points.size())
+    refuse(where, "bulges and points differ in number");
+  for (const double bulge : group.bulges)
+    if (!(std::abs(bulge) <= most_bulge)) refuse(where, "a bulge is beyond 10");
+  if (!group.fills.empty() && group.fills.size() != group.paths.size())
+    refuse(where, "fills and paths differ in number");
+  for (const PagePath& path : group.paths)
+    if (path.count == 0 || path.first >= group.points.size() || path.count > group.points.size() - path.first)
+      refuse(where, "a path has no points, or points that are not there");
+  if (!group.paths.empty() && group.paths[0].is_part) refuse(where, "the first path is part of none");
+}
+
+}  // namespace
+
+void PageGroup::add(std::span<const glm::dvec2> corners, bool is_closed, bool is_part) {
+  paths.push_back({std::uint32_t(points.size()), std::uint32_t(corners.size()), is_closed, is_part});
+  points.insert(points.end(), corners.begin(), corners.end());
+}
+
+void validate(const Page& page) {
+  for (const double side : {page.width, page.height})
+    if (!(side >= least_side && side <= most_side)) refuse("page", "its sides must be from 0.01 to 100000 mm");
+  for (std::size_t i = 0; i < page.layers.size(); ++i)
+    for (std::size_t j = 0; j < page.layers[i].groups.size(); ++j)
+      check_group(page.layers[i].groups[j], "page: layer " + std::to_string(i) + ": group " + std::to_string(j));
+}
+
+std::optional<PageFormat> page_format(const std::string& path) {
+  std::string suffix = std::filesystem::path(path).extension().string();
+  for (char& c : suffix) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  if (suffix == ".svg") return PageFormat::svg;
+  if (suffix == ".pdf") return PageFormat::pdf;
+  if (suffix == ".dxf") return PageFormat::dxf;
+  if (suffix == ".json") return PageFormat::json;
+  return std::nullopt;
+}
+
+void save(const Page& page, const std::string& path, std::optional<PageFormat> format, const Execution& execution) {
+  save(std::span(&page, 1), path, format, execution);
+}
+
+void save(std::span<const Page> pages, const std::string& path, std::optional<PageFormat> format,
+          const Execution& execution) {
+  if (pages.empty()) throw Error(ErrorCode::bad_argument, path + ": no pages");
+  for (const Page& page : pages) validate(page);
+  if (!format) format = page_format(path);
+  if (!format)
+    throw Error(ErrorCode::bad_argument, path + ": the suffix names no format; use .svg, .pdf, .dxf or .json");
+  if (pages.size() > 1 && *format != PageFormat::pdf)
+    throw Error(ErrorCode::unsupported, path + ": of these formats PDF alone has several pages");
+  const Page& page = pages[0];
+  OutputFile file(path);
+  switch (*format) {
+    case PageFormat::svg: detail::save_svg(page, file, execution); break;
+    case PageFormat::pdf: detail::save_pdf(pages, file, execution); break;
+    case PageFormat::dxf: detail::save_dxf(page, file, execution); break;
+    case PageFormat::json: detail::save_json(page, file, execution); break;
+  }
+  check_cancelled(execution);
+  file.commit();
+}
+
+namespace detail {
+
+WritingProgress::WritingProgress(std::span<const Page> pages, const Execution& execution) : execution_(execution) {
+  for (const Page& page : pages)
+    for (const PageLayer& layer : page.layers)
+      for (const PageGroup& group : layer.groups) count_ += group.paths.size();
+  report_progress(execution, "write", 0);
+}
+
+void WritingProgress::tell() const {
+  check_cancelled(execution_);
+  report_progress(execution_, "write", double(done_) / double(count_));
+}
+
+PathPaint paint_of(const PageGroup& group, std::size_t path) {
+  PathPaint paint;
+  if (!group.fills.empty() && group.fills[path].opacity > 0) paint.fill = group.fills[path];
+  if (group.pen.width > 0 && group.pen.color.opacity > 0) paint.line = group.pen.color;
+  return paint;
+}
+
+}  // namespace detail
+PenTravel travel_of(const Page& page) {
+  PenTravel sum;
+  glm::dvec2 pen(0);
+  for (const PageLayer& layer : page.layers)
+    for (const PageGroup& group : layer.groups)
+      for (const PagePath& path : group.paths) {
+        sum.up += glm::distance(pen, group.points[path.first]);
+        ++sum.paths;
+        sum.points += path.count;
+        for (std::uint32_t i = 0; i < detail::join_count(path); ++i) {
+          const detail::Join join = detail::join_of(group, path, i);
+          const std::optional<detail::Arc> arc = detail::arc_between(join.from, join.to, join.bulge);
+          sum.arcs += arc.has_value();
+          sum.down += arc ? arc->radius * std::abs(arc->turn) : glm::distance(join.from, join.to);
+        }
+        pen = group.points[path.is_closed ? path.first : path.first + path.count - 1];
+      }
+  return sum;
+}
+
+}  // namespace frontmost

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers by hand, digit by digit, and names as each format may hold them.
+//
+// A drawing is millions of numbers of a few digits. They are integers by then (thousandths of a millimetre), so writing
+// them needs no library that rounds, and gives the same bytes everywhere.
+#include "pages/page_text.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "frontmost/base.h"
+
+namespace frontmost::detail {
+namespace {
+
+constexpr char32_t replacement = 0xFFFD;
+
+/// How many bytes follow the first of a character in UTF-8, and the bits of the first that count; none: not a first.
+struct Lead {
+  int following;
+  char32_t bits, least;
+};
+std::optional<Lead> lead_of(unsigned char byte) {
+  if (byte < 0x80) return Lead{0, byte, 0};
+  if (byte >= 0xC2 && byte < 0xE0) return Lead{1, byte & 0x1Fu, 0x80};
+  if (byte >= 0xE0 && byte < 0xF0) return Lead{2, byte & 0x0Fu, 0x800};
+  if (byte >= 0xF0 && byte < 0xF5) return Lead{3, byte & 0x07u, 0x10000};
+  return std::nullopt;
+}
+
+constexpr char hex[] = "0123456789ABCDEF";
+
+void append_hex(unsigned value, std::string& text) {
+  for (int shift = 12; shift >= 0; shift -= 4) text += hex[value >> shift & 15];
+}
+
+}  // namespace
+
+char32_t take_character(std::string_view& text) {
+  const std::optional<Lead> lead = lead_of((unsigned char)text[0]);
+  std::size_t length = 1;
+  char32_t code = lead ? lead->bits : replacement;
+  for (; lead && int(length) <= lead->following; ++length) {
+    if (length == text.size() || ((unsigned char)text[length] & 0xC0) != 0x80) break;
+    code = code << 6 | ((unsigned char)text[length] & 0x3Fu);
+  }
+  const bool whole = lead && int(length) == lead->following + 1 && code >= lead->least && code < 0x110000 &&
+                     !(code >= 0xD800 && code < 0xE000);
+  text.remove_prefix(whole ? length : 1);
+  return whole ? code : replacement;
+}
+
+PageText& PageText::operator<<(std::string_view text) {
+  while (!text.empty()) {
+    if (used_ == capacity) pass_on();
+    const std::size_t count = std::min(text.size(), capacity - used_);
+    std::copy_n(text.data(), count, buffer_.data() + used_);
+    used_ += count;
+    text.remove_prefix(count);
+  }
+  return *this;
+}
+
+PageText& PageText::integer(std::int64_t value) {
+  char digits[20];
+  char* first = std::end(digits);
+  std::uint64_t rest = value < 0 ? 0 - std::uint64_t(value) : std::uint64_t(value);
+  do *--first = char('0' + rest % 10);
+  while (rest /= 10);
+  if (value < 0) *this << '-';
+  return *this << std::string_view(first, std::size_t(std::end(digits) - first));
+}
+
+PageText& PageText::fixed(std::int64_t value, int digits) {
+  std::uint64_t rest = value < 0 ? 0 - std::uint64_t(value) : std::uint64_t(value);
+  while (digits > 0 && rest % 10 == 0) {
+    rest /= 10;
+    --digits;
+  }
+  char text[24];
+  char* first = std::end(text);
+  for (int i = 0; i < digits; ++i, rest /= 10) *--first = char('0' + rest % 10);
+  if (digits > 0) *--first = '.';
+  if (digits == 0 || rest != 0) do
+      *--first = char('0' + rest % 10);
+    while (rest /= 10);
+  if (value < 0) *--first = '-';
+  return *this << std::string_view(first, std::size_t(std::end(text) - first));
+}
+
+PageText& PageText::decimal(double value, int digits) {
+  std::int64_t unit = 1;
+  for (int i = 0; i < digits; ++i) unit *= 10;
+  const std::int64_t scaled = std::llround(value * double(unit));
+  if (scaled == 0 || std::abs(scaled) >= unit) return fixed(scaled, digits);
+  *this << (scaled < 0 ? "-0" : "0");
+  return fixed(std::abs(scaled), digits);
+}
+
+void PageText::pass_on() {
+  sink_.write(std::string_view(buffer_.data(), used_));
+  passed_on_ += used_;
+  used_ = 0;
+}
+
+std::string xml_text(std::string_view name) {
+  std::string text;
+  for (const char c : printable_text(name)) {
+    if (c == '&') {
+      text += "&amp;";
+    } else if (c == '<') {
+      text += "&lt;";
+    } else if (c == '>') {
+      text += "&gt;";
+    } else if (c == '"') {
+      text += "&quot;";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+std::string json_text(std::string_view name) {
+  std::string text = "\"";
+  for (const char c : utf8_text(name)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F) {
+      text += "\\u";
+      append_hex(byte, text);
+    } else {
+      if (c == '"' || c == '\\') text += '\\';
+      text += c;
+    }
+  }
+  return text + '"';
+}
+
+std::string pdf_text(std::string_view name) {
+  const std::string shown = printable_text(name);
+  std::string text = "<FEFF";
+  for (std::string_view rest = shown; !rest.empty();) {
+    const char32_t code = take_character(rest);
+    if (code >= 0x10000) {
+      append_hex(0xD800 + unsigned((code - 0x10000) >> 10), text);
+      append_hex(0xDC00 + unsigned((code - 0x10000) & 0x3FF), text);
+    } else {
+      append_hex(unsigned(code), text);
+    }
+  }
+  return text + '>';
+}
+
+}  // namespace frontmost::detail

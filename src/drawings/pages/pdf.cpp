@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: Apache-2.0
+// PDF 1.5, or 1.6 where a page needs a unit of its own: of each page one compressed stream of drawing operators, layers
+// as optional content, groups with an opacity as forms that are transparency groups. No date and no file identifier, so
+// that a page always gives the same bytes.
+//
+//   content of a page      /OC /L0 BDC                layer 0 begins
+//                            0.5 w [] 0 d             a group: its pen
+//                            10 20 m 30 40 l S        a path: move, line, stroke
+//                            q /F128 gs /G0 Do Q      a group with an opacity: form 0, laid on as a whole
+//                          EMC
+//
+// Objects are written as they come, and where each begins is noted for the table at the end; so memory does not grow
+// with the page, but for the places of a few objects.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "pages/arc.h"
+#include "pages/formats.h"
+#include "pages/page_text.h"
+#include "pages/pdf_stream.h"
+
+namespace frontmost::detail {
+namespace {
+
+constexpr std::size_t points_per_stroke = 4096;  // paths are held whole by viewers
+constexpr double points_per_millimetre = 72 / 25.4;
+
+/// The operators that draw all layers.
+class PdfContent {
+ public:
+  PdfContent(const Page& page, PageText& out, double scale, WritingProgress& progress)
+      : page_(page), out_(out), scale_(scale), progress_(progress) {}
+
+  void write() {
+    std::size_t form = 0;
+    // Millimetres with y down, as the page has them; round ends and corners.
+    out_.fixed(std::llround(scale_ * 1e9), 9) << " 0 0 ";
+    out_.fixed(-std::llround(scale_ * 1e9), 9) << " 0 ";
+    out_.fixed(std::llround(page_.height * scale_ * 1e6), 6) << " cm 1 J 1 j\n";
+    for (std::size_t i = 0; i < page_.layers.size(); ++i) {
+      out_ << "/OC /L";
+      out_.integer(std::int64_t(i)) << " BDC\n";
+      for (const PageGroup& group : page_.layers[i].groups) {
+        if (group.opacity == 255) {
+          write_group(group);
+        } else {
+          write_form(group, form++);
+        }
+      }
+      out_ << "EMC\n";
+    }
+  }
+
+  /// The operators of a form, which begins with the page's colours.
+  void write_alone(const PageGroup& group) {
+    out_ << "0 0 0 rg 0 0 0 RG\n";
+    write_group(group);
+  }
+
+  using Opacities = std::array<bool, 256>;
+  [[nodiscard]] const Opacities& fill_opacities() const { return fill_opacities_; }
+  [[nodiscard]] const Opacities& line_opacities() const { return line_opacities_; }
+
+ private:
+  void write_form(const PageGroup& group, std::size_t number) {
+    fill_opacities_[group.opacity] = true;
+    out_ << "q /F";
+    out_.integer(group.opacity) << " gs /G";
+    out_.integer(std::int64_t(number)) << " Do Q\n";
+  }
+
+  void write_group(const PageGroup& group) {
+    if (group.pen.width > 0) {
+      out_.fixed(thousandths(group.pen.width)) << " w [";
+      for (const double dash : group.pen.dashes) out_.fixed(thousandths(dash)) << ' ';
+      out_ << "] 0 d\n";
+    }
+    std::size_t points = 0;
+    for (std::size_t i = 0; i < group.paths.size(); ++i) {
+      progress_.step();
+      if (group.paths[i].is_part && !group.fills.empty()) continue;  // drawn with what it is part of
+      const PathPaint paint = paint_of(group, i);
+      if (!paint.is_seen()) continue;
+      set(paint);
+      write_path(group, group.paths[i]);
+      points += group.paths[i].count;
+      for (std::size_t k = i + 1; paint.fill && k < group.paths.size() && group.paths[k].is_part; ++k)
+        write_path(group, group.paths[k]);
+      // Lines share a painting operator. Fills do not: where they overlap, the later one lies above.
+      if (paint.fill) {
+        out_ << (paint.line ? "B\n" : "f\n");
+        points = 0;
+      } else if (!group.fills.empty() || points >= points_per_stroke) {
+        out_ << "S\n";
+        points = 0;
+      }
+    }
+    if (points > 0) out_ << "S\n";
+  }
+
+  /// What is so already is not said again.
+  void set(const PathPaint& paint) {
+    if (paint.fill) set(*paint.fill, fill_, "rg\n", "/F", fill_opacities_);
+    if (paint.line) set(*paint.line, line_, "RG\n", "/S", line_opacities_);
+  }
+
+  void set(const PageColor& color, PageColor& now, const char* command, const char* state, Opacities& used) {
+    if (color.red != now.red || color.green != now.green || color.blue != now.blue) {
+      for (const std::uint8_t part : {color.red, color.green, color.blue}) out_.fixed(thousandths(part / 255.0)) << ' ';
+      out_ << command;
+    }
+    if (color.opacity != now.opacity) {
+      used[color.opacity] = true;
+      out_ << state;
+      out_.integer(color.opacity) << " gs\n";
+    }
+    now = color;
+  }
+
+  void point(const glm::dvec2& p) {
+    const glm::i64vec2 rounded = thousandths(p);
+    out_.fixed(rounded.x) << ' ';
+    out_.fixed(rounded.y) << ' ';
+  }
+
+  void write_path(const PageGroup& group, const PagePath& path) {
+    point(group.points[path.first]);
+    out_ << "m\n";
+    if (path.count == 1) {
+      point(group.points[path.first]);
+      out_ << "l\n";
+    }
+    for (std::uint32_t i = 0; i < join_count(path); ++i) {
+      const Join join = join_of(group, path, i);
+      if (const std::optional<Arc> arc = arc_between(join.from, join.to, join.bulge)) {
+        turn(*arc, join.to);
+      } else if (i + 1 < path.count) {  // h draws the last one of a closed path
+        point(join.to);
+        out_ << "l\n";
+      }
+    }
+    if (path.is_closed) out_ << "h\n";
+  }
+
+  /// Cubic curves of at most 45 degrees, which leave the circle by less than 5e-6 of its radius.
+  void turn(const Arc& arc, const glm::dvec2& to) {
+    const int pieces = int(std::ceil(std::abs(arc.turn) / 0.7854));
+    const double by = arc.turn / pieces, handle = arc.radius * 4 / 3 * std::tan(by / 4);
+    const auto at = [&](double angle) {
+      return arc.centre + arc.radius * glm::dvec2(std::cos(angle), std::sin(angle));
+    };
+    const auto along = [&](double angle) { return handle * glm::dvec2(-std::sin(angle), std::cos(angle)); };
+    for (int i = 0; i < pieces; ++i) {
+      const double begin = arc.begin + i * by, end = begin + by;
+      point(at(begin) + along(begin));
+      point(at(end) - along(end));
+      point(i + 1 == pieces ? to : at(end));
+      out_ << "c\n";
+    }
+  }
+
+  const Page& page_;
+  PageText& out_;
+  const double scale_;
+  WritingProgress& progress_;
+  PageColor fill_, line_;  ///< black and opaque, as a page begins, and a form
+  Opacities fill_opacities_{}, line_opacities_{};
+};
+
+/// A page of a file, and which objects it is.
+struct PdfPage {
+  struct Form {
+    const PageGroup* group;
+    std::size_t object;  ///< that of its length follows
+  };
+
+  const Page* page;
+  std::size_t object, contents, length;
+  std::vector<std::size_t> layers;  ///< by layer of the page, its place among all layers
+  std::vector<Form> forms;
+  double unit;   ///< viewers refuse pages of more than 14400 units
+  double scale;  ///< units in a millimetre
+};
+
+/// The objects of a file, and where they begin.
+class PdfWriter {
+ public:
+  PdfWriter(std::span<const Page> pages, OutputFile& file, const Execution& execution)
+      : sink_(file), out_(sink_), progress_(pages, execution) {
+    for (const Page& page : pages) number(page);
+  }
+
+  void write() {
+    // Optional content came with 1.5, the unit with 1.6. pdfTeX warns of all above 1.5.
+    const bool has_unit = std::any_of(pages_.begin(), pages_.end(), [](const PdfPage& p) { return p.unit > 1; });
+    out_ << (has_unit ? "%PDF-1.6" : "%PDF-1.5") << "\n%\xE2\xE3\xCF\xD3\n";
+    for (const PdfPage& page : pages_) {
+      begin(page.contents) << "<< ";
+      write_page(page, write_stream(page, page.length, [](PdfContent& content) { content.write(); }));
+      for (const PdfPage::Form& form : page.forms) write_form(page, form);
+    }
+    write_layers();
+    write_end();
+    out_.flush();
+  }
+
+ private:
+  enum Object : std::size_t { none, catalog, page_tree, first_page, info = first_page + 3, first_free };
+  /// The opacities that a stream names.
+  struct States {
+    PdfContent::Opacities fills, lines;
+  };
+  /// What viewers switch on and off: those of one name on several pages together.
+  struct Layer {
+    const std::string* name;
+    std::size_t object;
+  };
+
+  void number(const Page& page) {
+    const auto next = [&](std::size_t count) {
+      places_.resize(places_.size() + count);
+      return places_.size() - count;
+    };
+    const std::size_t object = pages_.empty() ? std::size_t(first_page) : next(3);
+    const double unit = std::max(1.0, std::ceil(std::max(page.width, page.height) * points_per_millimetre / 14400));
+    PdfPage& sheet =
+        pages_.emplace_back(PdfPage{&page, object, object + 1, object + 2, {}, {}, unit, points_per_millimetre / unit});
+    std::vector<bool> is_taken(layers_.size());  // a page may have several of one name
+    for (const PageLayer& layer : page.layers) {
+      std::size_t at = 0;
+      while (at < is_taken.size() && (is_taken[at] || *layers_[at].name != layer.name)) ++at;
+      if (at == layers_.size()) {
+        layers_.push_back({&layer.name, next(1)});
+        is_taken.push_back(true);
+      }
+      is_taken[at] = true;
+      sheet.layers.push_back(at);
+    }
+    for (const PageLayer& layer : page.layers)
+      for (const PageGroup& group : layer.groups)
+        if (group.opacity < 255) sheet.forms.push_back({&group, next(2)});
+  }
+
+  PageText& begin(std::size_t object) {
+    places_[object] = out_.size();
+    return out_.integer(std::int64_t(object)) << " 0 obj\n";
+  }
+  PageText& reference(std::size_t object) { return out_.integer(std::int64_t(object)) << " 0 R "; }
+
+  /// The end of a stream's dictionary, the stream, and its length as an object of its own.
+  template <class Write>
+  States write_stream(const PdfPage& page, std::size_t length_object, const Write& write) {
+    out_ << "/Length ";
+    out_.integer(std::int64_t(length_object)) << " 0 R " << pdf_stream_filter << ">>\nstream\n";
+    const std::uint64_t start = out_.size();
+    PdfStream stream(out_);
+    PageText operators(stream);
+    PdfContent content(*page.page, operators, page.scale, progress_);
+    write(content);
+    operators.flush();
+    stream.finish();
+    const std::uint64_t end = out_.size();
+    out_ << "\nendstream\nendobj\n";
+    begin(length_object);
+    out_.integer(std::int64_t(end - start)) << "\nendobj\n";
+    return {content.fill_opacities(), content.line_opacities()};
+  }
+
+  /// Resources are named before it is known which a form needs: all that its group has.
+  void write_form(const PdfPage& page, const PdfPage::Form& form) {
+    const PageGroup& group = *form.group;
+    glm::dvec2 low(0), high(page.page->width, page.page->height);
+    if (group.bulges.empty() && !group.points.empty()) {
+      low = high = group.points[0];
+      for (const glm::dvec2& p : group.points) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+      }
+    }
+    States states{};
+    for (std::size_t i = 0; i < group.paths.size(); ++i) {
+      const PathPaint paint = paint_of(group, i);
+      if (paint.fill) states.fills[paint.fill->opacity] = true;
+      if (paint.line) states.lines[paint.line->opacity] = true;
+    }
+    begin(form.object) << "<< /Type /XObject /Subtype /Form /BBox [";
+    for (const double side :
+         {low.x - group.pen.width, low.y - group.pen.width, high.x + group.pen.width, high.y + group.pen.width})
+      out_.fixed(thousandths(side)) << ' ';
+    out_ << "] /Group << /S /Transparency /I true >> /Resources << ";
+    write_all_states(states) << ">> ";
+    (void)write_stream(page, form.object + 1, [&](PdfContent& content) { content.write_alone(group); });
+  }
+
+  PageText& write_all_states(const States& states) {
+    out_ << "/ExtGState << ";
+    write_states(states.fills, "/F", "/ca");
+    write_states(states.lines, "/S", "/CA");
+    return out_ << ">> ";
+  }
+
+  PageText& layer_references() {
+    for (const Layer& layer : layers_) reference(layer.object);
+    return out_;
+  }
+
+  void write_states(const PdfContent::Opacities& used, const char* name, const char* key) {
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      if (!used[i]) continue;
+      out_ << name;
+      out_.integer(std::int64_t(i)) << " << " << key << ' ';
+      out_.fixed(thousandths(double(i) / 255)) << " >> ";
+    }
+  }
+
+  void write_page(const PdfPage& page, const States& states) {
+    begin(page.object) << "<< /Type /Page /Parent 2 0 R /Contents ";
+    reference(page.contents) << "/MediaBox [0 0 ";
+    out_.fixed(std::int64_t(page.page->width * page.scale * 1e6), 6) << ' ';  // rounded down: rasterisers round up
+    out_.fixed(std::int64_t(page.page->height * page.scale * 1e6), 6) << "]";
+    if (page.unit > 1) {
+      out_ << " /UserUnit ";
+      out_.integer(std::int64_t(page.unit));
+    }
+    out_ << "\n/Resources << ";
+    write_all_states(states);
+    if (!page.forms.empty()) {
+      out_ << "/XObject << ";
+      for (std::size_t i = 0; i < page.forms.size(); ++i) {
+        out_ << "/G";
+        out_.integer(std::int64_t(i)) << ' ';
+        reference(page.forms[i].object);
+      }
+      out_ << ">> ";
+    }
+    out_ << "/Properties << ";
+    for (std::size_t i = 0; i < page.layers.size(); ++i) {
+      out_ << "/L";
+      out_.integer(std::int64_t(i)) << ' ';
+      reference(layers_[page.layers[i]].object);
+    }
+    out_ << ">> >> >>\nendobj\n";
+  }
+
+  void write_layers() {
+    for (const Layer& layer : layers_)
+      begin(layer.object) << "<< /Type /OCG /Name " << pdf_text(*layer.name) << " >>\nendobj\n";
+  }
+
+  void write_end() {
+    begin(page_tree) << "<< /Type /Pages /Kids [ ";
+    for (const PdfPage& page : pages_) reference(page.object);
+    out_ << "] /Count ";
+    out_.integer(std::int64_t(pages_.size())) << " >>\nendobj\n";
+    begin(info) << "<< /Producer (Frontmost) /Title " << pdf_text(pages_[0].page->title) << " >>\nendobj\n";
+    begin(catalog) << "<< /Type /Catalog /Pages 2 0 R /OCProperties << /OCGs [ ";
+    layer_references() << "] /D << /Order [ ";
+    layer_references() << "] >> >> >>\nendobj\n";
+    const std::uint64_t table = out_.size();
+    out_ << "xref\n0 ";
+    out_.integer(std::int64_t(places_.size())) << "\n0000000000 65535 f \n";
+    for (std::size_t i = 1; i < places_.size(); ++i) {
+      const std::string digits = std::to_string(places_[i]);
+      out_ << std::string(10 - std::min<std::size_t>(digits.size(), 10), '0') << digits << " 00000 n \n";
+    }
+    out_ << "trailer\n<< /Size ";
+    out_.integer(std::int64_t(places_.size())) << " /Root 1 0 R /Info 6 0 R >>\nstartxref\n";
+    out_.integer(std::int64_t(table)) << "\n%%EOF\n";
+  }
+
+  FileSink sink_;
+  PageText out_;
+  WritingProgress progress_;
+  std::vector<PdfPage> pages_;
+  std::vector<Layer> layers_;
+  std::vector<std::uint64_t> places_ = std::vector<std::uint64_t>(first_free);
+};
+
+}  // namespace
+
+void save_pdf(std::span<const Page> pages, OutputFile& file, const Execution& execution) {
+  PdfWriter(pages, file, execution).write();
+}
+
+}  // namespace frontmost::detail

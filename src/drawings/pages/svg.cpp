@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// SVG 1.1, without anything that a plotter's or a journal's software might not know.
+//
+//   <g inkscape:groupmode="layer">        a layer
+//     <g stroke="#000000" ...>            a group: what its paths have in common
+//       <path d="M10 20l5 0 0 5z"/>       a path: a place, and steps from there
+//
+// Paths run in steps from point to point (lower case commands), which takes half the bytes of places. Steps are
+// differences of rounded places, so that nothing adds up. A command that is the one before is left out, and so is a
+// blank before a minus sign.
+#include "pages/arc.h"
+#include "pages/formats.h"
+#include "pages/page_text.h"
+
+namespace frontmost::detail {
+namespace {
+
+/// Nobody takes a single dot: many make an element, but few enough for editors to stay quick.
+constexpr std::size_t dots_per_element = 4096;
+
+class SvgWriter {
+ public:
+  SvgWriter(const Page& page, OutputFile& file, const Execution& execution)
+      : page_(page), sink_(file), out_(sink_), progress_(std::span(&page, 1), execution) {}
+
+  void write() {
+    out_ << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
+            "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" version=\"1.1\" width=\"";
+    millimetres(page_.width) << "mm\" height=\"";
+    millimetres(page_.height) << "mm\" viewBox=\"0 0 ";
+    millimetres(page_.width) << ' ';
+    millimetres(page_.height) << "\">\n";
+    if (!page_.title.empty()) out_ << "<title>" << xml_text(page_.title) << "</title>\n";
+    for (std::size_t i = 0; i < page_.layers.size(); ++i) write_layer(page_.layers[i], i + 1);
+    out_ << "</svg>\n";
+    out_.flush();
+  }
+
+ private:
+  PageText& millimetres(double value) { return out_.fixed(thousandths(value)); }
+
+  void write_layer(const PageLayer& layer, std::size_t number) {
+    out_ << "<g id=\"layer";
+    out_.integer(std::int64_t(number)) << "\" inkscape:groupmode=\"layer\" inkscape:label=\"" << xml_text(layer.name)
+                                       << "\">\n";
+    for (const PageGroup& group : layer.groups) write_group(group);
+    out_ << "</g>\n";
+  }
+
+  void write_group(const PageGroup& group) {
+    out_ << "<g";
+    if (!group.name.empty()) out_ << " inkscape:label=\"" << xml_text(group.name) << '"';
+    if (group.opacity < 255) {
+      out_ << " opacity=\"";
+      out_.fixed(thousandths(group.opacity / 255.0)) << '"';
+    }
+    const bool has_lines = group.pen.width > 0;
+    if (has_lines) {
+      color("stroke", group.pen.color);
+      out_ << " stroke-width=\"";
+      millimetres(group.pen.width) << "\" stroke-linecap=\"round\" stroke-linejoin=\"round\"";
+    }
+    if (has_lines && !group.pen.dashes.empty()) write_dashes(group.pen.dashes);
+    if (group.fills.empty()) out_ << " fill=\"none\"";
+    out_ << ">\n";
+    if (has_lines || !group.fills.empty()) write_paths(group);
+    out_ << "</g>\n";
+  }
+
+  void write_dashes(const std::vector<double>& dashes) {
+    out_ << " stroke-dasharray=\"";
+    for (std::size_t i = 0; i < dashes.size(); ++i) {
+      if (i > 0) out_ << ' ';
+      millimetres(dashes[i]);
+    }
+    out_ << '"';
+  }
+
+  void write_paths(const PageGroup& group) {
+    if (group.fills.empty()) return write_lines(group);
+    for (std::size_t i = 0; i < group.paths.size(); ++i) {
+      progress_.step();
+      if (!group.paths[i].is_part) write_filled(group, i);
+    }
+  }
+
+  /// Each line is an element, so that editors can take it away or bend it without its neighbours.
+  void write_lines(const PageGroup& group) {
+    std::size_t dots = 0;  // in the open element
+    for (const PagePath& path : group.paths) {
+      progress_.step();
+      const bool is_dot = path.count == 1;
+      if (dots > 0 && (!is_dot || dots == dots_per_element)) {
+        out_ << "\"/>\n";
+        dots = 0;
+      }
+      if (dots == 0) out_ << "<path d=\"";
+      write_path(group, path);
+      if (is_dot) {
+        ++dots;
+      } else {
+        out_ << "\"/>\n";
+      }
+    }
+    if (dots > 0) out_ << "\"/>\n";
+  }
+
+  void write_filled(const PageGroup& group, std::size_t i) {
+    const PathPaint paint = paint_of(group, i);
+    if (!paint.is_seen()) return;
+    out_ << "<path";
+    if (paint.fill) {
+      color("fill", *paint.fill);
+    } else {
+      out_ << " fill=\"none\"";
+    }
+    out_ << " d=\"";
+    do write_path(group, group.paths[i]);
+    while (++i < group.paths.size() && group.paths[i].is_part);
+    out_ << "\"/>\n";
+  }
+
+  void color(std::string_view what, const PageColor& color) {
+    out_ << ' ' << what << "=\"#";
+    constexpr char digits[] = "0123456789abcdef";
+    for (const std::uint8_t part : {color.red, color.green, color.blue}) out_ << digits[part >> 4] << digits[part & 15];
+    out_ << '"';
+    if (color.opacity == 255) return;
+    out_ << ' ' << what << "-opacity=\"";
+    out_.fixed(thousandths(color.opacity / 255.0)) << '"';
+  }
+
+  void write_path(const PageGroup& group, const PagePath& path) {
+    command_ = 'M';
+    out_ << 'M';
+    separate_ = false;
+    glm::i64vec2 at = thousandths(group.points[path.first]);
+    number(at.x);
+    number(at.y);
+    if (path.count == 1) step({0, 0});  // a dot: the pen's own round ends
+    const std::uint32_t joins = join_count(path);
+    for (std::uint32_t i = 0; i < joins; ++i) {
+      const Join join = join_of(group, path, i);
+      const std::optional<Arc> arc = arc_between(join.from, join.to, join.bulge);
+      if (path.is_closed && i + 1 == joins && !arc) break;  // z draws it
+      const glm::i64vec2 to = thousandths(join.to);
+      if (arc) {
+        turn(*arc, to - at);
+      } else {
+        step(to - at);
+      }
+      at = to;
+    }
+    if (path.is_closed) out_ << 'z';
+  }
+
+  void step(const glm::i64vec2& by) {
+    command('l');
+    number(by.x);
+    number(by.y);
+  }
+
+  void turn(const Arc& arc, const glm::i64vec2& by) {
+    command('a');
+    number(thousandths(arc.radius));
+    number(thousandths(arc.radius));
+    number(0);
+    number(std::abs(arc.turn) > 3.1415926535897932 ? 1000 : 0);
+    number(arc.turn > 0 ? 1000 : 0);
+    number(by.x);
+    number(by.y);
+  }
+
+  /// A command that is the last one again is left out.
+  void command(char letter) {
+    if (command_ == letter) return;
+    command_ = letter;
+    out_ << letter;
+    separate_ = false;
+  }
+
+  void number(std::int64_t value) {
+    if (separate_ && value >= 0) out_ << ' ';
+    out_.fixed(value);
+    separate_ = true;
+  }
+
+  const Page& page_;
+  FileSink sink_;
+  PageText out_;
+  WritingProgress progress_;
+  char command_ = 0;
+  bool separate_ = false;
+};
+
+}  // namespace
+
+void save_svg(const Page& page, OutputFile& file, const Execution& execution) {
+  SvgWriter(page, file, execution).write();
+}
+
+}  // namespace frontmost::detail

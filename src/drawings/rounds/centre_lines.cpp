@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// Centre lines of a view. All are pieces of straight lines: those along one line are joined where they meet, or where a
+// drafter would not lift the pen, so that concentric circles have one cross and a stepped bore one axis.
+//
+//           |                 A circle that is seen along its axis has a cross, a cylinder from the side has its axis,
+//        .--+--.              both a little longer than what they are drawn for. All are pieces of lines: sorted by
+//     --(---+---)--           direction, by how far the line is from the corner of the picture, and along it.
+//        '--+--'
+//           |
+//
+// A piece is joined with the one before it on the same line if the gap is one over which a drafter would draw on. Axes
+// are joined before they are made longer, so that their gaps are those of the bores themselves.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include "frontmost/lines.h"
+
+namespace frontmost {
+namespace {
+
+constexpr double kSquare = 2e-3;         // sine of the angle at which an axis counts as seen along, or from the side
+constexpr double kSameDirection = 2e-4;  // radians
+constexpr double kLeastDrawn = 0.2;      // of a round's own length
+constexpr double kLeastSize = 1.0 / 6;   // of the overshoot: radius of the smallest circle
+constexpr double kLeastOvershoot = 1.0 / 3;
+constexpr double kSameLine = 1.0 / 6;      // of the overshoot: two widths of the line
+constexpr double kWidestGap = 10.0 / 3;    // of the overshoot: between bores of one axis
+constexpr double kWidestGapInRadii = 4.0;  // where that is more
+
+/// A part of a straight line.
+struct AxisPiece {
+  glm::dvec2 direction;  ///< of unit length
+  double offset;         ///< of the line, to the left of its direction
+  double begin, end;     ///< along it
+  double radius;         ///< of what it is drawn for
+};
+
+AxisPiece piece_between(const glm::dvec2& from, const glm::dvec2& to, double radius) {
+  glm::dvec2 d = glm::normalize(to - from);
+  if (std::abs(d.x) < kSameDirection) d = {0, 1};
+  if (std::abs(d.y) < kSameDirection) d = {1, 0};
+  if (d.x < 0) d = -d;
+  const glm::dvec2 left(d.y, -d.x);
+  const double a = glm::dot(d, from), b = glm::dot(d, to);
+  return {d, (glm::dot(left, from) + glm::dot(left, to)) / 2, std::min(a, b), std::max(a, b), radius};
+}
+
+/// Joins pieces of one line where `joins` says so of a gap between two; in the order of directions and places.
+template <class Joins>
+std::vector<AxisPiece> joined_pieces(std::vector<AxisPiece> pieces, double same_line, const Joins& joins) {
+  const auto angle = [](const AxisPiece& p) { return std::atan2(p.direction.y, p.direction.x); };
+  std::sort(pieces.begin(), pieces.end(), [&](const AxisPiece& a, const AxisPiece& b) { return angle(a) < angle(b); });
+  std::vector<AxisPiece> all;
+  for (auto turned = pieces.begin(); turned != pieces.end();) {
+    const auto other = std::find_if(turned, pieces.end(),
+                                    [&](const AxisPiece& p) { return angle(p) - angle(*turned) > kSameDirection; });
+    std::sort(turned, other, [](const AxisPiece& a, const AxisPiece& b) { return a.offset < b.offset; });
+    for (auto line = turned; line != other;) {
+      const auto end =
+          std::find_if(line, other, [&](const AxisPiece& p) { return p.offset - line->offset > same_line; });
+      std::sort(line, end, [](const AxisPiece& a, const AxisPiece& b) {
+        return std::tie(a.begin, a.end, a.radius) < std::tie(b.begin, b.end, b.radius);
+      });
+      const std::size_t first = all.size();
+      for (; line != end; ++line) {
+        if (all.size() > first && joins(all.back(), *line)) {
+          all.back().end = std::max(all.back().end, line->end);
+          all.back().radius = std::max(all.back().radius, line->radius);
+        } else {
+          all.push_back(*line);
+        }
+      }
+    }
+    turned = other;
+  }
+  return all;
+}
+
+class CentreLiner {
+ public:
+  CentreLiner(const View& view, double overshoot) : view_(view), overshoot_(overshoot) {
+    pixels_ = view.width / (view.projection.right - view.projection.left);
+  }
+
+  void add(const Round& round, double drawn) {
+    const double radius = round.radius * pixels_, length = glm::distance(round.from, round.to) * pixels_;
+    if (radius < kLeastSize * overshoot_) return;
+    if (glm::length(glm::cross(round.axis, view_.forward())) <= kSquare) {
+      if (drawn >= kLeastDrawn * round.turn * radius) add_cross(on_screen(view_, round.from), radius);
+    } else if (std::abs(glm::dot(round.axis, view_.forward())) <= kSquare && drawn >= kLeastDrawn * length) {
+      // Circles are seen as lines; they have no length along their axes, but may lengthen those of others.
+      if (drawn < kLeastDrawn * radius) return;
+      const glm::dvec2 middle = on_screen(view_, (round.from + round.to) * 0.5);
+      const glm::dvec2 ahead = on_screen(view_, (round.from + round.to) * 0.5 + round.axis) - middle;
+      const glm::dvec2 half = glm::normalize(ahead) * std::max(length / 2, 1e-6);
+      axes_.push_back(piece_between(middle - half, middle + half, radius));
+    }
+  }
+
+  void add_cross(const glm::dvec2& centre, double radius) {
+    if (radius < kLeastSize * overshoot_) return;
+    const double reach = radius + beyond(radius);
+    for (const glm::dvec2 arm : {glm::dvec2(reach, 0), glm::dvec2(0, reach)})
+      crosses_.push_back(piece_between(centre - arm, centre + arm, radius));
+  }
+
+  [[nodiscard]] std::vector<CentreLine> run() const {
+    const double same_line = kSameLine * overshoot_;
+    std::vector<AxisPiece> pieces = joined_pieces(axes_, same_line, [&](const AxisPiece& a, const AxisPiece& b) {
+      return b.begin - a.end <= std::max(kWidestGap * overshoot_, kWidestGapInRadii * std::min(a.radius, b.radius));
+    });
+    std::erase_if(pieces, [](const AxisPiece& p) { return p.end - p.begin < 1e-3; });
+    for (AxisPiece& piece : pieces) {
+      piece.begin -= beyond(piece.radius);
+      piece.end += beyond(piece.radius);
+    }
+    pieces.insert(pieces.end(), crosses_.begin(), crosses_.end());
+    pieces = joined_pieces(std::move(pieces), same_line,
+                           [](const AxisPiece& a, const AxisPiece& b) { return b.begin <= a.end; });
+    std::vector<CentreLine> lines;
+    for (const AxisPiece& p : pieces) {
+      const glm::dvec2 foot = p.offset * glm::dvec2(p.direction.y, -p.direction.x);
+      lines.push_back({foot + p.begin * p.direction, foot + p.end * p.direction});
+    }
+    return lines;
+  }
+
+ private:
+  [[nodiscard]] double beyond(double radius) const {
+    return std::clamp(radius, kLeastOvershoot * overshoot_, overshoot_);
+  }
+
+  const View& view_;
+  const double overshoot_;
+  double pixels_;  ///< to the unit of the scene
+  std::vector<AxisPiece> axes_, crosses_;
+};
+
+}  // namespace
+
+glm::dvec2 on_screen(const View& view, const glm::dvec3& point) {
+  const glm::dvec3 offset = point - view.eye();
+  const Projection& p = view.projection;
+  return {(glm::dot(offset, view.right()) - p.left) / (p.right - p.left) * view.width,
+          (p.top - glm::dot(offset, view.up())) / (p.top - p.bottom) * view.height};
+}
+
+std::vector<double> drawn_lengths(const Rounds& all, const Drawing& drawing, bool with_hidden) {
+  std::vector<std::pair<PrimitiveId, std::uint32_t>> owners;
+  for (std::uint32_t r = 0; r < all.rounds.size(); ++r)
+    for (std::uint32_t i = 0; i < all.rounds[r].count; ++i)
+      owners.emplace_back(all.triangles[all.rounds[r].first + i], r);
+  std::sort(owners.begin(), owners.end());
+  std::vector<double> lengths(all.rounds.size());
+  const auto is_on = [](const Round& round, const glm::dvec3& point) {
+    if (round.kind == RoundKind::revolved) return true;
+    const glm::dvec3 u = point - round.from;
+    const double height = glm::dot(u, round.axis), off = glm::length(u - height * round.axis) - round.radius;
+    return std::abs(off) <= 0.02 * round.radius &&
+           (round.kind == RoundKind::cylinder || std::abs(height) <= 0.02 * round.radius);
+  };
+  for (const DrawnPart& part : drawing.parts) {
+    if (part.hidden_by != 0 && !with_hidden) continue;
+    const DrawnEdge& edge = drawing.edges[part.edge];
+    std::uint32_t last = no_index;
+    for (const PrimitiveId id : {edge.left, edge.right}) {
+      for (auto o = std::lower_bound(owners.begin(), owners.end(), std::pair(id, 0u));
+           o != owners.end() && o->first == id; ++o) {
+        const Round& round = all.rounds[o->second];
+        if (o->second == last || !is_on(round, edge.from) || !is_on(round, edge.to)) continue;
+        last = o->second;
+        lengths[last] += glm::distance(part.from, part.to);
+      }
+    }
+  }
+  return lengths;
+}
+
+std::vector<CentreLine> centre_lines_of(const Rounds& rounds, const Drawing& drawing, const Strokes& strokes,
+                                        const CentreLineOptions& options) {
+  if (!(options.overshoot > 0 && options.overshoot <= 1e6))
+    throw Error(ErrorCode::bad_argument, "overshoot: must be above 0, and at most a million pixels");
+  if (!drawing.view.projection.orthographic) return {};
+  CentreLiner liner(drawing.view, options.overshoot);
+  const std::vector<double> lengths = drawn_lengths(rounds, drawing, options.with_hidden);
+  for (std::size_t i = 0; i < lengths.size(); ++i) liner.add(rounds.rounds[i], lengths[i]);
+  for (const Stroke& stroke : strokes.strokes) {
+    if (!stroke.is_closed || stroke.count != 2 || strokes.bulges.empty()) continue;
+    if (stroke.is_hidden && !options.with_hidden) continue;
+    if (std::abs(std::abs(strokes.bulges[stroke.first]) - 1) > 1e-6) continue;
+    const glm::dvec2 a = strokes.points[stroke.first], b = strokes.points[stroke.first + 1];
+    liner.add_cross((a + b) * 0.5, glm::distance(a, b) / 2);
+  }
+  return liner.run();
+}
+
+}  // namespace frontmost

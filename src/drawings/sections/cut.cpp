@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// Each object is cut by itself, and closed with a face where the plane passed through it:
+//
+//        before            behind the plane        A triangle with one corner behind leaves a triangle, one with two
+//      /\      .           /|                      leaves two. The side along the plane is kept as a segment, with what
+//     /  \     .  plane   / |  cut face            was cut on its left; all segments of an object make its outlines,
+//    /____\    .         /__|                      and these the regions that the face is made of.
+//
+// Where an edge meets the plane is worked out from its lesser end, so that both triangles at the edge get the same
+// place to the bit: outlines close without a tolerance.
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "base/parallel.h"
+#include "frontmost/lines.h"
+#include "sections/plane_axes.h"
+#include "sections/regions.h"
+#include "surfaces/cluster_set.h"
+
+namespace frontmost {
+namespace {
+
+using namespace lines_detail;
+
+constexpr std::size_t triangles_per_poll = 1 << 14;
+
+/// Where an edge meets the plane: from the same end, whichever triangle asks.
+glm::vec3 meeting(const PlaneAxes& plane, glm::vec3 p, glm::vec3 q) {
+  if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(p, q);
+  const int across = plane.across();
+  const glm::dvec3 from(p), to(q);
+  const double t = (plane.at() - from[across]) / (to[across] - from[across]);
+  glm::vec3 place(t <= 0.5 ? from + (to - from) * t : to + (from - to) * (1 - t));
+  place[across] = plane.at();
+  return place + 0.0f;  // -0 is 0
+}
+
+/// One object: what is left of it, and where it was cut.
+class ObjectCutter {
+ public:
+  ObjectCutter(const PlaneAxes& plane, const Mesh& mesh, bool is_mirrored)
+      : plane_(plane), mesh_(mesh), is_mirrored_(is_mirrored) {}
+
+  void run(const ToWorld& to_world, const Execution& execution) {
+    left.name = mesh_.name;
+    left.positions.reserve(mesh_.positions.size());
+    for (const glm::vec3& p : mesh_.positions) left.positions.push_back(to_world(p) + 0.0f);
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      if (t % triangles_per_poll == 0) check_cancelled(execution);
+      add(t);
+    }
+  }
+
+  Mesh left;
+  std::vector<CutSegment> segments;
+
+ private:
+  void add(std::uint32_t number) {
+    glm::uvec3 corners = mesh_.triangles[number];
+    if (is_mirrored_) std::swap(corners.y, corners.z);
+    int behind = 0, odd = 0;  // odd: of three corners the one that is alone on its side
+    bool is_behind[3];
+    for (int k = 0; k < 3; ++k) {
+      if (!is_finite(left.positions[corners[k]])) return;
+      is_behind[k] = plane_.is_behind(left.positions[corners[k]]);
+      behind += is_behind[k];
+    }
+    if (behind == 0) return;
+    const std::uint32_t material = mesh_.material_of(number);
+    if (behind == 3) return add(corners, material);
+    while (is_behind[odd] != (behind == 1)) ++odd;
+    const std::uint32_t a = corners[odd], b = corners[odd == 2 ? 0 : odd + 1], c = corners[odd == 0 ? 2 : odd - 1];
+    const glm::vec3 on_b = meeting(plane_, left.positions[a], left.positions[b]);
+    const glm::vec3 on_c = meeting(plane_, left.positions[a], left.positions[c]);
+    const auto first = std::uint32_t(left.positions.size());
+    left.positions.push_back(on_b);
+    left.positions.push_back(on_c);
+    if (behind == 1) {
+      add({a, first, first + 1}, material);
+      add_segment(on_c, on_b);
+    } else {
+      add({first, b, c}, material);
+      add({first, c, first + 1}, material);
+      add_segment(on_b, on_c);
+    }
+  }
+
+  void add(const glm::uvec3& corners, std::uint32_t material) {
+    left.triangles.push_back(corners);
+    left.material_ids.push_back(material);
+  }
+
+  void add_segment(const glm::vec3& from, const glm::vec3& to) {
+    if (from != to) segments.push_back({plane_.in_plane(from), plane_.in_plane(to)});
+  }
+
+  const PlaneAxes& plane_;
+  const Mesh& mesh_;
+  const bool is_mirrored_;
+};
+
+/// Fills what was cut of an object with triangles of the face's material.
+CutFace close(const std::vector<CutSegment>& segments, const PlaneAxes& plane, std::uint32_t material, Mesh& mesh,
+              const Execution& execution) {
+  CutFace face;
+  face.material = material;
+  Outlines outlines = find_outlines(segments, execution);
+  face.open_count = outlines.open_count;
+  std::vector<FlatTriangle> triangles;
+  for (Region& region : regions_of(std::move(outlines), execution)) {
+    fill(region, triangles, execution);
+    face.area += region.area;
+    region.holes.insert(region.holes.begin(), std::move(region.outer));
+    for (const SectionOutline& outline : region.holes) {
+      std::vector<glm::vec3>& points = face.outlines.emplace_back();
+      for (const glm::vec2& p : outline) points.push_back(plane.in_space(p));
+    }
+  }
+  for (const FlatTriangle& triangle : triangles) {
+    const auto first = std::uint32_t(mesh.positions.size());
+    for (const glm::vec2& p : triangle) mesh.positions.push_back(plane.in_space(p));
+    mesh.triangles.emplace_back(first, first + 1, first + 2);
+    mesh.material_ids.push_back(material);
+  }
+  return face;
+}
+
+/// Everything but objects. Textures would need coordinates.
+Scene without_objects(const Scene& from) {
+  Scene scene;
+  scene.name = from.name;
+  scene.up = from.up;
+  scene.origin = from.origin;
+  scene.cameras = from.cameras;
+  for (Material material : from.materials) {
+    for (TextureUse* const use : texture_uses_of(material)) *use = {};
+    scene.materials.push_back(std::move(material));
+  }
+  return scene;
+}
+
+/// As the rest of the object, under its name.
+Material material_of_face(const Scene& scene, const Instance& instance, const Mesh& mesh) {
+  Material material;
+  if (const std::uint32_t own = mesh.material_of(0); own != no_index) material = scene.materials[own];
+  material.name = instance.name;
+  return material;
+}
+
+}  // namespace
+
+Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution& execution) {
+  if (!std::isfinite(float(plane.at)))
+    throw Error(ErrorCode::bad_argument, "cut: the plane's place must be finite, as a float");
+  const IeeeScope ieee;
+  const Scene& whole = surfaces.scene();
+  const PlaneAxes axes(plane);
+  Section section{without_objects(whole), {}};
+  for (std::uint32_t i = 0; i < whole.instances.size(); ++i) {
+    const Instance& instance = whole.instances[i];
+    const Mesh& mesh = whole.meshes[instance.mesh];
+    ObjectCutter cutter(axes, mesh, surfaces.is_mirrored(i));
+    cutter.run(ToWorld(instance.world_from_mesh), execution);
+    if (!cutter.segments.empty()) {
+      section.faces.push_back(
+          close(cutter.segments, axes, std::uint32_t(section.scene.materials.size()), cutter.left, execution));
+      section.faces.back().instance = i;
+      section.scene.materials.push_back(material_of_face(section.scene, instance, mesh));
+    }
+    section.scene.instances.push_back({instance.name, i, glm::dmat4(1)});
+    section.scene.meshes.push_back(std::move(cutter.left));
+    report_progress(execution, "cut", double(i + 1) / double(whole.instances.size()));
+  }
+  return section;
+}
+
+}  // namespace frontmost

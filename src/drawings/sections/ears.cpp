@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: Apache-2.0
+// Holes are joined to the outer line by a side that is there twice; then ears are cut off, corners between whose
+// neighbours one sees, until three corners are left (G. Meisters. Polygons Have Ears. 1975).
+//
+//      outer line with a hole                after the bridge           an ear at b: a, b, c turn left, and no other
+//     +-----------------+                   +-----------------+         corner lies in the triangle that they make
+//     |      +---+      |                   |------+---+      |
+//     |      |   |      |        ->         |      |   |      |              b
+//     |      +---+      |                   |      +---+      |             / .
+//     +-----------------+                   +-----------------+            a   c
+//
+// All turns are exact signs, so no ear overlaps another. Only corners at which the polygon turns right may lie in an
+// ear, and those are looked for in the cells of a grid. Where outlines cross there may be no ear at all: then flat
+// corners are cut, then any corner that turns left, and then any corner. So each side of an outline is a side of one
+// triangle, and what is left of the object is closed even there; triangles of turns to the right overlap others.
+#include <algorithm>
+#include <cmath>
+
+#include "base/orientation.h"
+#include "base/parallel.h"
+#include "sections/plane_axes.h"
+#include "sections/regions.h"
+
+namespace frontmost::lines_detail {
+namespace {
+
+constexpr std::size_t corners_per_poll = 1 << 10;
+constexpr int most_cells = 1 << 10;  // along an axis
+
+/// A corner of the polygon that is left.
+struct Link {
+  std::uint32_t last, next;
+};
+
+/// Corners in rings; the first is the outer line, until holes are joined to it.
+class Rings {
+ public:
+  explicit Rings(const Region& region) {
+    add(region.outer);
+    for (const SectionOutline& hole : region.holes) add(hole);
+  }
+
+  [[nodiscard]] std::size_t size() const { return links_.size(); }
+  [[nodiscard]] const glm::vec2& at(std::uint32_t i) const { return places_[i]; }
+  [[nodiscard]] std::uint32_t next(std::uint32_t i) const { return links_[i].next; }
+  [[nodiscard]] std::uint32_t last(std::uint32_t i) const { return links_[i].last; }
+  [[nodiscard]] const std::vector<std::uint32_t>& firsts() const { return firsts_; }
+
+  void remove(std::uint32_t i) {
+    links_[links_[i].last].next = links_[i].next;
+    links_[links_[i].next].last = links_[i].last;
+  }
+
+  /// Joins the rings of two corners at one place: sides without length would have no direction.
+  void splice(std::uint32_t a, std::uint32_t b) {
+    std::swap(links_[a].next, links_[b].next);
+    links_[links_[a].next].last = a;
+    links_[links_[b].next].last = b;
+  }
+
+  /// A side from corner a to b and back: both are there twice from now on, the other ones last of all.
+  void bridge(std::uint32_t a, std::uint32_t b) {
+    const auto a2 = std::uint32_t(size()), b2 = a2 + 1;
+    places_.push_back(places_[a]);
+    places_.push_back(places_[b]);
+    links_.push_back({b2, links_[a].next});
+    links_.push_back({links_[b].last, a2});
+    links_[links_[a2].next].last = a2;
+    links_[links_[b2].last].next = b2;
+    links_[a].next = b;
+    links_[b].last = a;
+  }
+
+  /// Whether the side from corner i to a place runs into the polygon there, and not along its sides.
+  [[nodiscard]] bool runs_inside(std::uint32_t i, const glm::vec2& to) const {
+    const glm::vec2 &before = at(last(i)), &here = at(i), &behind = at(next(i));
+    const bool left_of_next = orientation(here, behind, to) > 0, right_of_last = orientation(here, before, to) < 0;
+    return orientation(before, here, behind) > 0 ? left_of_next && right_of_last : left_of_next || right_of_last;
+  }
+
+ private:
+  void add(const SectionOutline& outline) {
+    const auto first = std::uint32_t(size()), count = std::uint32_t(outline.size());
+    firsts_.push_back(first);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      places_.push_back(outline[i]);
+      links_.push_back({first + (i + count - 1) % count, first + (i + 1) % count});
+    }
+  }
+
+  std::vector<glm::vec2> places_;
+  std::vector<Link> links_;
+  std::vector<std::uint32_t> firsts_;
+};
+
+/// Joins all holes to the outer line.
+class Joiner {
+ public:
+  Joiner(Rings& rings, const Execution& execution) : rings_(rings), execution_(execution), count_(rings.size()) {}
+
+  void run() {
+    std::vector<std::uint32_t> leftmost;
+    for (std::size_t k = 1; k < rings_.firsts().size(); ++k) leftmost.push_back(leftmost_of(rings_.firsts()[k]));
+    // From the left, so that each sees something of what is joined already, or of the outer line.
+    std::sort(leftmost.begin(), leftmost.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return is_left_of(rings_.at(a), rings_.at(b)); });
+    add_joined(rings_.firsts()[0]);
+    for (const std::uint32_t corner : leftmost) {
+      check_cancelled(execution_);
+      const std::uint32_t other = nearest_in_sight(corner);
+      add_joined(corner);
+      if (other == no_index) continue;  // the outlines cross; it is filled as if it were not there
+      if (rings_.at(other) == rings_.at(corner)) {
+        rings_.splice(other, corner);
+        continue;
+      }
+      joined_.push_back(std::uint32_t(rings_.size()));
+      joined_.push_back(std::uint32_t(rings_.size()) + 1);
+      rings_.bridge(other, corner);
+    }
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t leftmost_of(std::uint32_t first) const {
+    std::uint32_t best = first;
+    for (std::uint32_t i = rings_.next(first); i != first; i = rings_.next(i))
+      if (is_left_of(rings_.at(i), rings_.at(best))) best = i;
+    return best;
+  }
+
+  void add_joined(std::uint32_t first) {
+    std::uint32_t i = first;
+    do joined_.push_back(i);
+    while ((i = rings_.next(i)) != first);
+  }
+
+  [[nodiscard]] std::uint32_t nearest_in_sight(std::uint32_t corner) {
+    const glm::vec2 from = rings_.at(corner);
+    const auto distance = [&](std::uint32_t i) {
+      const glm::dvec2 off = glm::dvec2(rings_.at(i)) - glm::dvec2(from);
+      return glm::dot(off, off);
+    };
+    std::vector<std::pair<double, std::uint32_t>> near;
+    for (const std::uint32_t i : joined_)
+      if (!is_left_of(from, rings_.at(i))) near.emplace_back(distance(i), i);
+    // Nearly always the first is in sight.
+    const auto is_farther = [](const auto& a, const auto& b) { return a > b; };
+    std::make_heap(near.begin(), near.end(), is_farther);
+    while (!near.empty()) {
+      std::pop_heap(near.begin(), near.end(), is_farther);
+      const std::uint32_t other = near.back().second;
+      near.pop_back();
+      if (sees(corner, other)) return other;
+    }
+    return no_index;
+  }
+
+  [[nodiscard]] bool sees(std::uint32_t corner, std::uint32_t other) const {
+    const glm::vec2 &a = rings_.at(corner), &b = rings_.at(other);
+    if (!rings_.runs_inside(other, a != b ? a : rings_.at(rings_.next(corner)))) return false;
+    // Sides of outlines alone: bridges lie between places of theirs, and cross nothing that is in sight.
+    for (std::uint32_t i = 0; i < rings_.size(); ++i) {
+      const glm::vec2 &p = rings_.at(i), &q = rings_.at(rings_.next(i));
+      if (p == a || q == a || p == b || q == b) continue;
+      const int p_side = orientation(a, b, p), q_side = orientation(a, b, q);
+      if (p_side * q_side > 0) continue;
+      if (orientation(p, q, a) * orientation(p, q, b) > 0) continue;
+      if (p_side == 0 && q_side == 0 && !overlap(a, b, p, q)) continue;
+      return false;
+    }
+    return !has_place_between(a, b);
+  }
+
+  /// Of two segments of one line.
+  static bool overlap(const glm::vec2& a, const glm::vec2& b, const glm::vec2& p, const glm::vec2& q) {
+    const auto [low, high] = is_left_of(a, b) ? std::pair(a, b) : std::pair(b, a);
+    const auto [first, second] = is_left_of(p, q) ? std::pair(p, q) : std::pair(q, p);
+    return is_left_of(first, high) && is_left_of(low, second);
+  }
+
+  [[nodiscard]] bool has_place_between(const glm::vec2& a, const glm::vec2& b) const {
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      const glm::vec2& p = rings_.at(i);
+      if (p != a && p != b && orientation(a, b, p) == 0 && is_left_of(a, p) != is_left_of(b, p)) return true;
+    }
+    return false;
+  }
+
+  Rings& rings_;
+  const Execution& execution_;
+  const std::size_t count_;  ///< of corners without bridges
+  std::vector<std::uint32_t> joined_;
+};
+
+/// Reflex corners by the cells of a grid: only they may lie in an ear.
+class ReflexGrid {
+ public:
+  ReflexGrid(const Rings& rings, const std::vector<std::uint32_t>& corners) : low_(rings.at(corners[0])), high_(low_) {
+    for (const std::uint32_t i : corners) {
+      low_ = glm::min(low_, rings.at(i));
+      high_ = glm::max(high_, rings.at(i));
+    }
+    std::vector<std::uint32_t> reflex;
+    for (const std::uint32_t i : corners)
+      if (orientation(rings.at(rings.last(i)), rings.at(i), rings.at(rings.next(i))) <= 0) reflex.push_back(i);
+    side_ = std::clamp(int(std::sqrt(double(reflex.size()))), 1, most_cells);
+    cells_.resize(std::size_t(side_) * std::size_t(side_));
+    for (const std::uint32_t i : reflex) {
+      const glm::ivec2 cell = cell_of(rings.at(i));
+      cells_[std::size_t(cell.y * side_ + cell.x)].push_back(i);
+    }
+  }
+
+  /// Whether `test` holds for any corner that may lie between the two places.
+  template <class Test>
+  [[nodiscard]] bool any(const glm::vec2& low, const glm::vec2& high, const Test& test) const {
+    const glm::ivec2 first = cell_of(low), last = cell_of(high);
+    for (int y = first.y; y <= last.y; ++y)
+      for (int x = first.x; x <= last.x; ++x)
+        for (const std::uint32_t i : cells_[std::size_t(y * side_ + x)])
+          if (test(i)) return true;
+    return false;
+  }
+
+ private:
+  [[nodiscard]] glm::ivec2 cell_of(const glm::vec2& p) const {
+    glm::ivec2 cell(0);
+    for (int axis = 0; axis < 2; ++axis) {
+      const double size = double(high_[axis]) - low_[axis];
+      if (size > 0) cell[axis] = std::clamp(int((double(p[axis]) - low_[axis]) / size * side_), 0, side_ - 1);
+    }
+    return cell;
+  }
+
+  glm::vec2 low_, high_;
+  int side_ = 1;
+  std::vector<std::vector<std::uint32_t>> cells_;
+};
+
+class EarCutter {
+ public:
+  EarCutter(Rings& rings, const std::vector<std::uint32_t>& corners, std::vector<FlatTriangle>& triangles)
+      : rings_(rings), grid_(rings, corners), is_cut_(rings.size()), left_(corners.size()), triangles_(triangles) {}
+
+  void run(std::uint32_t corner, const Execution& execution) {
+    std::size_t looked_at = 0, since_cut = 0;
+    Patience patience = Patience::ears;
+    while (left_ > 2) {
+      if (++looked_at % corners_per_poll == 0) check_cancelled(execution);
+      const std::uint32_t next = rings_.next(corner);
+      if (may_go(corner, patience)) {
+        cut(corner);
+        since_cut = 0;
+        patience = Patience::ears;
+        corner = rings_.next(next);  // not the next one: its triangle would be as narrow again
+        while (is_cut_[corner]) corner = rings_.next(corner);
+        continue;
+      }
+      corner = next;
+      if (++since_cut < left_) continue;
+      patience = Patience(int(patience) + 1);
+      since_cut = 0;
+    }
+  }
+
+ private:
+  /// What is cut off when there is nothing better.
+  enum class Patience : std::uint8_t { ears, flat, crossing, any };
+
+  [[nodiscard]] bool may_go(std::uint32_t i, Patience patience) const {
+    const int turn = orientation(rings_.at(rings_.last(i)), rings_.at(i), rings_.at(rings_.next(i)));
+    if (turn > 0) return patience >= Patience::crossing || is_ear(i);
+    return patience == Patience::any || (turn == 0 && patience >= Patience::flat);
+  }
+
+  [[nodiscard]] bool is_ear(std::uint32_t i) const {
+    const glm::vec2 &a = rings_.at(rings_.last(i)), &b = rings_.at(i), &c = rings_.at(rings_.next(i));
+    const auto stands_in = [&](std::uint32_t k) {
+      if (is_cut_[k] || k == i || k == rings_.last(i) || k == rings_.next(i)) return false;
+      const glm::vec2& p = rings_.at(k);
+      if (p == a || p == c) return false;
+      // Another corner at the same place is in the way where its sides lead into the ear.
+      if (p == b) return leads_into(i, rings_.at(rings_.last(k))) || leads_into(i, rings_.at(rings_.next(k)));
+      return orientation(a, b, p) >= 0 && orientation(b, c, p) >= 0 && orientation(c, a, p) >= 0;
+    };
+    return !grid_.any(glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c)), stands_in);
+  }
+
+  [[nodiscard]] bool leads_into(std::uint32_t ear, const glm::vec2& p) const {
+    const glm::vec2 &a = rings_.at(rings_.last(ear)), &b = rings_.at(ear), &c = rings_.at(rings_.next(ear));
+    return orientation(a, b, p) > 0 && orientation(b, c, p) > 0;
+  }
+
+  /// An ear, and the spikes that it leaves: without width they would hide which way the sides beside them lead.
+  void cut(std::uint32_t i) {
+    std::uint32_t ends[] = {rings_.last(i), rings_.next(i)};
+    take(i);
+    for (std::uint32_t& end : ends)
+      while (left_ > 2 && !is_cut_[end] && is_spike(end)) {
+        const std::uint32_t before = rings_.last(end);
+        take(end);
+        end = before;
+      }
+  }
+
+  [[nodiscard]] bool is_spike(std::uint32_t i) const {
+    const glm::vec2 &a = rings_.at(rings_.last(i)), &b = rings_.at(i), &c = rings_.at(rings_.next(i));
+    if (a == b || b == c) return true;
+    return orientation(a, b, c) == 0 && is_left_of(a, b) == is_left_of(c, b);
+  }
+
+  void take(std::uint32_t i) {
+    const glm::vec2 &a = rings_.at(rings_.last(i)), &b = rings_.at(i), &c = rings_.at(rings_.next(i));
+    if (a != b && b != c && c != a) triangles_.push_back({a, b, c});
+    rings_.remove(i);
+    is_cut_[i] = 1;
+    --left_;
+  }
+
+  Rings& rings_;
+  const ReflexGrid grid_;
+  std::vector<std::uint8_t> is_cut_;
+  std::size_t left_;
+  std::vector<FlatTriangle>& triangles_;
+};
+
+}  // namespace
+
+void fill(const Region& region, std::vector<FlatTriangle>& triangles, const Execution& execution) {
+  Rings rings(region);
+  Joiner(rings, execution).run();
+  std::vector<std::uint32_t> corners;
+  const std::uint32_t first = rings.firsts()[0];
+  std::uint32_t i = first;
+  do corners.push_back(i);
+  while ((i = rings.next(i)) != first);
+  EarCutter(rings, corners, triangles).run(first, execution);
+}
+
+}  // namespace frontmost::lines_detail

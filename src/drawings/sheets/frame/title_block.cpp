@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fields of a title block after ISO 7200, with their names in small letters above what they say.
+//
+//    +--------------+--------------+-------------+
+//    | Legal owner  | Created by   | Doc. type   |   Letters have the heights of ISO 3098. A text that is too wide for
+//    |              | Approved by  | Number      |   its field goes into two lines before it gets smaller letters, and
+//    | Scale | Pro- | Title        |             |   below the smallest height it is made as small as it has to be:
+//    | Unit  | jec. |              | Date | Sheet|   nothing is cut off.
+//    +--------------+--------------+-------------+
+#include "sheets/frame/title_block.h"
+
+#include <algorithm>
+#include <map>
+
+#include "frontmost/sheets.h"
+
+namespace frontmost::detail {
+namespace {
+
+constexpr double outer_width = 0.7, inner_width = 0.35;
+constexpr double label_height = 1.8;
+constexpr double indent = 1.2;                             // millimetres, of all text in a field
+constexpr double heights[] = {5, 3.5, 2.5, label_height};  // of ISO 3098
+
+/// A field's name, its rectangle in the block, and the tallest letters that suit it.
+struct Field {
+  const char* label;
+  glm::dvec2 low, high;
+  double tallest;
+  int lines;
+};
+
+struct FittedText {
+  double height;
+  std::vector<std::string> lines;
+};
+
+/// In two lines, parted at the blank that makes the longer one shortest; in one where there is none.
+std::vector<std::string> halves(const std::string& text) {
+  std::vector<std::string> best = {text};
+  double least = text_width(text);
+  for (std::size_t at = text.find(' '); at != std::string::npos; at = text.find(' ', at + 1)) {
+    const std::string first = text.substr(0, at), second = text.substr(at + 1);
+    if (first.empty() || second.empty()) continue;
+    const double longer = std::max(text_width(first), text_width(second));
+    if (longer >= least) continue;
+    least = longer;
+    best = {first, second};
+  }
+  return best;
+}
+
+/// The tallest letters with which the text is no wider than the field, rather in two lines than smaller.
+FittedText fitted(const std::string& text, const Field& field) {
+  const double room = field.high.x - field.low.x - 3 * indent;  // of which two are before the text
+  const double rows = field.high.y - field.low.y - label_height - 2 * indent;
+  const std::vector<std::string> parted = field.lines > 1 ? halves(text) : std::vector<std::string>{text};
+  const auto widest = [](const std::vector<std::string>& lines) {
+    double most = 0;
+    for (const std::string& line : lines) most = std::max(most, text_width(line, 1));
+    return most;
+  };
+  for (const double height : heights) {
+    if (height > field.tallest) continue;
+    if (text_width(text, height) <= room) return {height, {text}};
+    const bool has_rows = height * (1 + 1.6 * double(parted.size() - 1)) <= rows;
+    if (has_rows && widest(parted) * height <= room) return {height, parted};
+  }
+  return {std::min(label_height, room / widest(parted)), parted};
+}
+
+class BlockDrawing {
+ public:
+  explicit BlockDrawing(const glm::dvec2& corner) : corner_(corner) {}
+
+  void add(const Field& field, const std::string& text) {
+    add_text(labels_, field.label, corner_ + field.low + indent, {label_height, 0, TextAlign::left, TextLine::top});
+    outline(field);
+    if (text.empty()) return;
+    const FittedText fit = fitted(text, field);
+    PageGroup& group =
+        texts_.try_emplace(fit.height, PageGroup{"title block: text", text_pen(fit.height)}).first->second;
+    // In the middle of what the label leaves, with what letters reach below their line.
+    const double step = 1.6 * fit.height, taken = step * double(fit.lines.size() - 1) + 1.3 * fit.height;
+    const double top = field.low.y + indent + label_height, free = field.high.y - top;
+    glm::dvec2 at = corner_ + glm::dvec2(field.low.x + 2 * indent, top + (free - taken) / 2 + fit.height);
+    for (const std::string& line : fit.lines) {
+      add_text(group, line, at, {fit.height});
+      at.y += step;
+    }
+  }
+
+  /// The truncated cone from the side and from its narrow end, which is on the left: what is seen from the left stands
+  /// on the right in first-angle projection, and on the left in third-angle projection.
+  void add_symbol(const Field& field, ProjectionMethod method) {
+    add(field, "");
+    if (method == ProjectionMethod::none) return;
+    constexpr double wide = 7, narrow = 3.5, length = 7, apart = 4, beyond = 1.2;
+    const double total = length + apart + wide;
+    const double left = (field.low.x + field.high.x - total) / 2;
+    const double middle = (field.low.y + label_height + indent + field.high.y) / 2;
+    const bool first = method == ProjectionMethod::first_angle;
+    const double cone = first ? left : left + wide + apart, rings = (first ? left + length + apart : left) + wide / 2;
+    const auto at = [&](double x, double y) { return corner_ + glm::dvec2(x, middle + y); };
+    symbol_.add(std::vector<glm::dvec2>{at(cone, -narrow / 2), at(cone + length, -wide / 2),
+                                        at(cone + length, wide / 2), at(cone, narrow / 2)},
+                true);
+    symbol_.bulges.resize(symbol_.points.size());
+    for (const double diameter : {narrow, wide}) {
+      symbol_.add(std::vector<glm::dvec2>{at(rings - diameter / 2, 0), at(rings + diameter / 2, 0)}, true);
+      symbol_.bulges.resize(symbol_.points.size(), 1);
+    }
+    const double reach = wide / 2 + beyond;
+    axes_.add(std::vector<glm::dvec2>{at(cone - beyond, 0), at(cone + length + beyond, 0)}, false);
+    axes_.add(std::vector<glm::dvec2>{at(rings - reach, 0), at(rings + reach, 0)}, false);
+    axes_.add(std::vector<glm::dvec2>{at(rings, -reach), at(rings, reach)}, false);
+  }
+
+  void finish(PageLayer& layer) {
+    PageGroup border{"title block", {outer_width, {}}};
+    // The frame is its right and its lower side.
+    border.add(std::vector<glm::dvec2>{corner_ + glm::dvec2(0, title_block_size.y), corner_,
+                                       corner_ + glm::dvec2(title_block_size.x, 0)},
+               false);
+    layer.groups.push_back(std::move(inner_));
+    layer.groups.push_back(std::move(border));
+    layer.groups.push_back(std::move(labels_));
+    for (auto& [height, group] : texts_) layer.groups.push_back(std::move(group));
+    if (symbol_.paths.empty()) return;
+    layer.groups.push_back(std::move(symbol_));
+    layer.groups.push_back(std::move(axes_));
+  }
+
+ private:
+  /// Its upper and its left side, where they are not the block's own: the neighbours' are the others.
+  void outline(const Field& field) {
+    if (field.low.y > 0)
+      inner_.add(std::vector<glm::dvec2>{corner_ + field.low, corner_ + glm::dvec2(field.high.x, field.low.y)}, false);
+    if (field.low.x > 0)
+      inner_.add(std::vector<glm::dvec2>{corner_ + field.low, corner_ + glm::dvec2(field.low.x, field.high.y)}, false);
+  }
+
+  const glm::dvec2 corner_;
+  PageGroup inner_{"title block: fields", {inner_width, {}}};
+  PageGroup labels_{"title block: labels", text_pen(label_height)};
+  PageGroup symbol_{"title block: projection", {inner_width, {}}};
+  PageGroup axes_{"title block: axes", {0.18, {}, {3, 0.5, 0.2, 0.5}}};
+  std::map<double, PageGroup> texts_;  ///< by their height: each has its pen
+};
+
+}  // namespace
+
+void draw_title_block(const TitleBlock& block, const glm::dvec2& corner, PageLayer& layer) {
+  BlockDrawing drawing(corner);
+  drawing.add({"Legal owner", {0, 0}, {69, 18}, 3.5, 2}, block.owner);
+  drawing.add({"Scale", {0, 18}, {45, 27}, 2.5, 1}, block.scale);
+  drawing.add({"Unit", {0, 27}, {22.5, 36}, 2.5, 1}, block.unit);
+  drawing.add({"Paper", {22.5, 27}, {45, 36}, 2.5, 1}, block.paper);
+  drawing.add_symbol({"Projection", {45, 18}, {69, 36}, 3.5, 1}, block.projection);
+  drawing.add({"Created by", {69, 0}, {129, 9}, 2.5, 1}, block.author);
+  drawing.add({"Approved by", {69, 9}, {129, 18}, 2.5, 1}, "");  // signed by hand
+  drawing.add({"Title", {69, 18}, {129, 36}, 5, 2}, block.title);
+  drawing.add({"Document type", {129, 0}, {180, 9}, 2.5, 1}, "Technical drawing");
+  drawing.add({"Number", {129, 9}, {180, 27}, 5, 1}, block.number);
+  drawing.add({"Date of issue", {129, 27}, {159, 36}, 2.5, 1}, block.date);
+  drawing.add({"Sheet", {159, 27}, {180, 36}, 2.5, 1},
+              std::to_string(block.sheet) + "/" + std::to_string(block.sheets));
+  drawing.finish(layer);
+}
+
+}  // namespace frontmost::detail

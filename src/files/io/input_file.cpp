@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// A whole file in memory: mapped where that pays, else read, with a limit that is checked before memory is asked for.
+
+#include "io/input_file.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <system_error>
+
+#include "frontmost/files.h"
+
+namespace frontmost {
+namespace {
+
+void check_size(std::uint64_t size, std::uint64_t max_bytes, const std::string& name) {
+  if (size > max_bytes)
+    throw Error(ErrorCode::limit_exceeded, name + ": larger than the limit of " + std::to_string(max_bytes) + " bytes");
+}
+
+/// Closes a file descriptor.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() { ::close(number_); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+}  // namespace
+
+void InputFile::Delete::operator()(const std::byte* data) const {
+  auto* start = const_cast<std::byte*>(data);
+  switch (owner) {
+    case Owner::heap: std::free(start); break;
+    case Owner::mapping: ::munmap(start, size); break;
+  }
+}
+
+InputFile InputFile::open(const std::filesystem::path& path, const std::string& name, std::uint64_t max_bytes) {
+  const int number = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (number < 0) fail_to_read_by_errno(name, "cannot open");
+  const Descriptor file(number);
+  struct ::stat status {};
+  if (::fstat(number, &status) != 0) fail_to_read_by_errno(name, "cannot read");
+  if (S_ISDIR(status.st_mode)) fail_to_read(name, "is a folder");
+  // Pipes have no size, and files of /proc say 0.
+  const auto size = std::uint64_t(std::max<off_t>(status.st_size, 0));
+  if (!S_ISREG(status.st_mode) || size < mapping_threshold)
+    return read_stream(number, name, std::min(max_bytes, max_stream_bytes));
+  check_size(size, max_bytes, name);
+  return map(number, std::size_t(size), name);
+}
+
+InputFile InputFile::standard_input(const std::string& name, std::uint64_t max_bytes) {
+  return read_stream(STDIN_FILENO, name, std::min(max_bytes, max_stream_bytes));
+}
+
+InputFile InputFile::map(int descriptor, std::size_t size, const std::string& name) {
+  void* start = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
+  if (start == MAP_FAILED) fail_to_read_by_errno(name, "cannot map");
+  ::madvise(start, size, MADV_SEQUENTIAL);  // only advice
+  return {Data(static_cast<const std::byte*>(start), Delete{Owner::mapping, size}), size};
+}
+
+InputFile InputFile::read_stream(int descriptor, const std::string& name, std::uint64_t max_bytes) {
+  struct ::stat status {};
+  if (::fstat(descriptor, &status) == 0 && (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)))
+    // /dev/zero has no end, and would fill the memory up to any limit that serves for models.
+    max_bytes = std::min(max_bytes, max_device_bytes);
+  // realloc moves large blocks by remapping pages, so growing holds no second copy.
+  std::size_t capacity = mapping_threshold, size = 0;
+  auto* start = static_cast<std::byte*>(std::malloc(capacity));
+  Data data(start, Delete{});
+  while (start != nullptr) {
+    if (size == capacity) {
+      // There may be just as much as there is room for; asking for more room says that there is one more.
+      check_size(size + 1, max_bytes, name);
+      capacity *= 2;
+      start = static_cast<std::byte*>(std::realloc(start, capacity));
+      if (start == nullptr) break;
+      // realloc has freed the old block, or moved it: nobody may free it again.
+      (void)data.release();
+      data.reset(start);
+    }
+    const ssize_t got = ::read(descriptor, start + size, capacity - size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail_to_read_by_errno(name, "cannot read");
+    if (got == 0) break;
+    size += std::size_t(got);
+  }
+  if (start == nullptr) throw std::bad_alloc();
+  check_size(size, max_bytes, name);
+  return {std::move(data), size};
+}
+
+void InputFile::release(std::span<const std::byte> part) const {
+  if (data_.get_deleter().owner != Owner::mapping || part.empty()) return;
+  // Whole pages within the part only; the mapping itself starts at a page.
+  static const auto page = std::size_t(::sysconf(_SC_PAGESIZE));
+  const auto first = std::size_t(part.data() - data_.get());
+  const std::size_t begin = (first + page - 1) / page * page;
+  const std::size_t end = (first + part.size()) / page * page;
+  if (begin < end) ::madvise(const_cast<std::byte*>(data_.get()) + begin, end - begin, MADV_DONTNEED);
+}
+
+std::string load_text(const std::string& path, std::uint64_t most_bytes) {
+  const bool is_input = path == "-";
+  const InputFile file =
+      is_input ? InputFile::standard_input("standard input", most_bytes) : InputFile::open(path, path, most_bytes);
+  return std::string(text_of(file.bytes()));
+}
+
+std::string_view text_of(std::span<const std::byte> bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
+}
+
+void fail_to_read(const std::string& name, const std::string& reason) {
+  throw Error(ErrorCode::file_unreadable, name + ": " + reason);
+}
+
+void fail_to_read_by_errno(const std::string& name, const char* doing) {
+  const int code = errno;  // before strings are made: that may change it
+  fail_to_read(name, std::string(doing) + ": " + std::generic_category().message(code));
+}
+
+}  // namespace frontmost

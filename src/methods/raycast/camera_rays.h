@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Directions of the rays of panoramas, fisheyes and laser scanners: of one pixel, or of all.
+//
+// Sines and cosines come from turn(), which has the same bits on every machine and is exact at quarters: a scanner's
+// ray straight to the right is (1, 0, 0), not off by the rounding of pi.
+//
+//    panorama   columns are azimuths, rows are elevations
+//    fisheye    the angle from the axis grows with the distance from the middle; beyond the rim there is no ray
+//    lidar      columns are steps, rows are its rings
+//    pattern    one row of directions, as they are given
+//
+// Places within a pixel are in 1/256 of it, and the turns that they stand for are fractions of integers still: the
+// middle is what it would be without them, to the bit.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "frontmost/raycast.h"
+#include "scene/turn.h"
+
+namespace frontmost::raycast_detail {
+
+/// (cos, sin) of an angle within a few turns, taken to the nearest 2^-48 of a turn (2e-14 radians, far below floats).
+[[nodiscard]] inline glm::dvec2 turn_by(double radians) {
+  constexpr double whole = double(std::int64_t(1) << 48);
+  return turn(std::int64_t(std::nearbyint(radians / (6.28318530717958647692) * whole)), std::int64_t(whole));
+}
+
+/// From the (cos, sin) of azimuth and elevation.
+[[nodiscard]] inline glm::dvec3 direction_at(const glm::dvec2& azimuth, const glm::dvec2& elevation) {
+  return {azimuth.y * elevation.x, elevation.y, -azimuth.x * elevation.x};
+}
+
+/// A pixel, and where in it.
+struct PixelPlace {
+  int x, y;
+  glm::ivec2 offset;
+};
+
+/// Of a column and of a row, of which `offset` is the place within a pixel: (cos, sin).
+[[nodiscard]] inline glm::dvec2 azimuth_of(const Panorama& camera, int x, int offset) {
+  const std::int64_t w = camera.width, at = std::int64_t(x) * 256 + offset;
+  return turn(2 * at - 256 * w, 512 * w);
+}
+[[nodiscard]] inline glm::dvec2 elevation_of(const Panorama& camera, int y, int offset) {
+  const std::int64_t h = camera.height, at = std::int64_t(y) * 256 + offset;
+  return turn(256 * h - 2 * at, 1024 * h);
+}
+[[nodiscard]] inline glm::dvec2 azimuth_of(const Lidar& camera, int x, int) {
+  constexpr double whole = 6.28318530717958647692;
+  const double span = camera.last_azimuth - camera.first_azimuth;
+  const bool is_whole = std::abs(std::abs(span) - whole) <= 1e-9;
+  if (is_whole && span > 0 && camera.first_azimuth == 0) return turn(x, camera.steps);
+  const int gaps = is_whole ? camera.steps : std::max(camera.steps - 1, 1);
+  return turn_by(camera.first_azimuth + span * x / gaps);
+}
+[[nodiscard]] inline glm::dvec2 elevation_of(const Lidar& camera, int y, int) {
+  return turn_by(camera.elevations[std::size_t(y)]);
+}
+
+[[nodiscard]] inline glm::dvec3 direction_of(const Panorama& camera, const PixelPlace& at) {
+  return direction_at(azimuth_of(camera, at.x, at.offset.x), elevation_of(camera, at.y, at.offset.y));
+}
+
+[[nodiscard]] inline glm::dvec3 direction_of(const Fisheye& camera, const PixelPlace& at) {
+  const double right = at.x + at.offset.x / 256.0 - camera.width * 0.5;
+  const double up = camera.height * 0.5 - at.y - at.offset.y / 256.0;
+  // Equidistant: the angle from the axis grows with the distance from the middle, up to half the field of view at the
+  // rim.
+  const double from_middle = std::sqrt(right * right + up * up);
+  const double rim = std::min(camera.width, camera.height) * 0.5;
+  if (from_middle > rim) return glm::dvec3(0);
+  if (from_middle == 0) return {0, 0, -1};
+  const glm::dvec2 angle = turn_by(camera.fov * 0.5 * from_middle / rim);
+  return {angle.y * right / from_middle, angle.y * up / from_middle, -angle.x};
+}
+
+[[nodiscard]] inline glm::dvec3 direction_of(const Lidar& camera, const PixelPlace& at) {
+  return direction_at(azimuth_of(camera, at.x, 0), elevation_of(camera, at.y, 0));
+}
+
+[[nodiscard]] inline glm::dvec3 direction_of(const RayPattern& camera, const PixelPlace& at) {
+  return camera.directions[std::size_t(at.x)];
+}
+
+/// Directions of all pixels of a grid, at one place within each.
+template <class Model>
+class GridDirections {
+ public:
+  GridDirections(const Model& model, const glm::ivec2& offset) : model_(model), offset_(offset) {}
+  [[nodiscard]] glm::dvec3 at(int x, int y) const { return direction_of(model_, {x, y, offset_}); }
+
+ private:
+  const Model& model_;
+  glm::ivec2 offset_;
+};
+
+/// Where columns are azimuths and rows are elevations, these are worked out once: the same bits, in a tenth of the
+/// time.
+template <class Model>
+class TurnedDirections {
+ public:
+  TurnedDirections(const Model& model, const glm::ivec2& offset) {
+    const glm::ivec2 grid = grid_of({model});
+    for (int x = 0; x < grid.x; ++x) azimuths_.push_back(azimuth_of(model, x, offset.x));
+    for (int y = 0; y < grid.y; ++y) elevations_.push_back(elevation_of(model, y, offset.y));
+  }
+  [[nodiscard]] glm::dvec3 at(int x, int y) const {
+    return direction_at(azimuths_[std::size_t(x)], elevations_[std::size_t(y)]);
+  }
+
+ private:
+  std::vector<glm::dvec2> azimuths_, elevations_;
+};
+
+template <>
+class GridDirections<Panorama> : public TurnedDirections<Panorama> {
+  using TurnedDirections::TurnedDirections;
+};
+template <>
+class GridDirections<Lidar> : public TurnedDirections<Lidar> {
+  using TurnedDirections::TurnedDirections;
+};
+
+/// A camera's pose, taken apart once.
+class RayPose {
+ public:
+  explicit RayPose(const glm::dmat4& world_from_eye) : rotation_(world_from_eye), origin_(world_from_eye[3]) {}
+  [[nodiscard]] Ray place(const glm::dvec3& direction_eye) const {
+    return {origin_, glm::vec3(rotation_ * direction_eye)};
+  }
+
+ private:
+  glm::dmat3 rotation_;
+  glm::vec3 origin_;
+};
+
+}  // namespace frontmost::raycast_detail

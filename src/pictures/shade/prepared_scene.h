@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// What all pictures of the same surfaces share, made when the first of them needs it.
+#pragma once
+
+#include "base/pool.h"
+#include "frontmost/pictures.h"
+#include "shade/geometry/geometry.h"
+#include "shade/light/lamps.h"
+#include "shade/material/materials.h"
+#include "shade/occlusion/depth_occlusion.h"
+#include "shade/scan/scan_tile.h"
+#include "shade/shadow/light_shadows.h"
+#include "shade/tile.h"
+
+namespace frontmost::shading {
+
+/// Every primitive that holds a sample.
+[[nodiscard]] inline BitSet seen_primitives(const Surfaces& surfaces, const ShadeInput& input,
+                                            const Execution& execution, BitSet memory) {
+  BitSet seen = seen_primitives(surfaces, input.visible, execution, std::move(memory));
+  for (std::size_t i = 0; input.pixels && i < input.pixels->other_count; ++i)
+    if (input.pixels->others[i] != no_primitive) seen.add(input.pixels->others[i]);
+  return seen;
+}
+
+struct PreparedScene {
+  /// Borrows the surfaces and their scene. O(instances + materials).
+  explicit PreparedScene(const Surfaces& from)
+      : surfaces(from),
+        moves(from.placed().moves.count()),
+        triangles(from),
+        materials(from.scene()),
+        shadows(from),
+        looked_at(from.primitive_count()) {}
+
+  /// Follows what Surfaces::move() has moved since the last picture.
+  void follow_moves(const Execution& execution) {
+    const MoveLog& log = surfaces.placed().moves;
+    if (log.count() == moves) return;
+    log.visit_since(moves, surfaces.scene().instances.size(), [&](std::uint32_t instance) {
+      triangles.follow(surfaces, instance);
+      materials.follow(instance);
+      if (index) index->follow(surfaces, instance, execution);
+      shadows.follow(instance, execution);
+    });
+    occlusion_radius.reset();
+  }
+
+  /// Makes the textures ready that are looked at on these primitives.
+  void make_materials_ready(const BitSet& primitives, const Execution& execution) {
+    if (materials.is_ready() || looked_at.holds(primitives)) return;
+    materials.make_ready(seen_materials(surfaces, primitives, looked_at), execution);
+    looked_at.add_all(primitives);  // not where that failed
+  }
+  /// The same of what is visible, which is not looked at where nothing is left to be made ready.
+  void make_materials_ready(const ShadeInput& input, const Execution& execution) {
+    if (materials.is_ready()) return;
+    seen = seen_primitives(surfaces, input, execution, std::move(seen));
+    make_materials_ready(seen, execution);
+  }
+
+  /// That of a picture, which is borrowed; null where the options ask for none.
+  const DepthOcclusion* find_occlusion(const ShadeInput& input, const ShadeOptions& options,
+                                       const Execution& execution) {
+    if (!options.ambient_occlusion) return nullptr;
+    if (!occlusion_radius) occlusion_radius = default_occlusion_radius(surfaces);
+    const auto [strength, radius] = *options.ambient_occlusion;
+    const OcclusionReach reach{radius.value_or(*occlusion_radius), strength};
+    const Surfaces& opaque = shadows.casters(execution);
+    if (&opaque == &surfaces) {
+      occlusion.find(input.visible, input.view().samples, reach);
+    } else {
+      View view = input.view();
+      view.samples = 1;
+      occlusion.find(zbuffer(opaque, view, execution), 1, reach);
+    }
+    return &occlusion;
+  }
+
+  /// The one that the options name; by default the studio, which the first call makes.
+  [[nodiscard]] const Environment& environment(const LightOptions& options, const Execution& execution) {
+    if (options.environment) return *options.environment;
+    if (!studio) studio = Environment::studio(execution);
+    return *studio;
+  }
+
+  const Surfaces& surfaces;
+  std::uint64_t moves;  ///< of the surfaces that were followed
+  TriangleStore triangles;
+  MaterialTable materials;
+  LightShadows shadows;
+  DepthOcclusion occlusion;
+  std::optional<double> occlusion_radius;  ///< where none is given; found when first asked for
+  BitSet looked_at;                        ///< primitives whose materials are ready
+  std::optional<Environment> studio;
+
+  // Memory that one picture leaves to the next.
+  PictureLights lights;
+  Pool<TileWork> works;
+  Pool<ScanTileWork> scan_works;
+  std::optional<RayIndex> index;  ///< of the surfaces, where scans see through them and bring none
+  BitSet seen, large;
+};
+
+}  // namespace frontmost::shading
