@@ -29,8 +29,8 @@ void print(std::string_view text) {
   const bool whole = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
   if (whole && std::fflush(stdout) == 0) return;
   const int code = errno;  // before strings are made: that may change it
-  throw Error(ErrorCode::file_unwritable,
-              "standard output: could not be written: " + std::generic_category().message(code));
+  throw Error(ErrorCode::file_unwritable, "standard output", "",
+              "could not be written: " + std::generic_category().message(code));
 }
 
 void complain(std::string_view text) {

@@ -23,12 +23,12 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Whether a message begins with a file or an option, as those about files and options do. Others begin with a value or
-/// a method of the library: "near: must be greater than 0".
-[[nodiscard]] bool names_culprit(std::string_view message);
+/// Whether an error names a file or an option. Others name a value or a method of the library: "near: must be greater
+/// than 0".
+[[nodiscard]] bool names_culprit(const Error& error);
 
-/// The message with the file in front that it is about: the pose file, or the model, where it names none.
-[[nodiscard]] std::string with_culprit(const std::string& message, const Settings& settings);
+/// The error as one of the file that it is about: the pose file, or the model, where it names none.
+[[nodiscard]] Error with_culprit(const Error& error, const Settings& settings);
 
 /// Catches SIGINT, SIGTERM, SIGHUP, and starts the clock; a file that grows too large, and a reader that goes away, are
 /// failed writes from now on. Call once.

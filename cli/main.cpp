@@ -47,13 +47,13 @@ int run_command(const Command& command, Settings settings) {
     read_pose_file(settings.view);
     return command.run(settings);
   } catch (const Error& error) {
-    throw Error(error.code(), with_culprit(error.what(), settings));
+    throw with_culprit(error, settings);
   } catch (const UsageError&) {
     throw;
   } catch (const std::bad_alloc&) {
-    throw Error(ErrorCode::limit_exceeded, with_culprit("out of memory", settings));
+    throw with_culprit({ErrorCode::limit_exceeded, "out of memory"}, settings);
   } catch (const std::exception& error) {
-    throw Error(ErrorCode::unsupported, with_culprit(error.what(), settings));
+    throw with_culprit({ErrorCode::unsupported, error.what()}, settings);
   }
 }
 

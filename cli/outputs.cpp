@@ -88,7 +88,7 @@ bool is_of_layers(const OutputRequest& request) {
 
 void check_writable(const std::string& path) {
   const auto refuse = [&](std::string_view why) {
-    throw Error(ErrorCode::file_unwritable, fmt::format("{}: {}", path, why));
+    throw Error(ErrorCode::file_unwritable, path, "", std::string(why));
   };
   std::error_code ignored, error;
   const fs::file_status status = fs::status(path, error);

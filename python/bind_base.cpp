@@ -36,6 +36,9 @@ void translate(std::exception_ptr thrown) {
     const std::string text = utf8_text(error.what());
     py::object raised = py::handle(error_type)(text);
     raised.attr("code") = word_of(error.code());
+    raised.attr("file") = utf8_text(error.file());
+    raised.attr("place") = utf8_text(error.place());
+    raised.attr("reason") = utf8_text(error.reason());
     PyErr_SetObject(error_type, raised.ptr());
   }
 }

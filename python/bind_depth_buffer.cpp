@@ -55,7 +55,7 @@ void draw_into(HeldDepthBuffer& held, const std::shared_ptr<HeldSurfaces>& surfa
                const std::pair<double, double>& polygon_offset, double offset_clamp, std::uint32_t begin,
                std::uint32_t end, int threads, const py::object& progress) {
   if (held.of && held.of != surfaces)
-    throw Error(ErrorCode::bad_argument, "surfaces: this buffer shows others; clear() forgets them");
+    throw Error(ErrorCode::bad_argument, "surfaces", "this buffer shows others; clear() forgets them");
   DepthDraw call;
   call.state = {func,
                 mask,
@@ -75,7 +75,7 @@ void draw_into(HeldDepthBuffer& held, const std::shared_ptr<HeldSurfaces>& surfa
 }
 
 HeldVisible visible_of(HeldDepthBuffer& held) {
-  if (!held.of) throw Error(ErrorCode::bad_argument, "buffer: nothing was drawn yet");
+  if (!held.of) throw Error(ErrorCode::bad_argument, "buffer", "nothing was drawn yet");
   auto visible = with(held, 1, py::none(), [&](const DepthBuffer& buffer, const Execution&) {
     return held.of->share(buffer.visible(*held.view));
   });

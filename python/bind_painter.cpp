@@ -50,7 +50,7 @@ HeldOrder order_of(const std::shared_ptr<HeldSurfaces>& held, const View& view, 
 
 HeldVisible painted(const HeldOrder& held) {
   if (held.moves != held.of->moves)
-    throw Error(ErrorCode::bad_argument, "order: objects were moved since; look at the surfaces again");
+    throw Error(ErrorCode::bad_argument, "order", "objects were moved since; look at the surfaces again");
   return held_visible(held.of, run(1, py::none(), [&](const Execution&) {
                         const std::shared_lock lock(held.of->scene->reading);
                         return held.of->share(paint(held.of->surfaces, *held.order));

@@ -136,7 +136,7 @@ Bitmap shaded_bitmap(const HeldVisible& held, const ShadeOptions& options, const
   const std::unique_lock alone(held.of->shading, std::try_to_lock);
   if (!alone) return shade_bitmap(held.of->surfaces, *held.visible, options, execution);
   if (!held.of->shader) held.of->shader = std::make_unique<Shader>(held.of->surfaces);
-  held.of->shader->shade_bitmap(*held.visible, options, execution);
+  held.of->shader->shade_bitmap({.visible = held.visible.get()}, options, execution);
   return held.of->shader->take_bitmap();
 }
 

@@ -121,7 +121,7 @@ Image shaded_scan(const HeldScan& held, const ShadeOptions& options, int threads
   held.by->check_current();
   return run(threads, progress, [&](const Execution& execution) {
     const std::shared_lock moving(held.by->of->scene->reading), lock(held.by->reading);
-    return shade(held.by->of->surfaces, ScanInput(*held.scan, &held.by->index), options, execution);
+    return shade(held.by->of->surfaces, ScanInput{held.scan.get(), &held.by->index}, options, execution);
   });
 }
 

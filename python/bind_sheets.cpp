@@ -168,9 +168,9 @@ HeldFigure figure_of(const std::shared_ptr<HeldSurfaces>& held, const View& view
   options.shade.shading = shading;
   options.shade.background.reset();
   if (!background.is_none()) options.shade.background = glm::vec3(point(background, "background"));
-  options.shade.shadows = shadows;
+  options.shade.light.shadows = shadows;
   options.shade.opacity = opacity;
-  options.shade.lights = lights;
+  options.shade.light.lights = lights;
   options.tolerance = tolerance;
   options.visible_only = visible_only;
   options.merges_neighbours = merges_neighbours;

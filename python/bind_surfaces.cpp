@@ -81,7 +81,7 @@ void move_objects(const std::shared_ptr<HeldSurfaces>& held, const py::object& o
     for (std::size_t i = 0; i < objects.size(); ++i) add(objects[i], poses[i]);
   }
   if (scene.surfaces_count > 1)
-    throw Error(ErrorCode::bad_argument, "object: other surfaces show this scene too; make these of scene.copy()");
+    throw Error(ErrorCode::bad_argument, "object", "other surfaces show this scene too; make these of scene.copy()");
   held->moves += 1;
   run(threads, py::none(), [&](const Execution& execution) {
     const std::unique_lock lock(held->scene->reading);

@@ -103,7 +103,7 @@ View framed(const py::object& of, int width, int height, NamedView direction, bo
 
 Array<double> intrinsics_matrix(const View& view, PixelRule rule) {
   if (view.projection.orthographic)
-    throw Error(ErrorCode::bad_argument, "view: is orthographic, and has no intrinsics");
+    throw Error(ErrorCode::bad_argument, "view", "is orthographic, and has no intrinsics");
   const Intrinsics k = intrinsics_of(view.projection, view.width, view.height, rule);
   Array<double> result({3, 3});
   const double rows[3][3] = {{k.fx, 0, k.cx}, {0, k.fy, k.cy}, {0, 0, 1}};

@@ -18,7 +18,7 @@ struct HeldExact {
   /// \throws Error bad_argument where an object was moved since.
   void check_current() const {
     if (moves != of->moves)
-      throw Error(ErrorCode::bad_argument, "exact: objects were moved since; look at the surfaces again");
+      throw Error(ErrorCode::bad_argument, "exact", "objects were moved since; look at the surfaces again");
   }
 };
 

@@ -44,11 +44,11 @@ std::shared_ptr<const Visible> HeldSurfaces::share(Visible&& visible) const {
 
 void HeldVisible::check_current() const {
   if (moves != of->moves)
-    throw Error(ErrorCode::bad_argument, "visible: objects were moved since; look at the surfaces again");
+    throw Error(ErrorCode::bad_argument, "visible", "objects were moved since; look at the surfaces again");
 }
 
 void HeldVisible::check_same(const HeldSurfaces& surfaces, const char* argument) const {
-  if (of.get() != &surfaces) throw Error(ErrorCode::bad_argument, std::string(argument) + ": is of other surfaces");
+  if (of.get() != &surfaces) throw Error(ErrorCode::bad_argument, std::string(argument), "is of other surfaces");
   check_current();
 }
 

@@ -21,7 +21,7 @@ struct HeldRayIndex {
   /// \throws Error bad_argument where an object was moved since.
   void check_current() const {
     if (moves != of->moves)
-      throw Error(ErrorCode::bad_argument, "index: objects were moved since; refit() follows them");
+      throw Error(ErrorCode::bad_argument, "index", "objects were moved since; refit() follows them");
   }
 
   const std::shared_ptr<HeldSurfaces> of;

@@ -55,11 +55,11 @@ void bind_shading(Class& bound, const char* name, const char* words, const Make&
              double environment_angle, bool shows_environment, double exposure, ToneMapping tone_mapping,
              const py::object& light_direction, std::optional<double> light_intensity, int threads,
              const py::object& progress) {
-        ShadeOptions options{shading, std::nullopt, shadows, opacity, see_through, grid, lights};
+        ShadeOptions options{shading, std::nullopt, opacity, {shadows, lights}, {see_through, grid}};
         if (!background.is_none()) options.background = glm::vec3(point(background, "background"));
         if (ambient_occlusion)
-          options.ambient_occlusion = AmbientOcclusion{*ambient_occlusion, ambient_occlusion_radius};
-        options.blend = blend;
+          options.light.ambient_occlusion = AmbientOcclusion{*ambient_occlusion, ambient_occlusion_radius};
+        options.pixels.blend = blend;
         if (!environment.is_none()) options.light.environment = environment_of(environment);
         options.light.environment_angle = glm::radians(environment_angle);
         options.light.shows_environment = shows_environment;

@@ -55,7 +55,7 @@ PlainJson Workbench::point(const PlainJson& question) {
   const Visible& visible = seen();
   const int x = question.at("x"), y = question.at("y");
   if (x < 0 || y < 0 || x >= visible.view.width || y >= visible.view.height)
-    throw Error(ErrorCode::bad_argument, "point: outside of the picture");
+    throw Error(ErrorCode::bad_argument, "point", "outside of the picture");
   PlainJson hits = PlainJson::array();
   const std::size_t i = visible.index(x, y);
   const PrimitiveId first = visible.primitives[i];
@@ -94,7 +94,7 @@ PlainJson Workbench::report(const PlainJson&) {
 PlainJson Workbench::sphere(const PlainJson& question) {
   Model& now = model();
   const int count = question.value("views", 20), size = question.value("size", 256);
-  if (count < 1 || count > 1000) throw Error(ErrorCode::bad_argument, "views: must be 1 to 1000");
+  if (count < 1 || count > 1000) throw Error(ErrorCode::bad_argument, "views", "must be 1 to 1000");
   std::vector<View> views;
   for (int i = 0; i < count; ++i) {
     FrameOptions options;

@@ -20,7 +20,7 @@ Image map_of(const Surfaces& surfaces, const Visible& visible, const std::string
   if (map == "primitives") return id_image(surfaces, visible, IdKind::primitive);
   if (map == "objects") return id_image(surfaces, visible, IdKind::object);
   if (map == "materials") return id_image(surfaces, visible, IdKind::material);
-  throw Error(ErrorCode::bad_argument, "map: there is no '" + map + "'");
+  throw Error(ErrorCode::bad_argument, "map", "there is no '" + map + "'");
 }
 
 }  // namespace

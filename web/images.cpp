@@ -24,7 +24,7 @@ Texture GivenImages::pixels(std::span<const std::byte> file) const { return find
 void GivenImages::give(std::size_t number, int width, int height, std::span<const std::byte> rgba) {
   if (number >= wanted_.size() || width < 1 || height < 1 ||
       rgba.size() != 4 * std::uint64_t(width) * std::uint64_t(height))
-    throw Error(ErrorCode::bad_argument, "image: not four bytes for each pixel of an image that is wanted");
+    throw Error(ErrorCode::bad_argument, "image", "not four bytes for each pixel of an image that is wanted");
   Image& image = images_.at(*wanted_[number]);
   image.texture.width = width, image.texture.height = height;
   image.texture.pixels.resize(rgba.size() / 4);
@@ -33,7 +33,7 @@ void GivenImages::give(std::size_t number, int width, int height, std::span<cons
 }
 
 void GivenImages::refuse(std::size_t number, const std::string& reason) {
-  if (number >= wanted_.size()) throw Error(ErrorCode::bad_argument, "image: there is no such image");
+  if (number >= wanted_.size()) throw Error(ErrorCode::bad_argument, "image", "there is no such image");
   images_.at(*wanted_[number]).problem = reason;
 }
 

@@ -32,7 +32,7 @@ Scene load_opening(const std::string& name, std::span<const std::byte> bytes, co
 PlainJson Workbench::put_file(std::span<const std::byte> bytes, const PlainJson& question) {
   const fs::path name = fs::path(question.at("name").get<std::string>()).lexically_normal();
   if (name.empty() || name.is_absolute() || *name.begin() == ".." || name == "-")
-    throw Error(ErrorCode::bad_argument, "file: not a name below the model's folder");
+    throw Error(ErrorCode::bad_argument, "file", "not a name below the model's folder");
   if (question.value("first", false)) forget_files();
   fs::create_directories((folder() / name).parent_path());
   fs::current_path(folder());  // so that names in messages are those of the page
@@ -41,7 +41,7 @@ PlainJson Workbench::put_file(std::span<const std::byte> bytes, const PlainJson&
 }
 
 PlainJson Workbench::put_image(std::span<const std::byte> bytes, const PlainJson& question) {
-  if (!opening_) throw Error(ErrorCode::bad_argument, "image: no model is being opened");
+  if (!opening_) throw Error(ErrorCode::bad_argument, "image", "no model is being opened");
   const std::size_t number = question.at("number");
   if (question.contains("problem"))
     opening_->images.refuse(number, question["problem"]);

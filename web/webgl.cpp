@@ -165,10 +165,10 @@ PlainJson Workbench::triangles(const PlainJson&) {
 PlainJson Workbench::compare(std::span<const std::byte> bytes, const PlainJson& question) {
   const Visible& visible = seen();
   if (question.at("view") != view_number_)
-    throw Error(ErrorCode::bad_argument, "compare: another view was drawn meanwhile");
+    throw Error(ErrorCode::bad_argument, "compare", "another view was drawn meanwhile");
   const std::size_t pixels = visible.primitives.size();
   if (bytes.size() != 4 * pixels)
-    throw Error(ErrorCode::bad_argument, "compare: not four bytes for each pixel of the last view");
+    throw Error(ErrorCode::bad_argument, "compare", "not four bytes for each pixel of the last view");
   const Surfaces& surfaces = model().surfaces;
   const PixelReasons reasons(surfaces, visible.view, question.value("subpixel_bits", 4));
   std::array<std::size_t, std::size(kWhyNames)> counts{};
@@ -179,7 +179,7 @@ PlainJson Workbench::compare(std::span<const std::byte> bytes, const PlainJson& 
     const PrimitiveId theirs = number == 0 ? no_primitive : number - 1;
     if (theirs == visible.primitives[i]) continue;
     if (theirs != no_primitive && theirs >= surfaces.primitive_count())
-      throw Error(ErrorCode::bad_argument, "compare: there is no such triangle");
+      throw Error(ErrorCode::bad_argument, "compare", "there is no such triangle");
     const int x = int(i) % visible.view.width, y = int(i) / visible.view.width;
     const PixelDifference found = reasons.explain(visible.primitives[i], theirs, x, y);
     ++counts[std::size_t(found.why)];

@@ -47,7 +47,7 @@ NamedView named_view(const std::string& name) {
   constexpr const char* names[] = {"front", "back", "left", "right", "top", "bottom", "iso", "three-quarter"};
   for (std::size_t i = 0; i < std::size(names); ++i)
     if (name == names[i]) return NamedView(i);
-  throw Error(ErrorCode::bad_argument, "view: there is no '" + name + "'");
+  throw Error(ErrorCode::bad_argument, "view", "there is no '" + name + "'");
 }
 
 Shading shading_of(const std::string& show) {
@@ -56,7 +56,7 @@ Shading shading_of(const std::string& show) {
   if (show == "depth") return Shading::depth;
   if (show == "objects") return Shading::ids;
   if (show == "normals") return Shading::normals;
-  throw Error(ErrorCode::bad_argument, "show: there is no '" + show + "'");
+  throw Error(ErrorCode::bad_argument, "show", "there is no '" + show + "'");
 }
 
 }  // namespace
@@ -141,8 +141,8 @@ PlainJson Workbench::draw(const PlainJson& question) {
   clock.lap();
   ShadeOptions options;
   options.background.reset();
-  options.shadows = question.value("shadows", true) ? Shadows::map : Shadows::off;
-  options.rate = question.value("coarse", false) ? ShadingRate::each_2x2 : ShadingRate::each_pixel;
+  options.light.shadows = question.value("shadows", true) ? Shadows::map : Shadows::off;
+  options.pixels.rate = question.value("coarse", false) ? ShadingRate::each_2x2 : ShadingRate::each_pixel;
   if (show == "primitives" || show == "materials") {
     color_ids(visible_, show == "primitives" ? IdKind::primitive : IdKind::material);
     answer.update(pixels_of(bitmap_));
@@ -152,13 +152,13 @@ PlainJson Workbench::draw(const PlainJson& question) {
     if (show == "layer") {
       const int layer = question.value("layer", 1);
       other = std::move(visible_layers(now.surfaces, one, layer, {0, 0.5f}).back());
-      options.see_through = SeeThrough::never;
-      options.shadows = Shadows::off;
+      options.layers.see_through = SeeThrough::never;
+      options.light.shadows = Shadows::off;
     } else if (view_.samples > 1) {
       other = zbuffer_.draw(now.surfaces, view_);
     }
     const Visible& shown = other.primitives.empty() ? visible_ : other;
-    answer.update(pixels_of(now.shader.shade_bitmap(ShadeInput(shown), options)));
+    answer.update(pixels_of(now.shader.shade_bitmap({.visible = &shown}, options)));
   }
   answer["milliseconds"] = {{"see", see}, {"shade", clock.lap()}};
   answer["near"] = view_.projection.clip.near;

@@ -45,7 +45,7 @@ Stage make_sheets(int count, int width, int height) {
 Image draw_layers(const Stage& stage, const AbufferOptions& options, const Execution& execution) {
   ShadeOptions flat{.shading = Shading::flat, .background = std::nullopt};
   flat.opacity = options.opacity;
-  flat.see_through = SeeThrough::always;
+  flat.layers.see_through = SeeThrough::always;
   flat.grid = options.grid;
   return shade(stage.surfaces, zbuffer(stage.surfaces, stage.view, execution), flat, execution);
 }

@@ -50,7 +50,7 @@ Table measure_memory(const Options& options) {
   Table table("memory", {"what", "bytes", "at most"});
   for (const std::string_view name : options.scenes_or(kVaried)) {
     const Stage stage(name, options.models);
-    (void)stage.surfaces.clusters();
+    stage.surfaces.make_clusters();
     table.add({std::string("a triangle, ").append(name),
                {double(stage.surfaces.byte_count()) / stage.surfaces.primitive_count(), 1},
                {kMostBytesPerTriangle, 0}});

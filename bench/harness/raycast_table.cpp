@@ -44,7 +44,7 @@ void measure(const SceneEntry& entry, const Options& options, Table& table) {
   std::vector<RayHit> hits(kRays);
   std::vector<std::uint8_t> clear(kRays);
   std::vector<Contestant> contestants{Contestant([&] { (void)RayIndex(stage.surfaces, execution); }),
-                                      Contestant([&] { (void)caster.cast(index, stage.view, execution); }),
+                                      Contestant([&] { (void)caster.draw(index, stage.view, execution); }),
                                       Contestant([&] { closest_hits(index, rays, hits, {.threads = 1}); }),
                                       Contestant([&] { are_clear(index, segments, clear, {.threads = 1}); })};
   if (embree) {

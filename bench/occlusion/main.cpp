@@ -111,7 +111,7 @@ void measure_move(Scene scene, const View& view) {
   };
   const auto make_anew = [&] {
     const Surfaces anew(scene);
-    static_cast<void>(anew.clusters());
+    anew.make_clusters();
     const RayIndex anew_index(anew);
     const Occlusion anew_occlusion(anew);
   };

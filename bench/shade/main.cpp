@@ -58,7 +58,7 @@ class Pictures {
     const Execution execution{.threads = 1};
     const Visible* visible = nullptr;
     visibility.all.push_back(milliseconds([&] { visible = &buffer_.draw(surfaces_, view, execution); }));
-    colors.all.push_back(milliseconds([&] { shader_.shade_bitmap(*visible, options_, execution); }));
+    colors.all.push_back(milliseconds([&] { shader_.shade_bitmap({.visible = visible}, options_, execution); }));
   }
 
  private:

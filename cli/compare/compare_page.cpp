@@ -176,7 +176,7 @@ void save_pictures(const Comparisons& all, const StagedFolder& folder, const Exe
     const ComparedMethod& method = *compared.run.method;
     // What this method sees; the one that keeps lists sees through glass.
     const ShadeOptions options{.background = std::nullopt,
-                               .see_through = method.lists ? SeeThrough::always : SeeThrough::never};
+                               .layers = {.see_through = method.lists ? SeeThrough::always : SeeThrough::never}};
     const Image picture = shade(all.surfaces, compared.run.answer.visible, options, execution);
     save(picture, folder.path(picture_name(method)), {}, execution);
     if (!std::exchange(is_first, false))
@@ -229,7 +229,7 @@ void write_page(const Comparisons& all, const std::string& folder, const Executi
     save_pictures(all, staged, execution);
     save_text(page(all, staged), staged.path("index.html"));
   } catch (const Error& error) {
-    throw Error(error.code(), staged.told(error.what()));
+    throw Error(error.code(), staged.told(error.file()), error.place(), error.reason());
   }
   staged.commit(page_names());
 }

@@ -71,7 +71,7 @@ class Receiver {
     for (auto* at = static_cast<char*>(data); size > 0;) {
       const ssize_t got = read(file_, at, size);
       if (got < 0 && errno == EINTR) continue;
-      if (got <= 0) throw Error(ErrorCode::unsupported, fmt::format("compare: {}: its process ended early", method_));
+      if (got <= 0) throw Error(ErrorCode::unsupported, "compare", fmt::format("{}: its process ended early", method_));
       at += got;
       size -= std::size_t(got);
     }
@@ -205,7 +205,7 @@ class Child {
  public:
   Child(const ComparedMethod& method, const Settings& settings) {
     int files[2];
-    if (pipe(files) != 0) throw Error(ErrorCode::unsupported, "compare: no pipe");
+    if (pipe(files) != 0) throw Error(ErrorCode::unsupported, "compare", "no pipe");
     process_ = fork();
     if (process_ == 0) {
       close(files[0]);
@@ -216,7 +216,7 @@ class Child {
     file_ = files[0];
     if (process_ >= 0) return;
     close(file_);  // an object that was not made is not destroyed
-    throw Error(ErrorCode::unsupported, "compare: no process for a method: " + std::generic_category().message(code));
+    throw Error(ErrorCode::unsupported, "compare", "no process for a method: " + std::generic_category().message(code));
   }
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;

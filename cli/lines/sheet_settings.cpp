@@ -24,14 +24,13 @@ auto with_flags(const Work& work) {
   try {
     return work();
   } catch (const Error& error) {
-    const std::string_view what = error.what();
-    std::string flag(what.substr(0, what.find_first_of(" :")));
+    std::string flag = error.place().substr(0, error.place().find(' '));
     std::replace(flag.begin(), flag.end(), '_', '-');
     const std::span<const Option> table = drawing_option_table();
     const bool is_flag = std::any_of(table.begin(), table.end(), [&](const Option& o) { return o.name == flag; });
     const bool is_of_value = error.code() == ErrorCode::bad_argument || error.code() == ErrorCode::limit_exceeded;
     if (!is_flag || !is_of_value) throw;
-    throw UsageError(fmt::format("--{}{}", flag, what.substr(flag.size())));
+    throw UsageError(fmt::format("--{}{}", flag, std::string_view(error.what()).substr(flag.size())));
   }
 }
 

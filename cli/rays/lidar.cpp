@@ -89,10 +89,10 @@ RayPattern read_directions(const std::string& path, bool robot_axes) {
     const glm::vec3& direction = pattern.directions.emplace_back(robot_axes ? glm::dvec3(-n[i + 1], n[i + 2], -n[i])
                                                                             : glm::dvec3(n[i], n[i + 1], n[i + 2]));
     if (direction == glm::vec3(0))
-      throw Error(ErrorCode::file_malformed,
-                  fmt::format("{}: number {} of its directions has no length", path, i / 3 + 1));
+      throw Error(ErrorCode::file_malformed, path, "",
+                  fmt::format("number {} of its directions has no length", i / 3 + 1));
   }
-  if (pattern.directions.empty()) throw Error(ErrorCode::file_malformed, path + ": holds no direction");
+  if (pattern.directions.empty()) throw Error(ErrorCode::file_malformed, path, "", "holds no direction");
   return pattern;
 }
 

@@ -23,7 +23,7 @@ double number_at(std::string_view word, const std::string& path, std::size_t lin
   try {
     return parse_number(word, {-3e38, 3e38});
   } catch (const UsageError& error) {
-    throw Error(ErrorCode::file_malformed, fmt::format("{}: line {}: {}", path, line, error.what()));
+    throw Error(ErrorCode::file_malformed, path, fmt::format("line {}", line), error.what());
   }
 }
 
@@ -87,11 +87,11 @@ std::vector<double> read_number_lines(const std::string& path, const LineRule& r
       if (count < rule.count) numbers.push_back(number_at(word, path, number));
     if (count == 0) continue;
     if (count != rule.count)
-      throw Error(ErrorCode::file_malformed,
-                  fmt::format("{}: line {}: {}; there are {}", path, number, rule.text, count));
+      throw Error(ErrorCode::file_malformed, path, fmt::format("line {}", number),
+                  fmt::format("{}; there are {}", rule.text, count));
     if (++lines > most_lines)
-      throw Error(ErrorCode::limit_exceeded,
-                  fmt::format("{}: line {}: more than the limit of {} lines", path, number, most_lines));
+      throw Error(ErrorCode::limit_exceeded, path, fmt::format("line {}", number),
+                  fmt::format("more than the limit of {} lines", most_lines));
   }
   return numbers;
 }

@@ -58,8 +58,8 @@ std::vector<ShardPart> find_parts(const std::vector<std::string>& places) {
     std::vector<fs::path> found;
     for (fs::directory_iterator at(place, error), end; !error && at != end; at.increment(error))
       if (stem_of_manifest(at->path().filename().string())) found.push_back(at->path());
-    if (error) throw Error(ErrorCode::file_unreadable, fmt::format("{}: cannot read: {}", place, error.message()));
-    if (found.empty()) throw Error(ErrorCode::file_unreadable, place + ": there is no manifest of a batch");
+    if (error) throw Error(ErrorCode::file_unreadable, place, "", "cannot read: " + error.message());
+    if (found.empty()) throw Error(ErrorCode::file_unreadable, place, "", "there is no manifest of a batch");
     std::sort(found.begin(), found.end());
     for (const fs::path& path : found) add_part(path, parts);
   }
@@ -83,14 +83,14 @@ Merged merge_parts(std::vector<ShardPart>& parts) {
   std::vector<std::string> missing;
   for (ShardPart& part : parts) {
     if (part.manifest.batch != first.batch || part.manifest.view_count != first.view_count)
-      throw Error(ErrorCode::file_malformed, fmt::format("{}: of another model, batch file, options or version than {}",
-                                                         part.path, parts.front().path));
+      throw Error(ErrorCode::file_malformed, part.path, "",
+                  "of another model, batch file, options or version than " + parts.front().path);
     for (FinishedView& view : part.manifest.finished) {
       if (view.number >= has.size() || has[view.number]) continue;
       stop_if_interrupted();
       if (const auto changed = changed_file(view, part.folder))
-        throw Error(ErrorCode::file_malformed,
-                    fmt::format("{}: is not what {} says that it is; repeat that shard", *changed, part.path));
+        throw Error(ErrorCode::file_malformed, *changed, "",
+                    fmt::format("is not what {} says that it is; repeat that shard", part.path));
       has[view.number] = true;
       for (const FinishedFile& file : view.files) ++merged.file_count, merged.bytes += file.hash.bytes;
       merged.views.push_back({std::move(view), part.folder});
@@ -112,16 +112,15 @@ bool stays_within(const std::string& path) {
 
 void copy_file(const FinishedFile& file, const std::string& folder, const StagedFolder& staged) {
   if (!stays_within(file.path))
-    throw Error(ErrorCode::unsupported,
-                fmt::format("{}: lies outside of the folder of its manifest; leave --output away", file.path));
+    throw Error(ErrorCode::unsupported, file.path, "",
+                "lies outside of the folder of its manifest; leave --output away");
   const fs::path from = fs::path(folder) / file.path, to = staged.path(file.path);
   std::error_code error;
   fs::create_directories(to.parent_path(), error);
   fs::copy_file(from, to, error);
-  if (error)
-    throw Error(ErrorCode::file_unwritable, fmt::format("{}: cannot copy: {}", from.string(), error.message()));
+  if (error) throw Error(ErrorCode::file_unwritable, from.string(), "", "cannot copy: " + error.message());
   if (hash_of_file(to.string()) != file.hash)
-    throw Error(ErrorCode::file_malformed, from.string() + ": changed while it was copied");
+    throw Error(ErrorCode::file_malformed, from.string(), "", "changed while it was copied");
 }
 
 /// The manifest comes last: it says that the rest is there.

@@ -15,7 +15,7 @@ Environment make(const std::string& name, const Execution& execution) {
     return Environment(std::move(picture), execution);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::cancelled) throw;
-    throw Error(error.code(), name + ": " + error.what());
+    throw error.within(name);
   }
 }
 

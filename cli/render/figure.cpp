@@ -39,15 +39,14 @@ Figure figure_of(const Job& job, const RenderContext& context, const Sights& sig
   std::optional<Visible> seen;
   if (!is_there(job, context, sights)) seen = seen_at_centres(context, view);
   try {
-    Figure figure = draw_figure(context.shader, {seen ? *seen : sights.for_maps().visible, nullptr, context.index},
-                                options, context.execution);
+    Figure figure =
+        draw_figure(context.shader, {.visible = seen ? &*seen : &sights.for_maps().visible, .index = context.index},
+                    options, context.execution);
     figure.title = job.name;
     return figure;
   } catch (const Error& error) {
-    constexpr std::string_view own = "figure: ";
-    const std::string_view what = error.what();
-    if (error.code() != ErrorCode::limit_exceeded || !what.starts_with(own)) throw;
-    throw Error(error.code(), fmt::format("{}: {}; see --most-polygons", job.figures.front(), what.substr(own.size())));
+    if (error.code() != ErrorCode::limit_exceeded || error.place() != "figure") throw;
+    throw Error(error.code(), job.figures.front(), "", error.reason() + "; see --most-polygons");
   }
 }
 

@@ -35,8 +35,7 @@ void add_bytes(RunningHash& hash, std::span<const char> bytes) {
 
 [[noreturn]] void fail_to_read(const std::string& path) {
   const int code = errno;  // before strings are made: that may change it
-  throw Error(ErrorCode::file_unreadable,
-              fmt::format("{}: cannot read: {}", path, std::generic_category().message(code)));
+  throw Error(ErrorCode::file_unreadable, path, "", "cannot read: " + std::generic_category().message(code));
 }
 
 class OpenFile {

@@ -77,8 +77,7 @@ auto read_line(std::string_view line, const Read& read) -> std::optional<decltyp
 
 [[noreturn]] void fail_to_write(const std::string& path) {
   const int code = errno;  // before strings are made: that may change it
-  throw Error(ErrorCode::file_unwritable,
-              fmt::format("{}: cannot write: {}", path, std::generic_category().message(code)));
+  throw Error(ErrorCode::file_unwritable, path, "", "cannot write: " + std::generic_category().message(code));
 }
 
 }  // namespace
@@ -117,7 +116,7 @@ Manifest read_manifest(const std::string& path) {
       manifest->finished.push_back(std::move(*view));
     }
   }
-  if (!manifest) throw Error(ErrorCode::file_malformed, path + ": line 1: this is not a manifest of frontmost");
+  if (!manifest) throw Error(ErrorCode::file_malformed, path, "line 1", "this is not a manifest of frontmost");
   return std::move(*manifest);
 }
 

@@ -104,7 +104,7 @@ Comparison compared(const Image& picture, const Image& reference, const Job& job
   try {
     return compare(picture, reference, job.output.reference_threshold, execution);
   } catch (const Error& error) {
-    throw Error(error.code(), *job.output.reference + ": " + error.what());
+    throw error.within(*job.output.reference);
   }
 }
 

@@ -32,7 +32,7 @@ std::unique_ptr<Ranks> join_mpi() {
     // MPI's own modules look for its symbols among those of the program.
     void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_GLOBAL);
     void* const join = module ? dlsym(module, join_function) : nullptr;
-    if (!join) throw Error(ErrorCode::unsupported, fmt::format("--mpi: {}", dlerror()));
+    if (!join) throw Error(ErrorCode::unsupported, "--mpi", dlerror());
     const WaitingForRanks waiting;
     return std::unique_ptr<Ranks>(reinterpret_cast<JoinRanks>(join)());
   }
@@ -81,11 +81,11 @@ RunFailure current_failure(const Settings& settings) {
     return {exit_usage, error.what()};
   } catch (const Error& error) {
     if (error.code() == ErrorCode::cancelled) throw;
-    return {exit_could_not, with_culprit(error.what(), settings)};
+    return {exit_could_not, with_culprit(error, settings).what()};
   } catch (const std::bad_alloc&) {
-    return {exit_could_not, with_culprit("out of memory", settings)};
+    return {exit_could_not, with_culprit({ErrorCode::limit_exceeded, "out of memory"}, settings).what()};
   } catch (const std::exception& error) {
-    return {exit_could_not, with_culprit(error.what(), settings)};
+    return {exit_could_not, with_culprit({ErrorCode::unsupported, error.what()}, settings).what()};
   }
 }
 

@@ -146,8 +146,8 @@ std::vector<ViewResult> render_all(const Run& run, Progress& progress, const Ren
     try {
       results.push_back(render(jobs[i]));
     } catch (const Error& error) {
-      if (!settings.run.batch || names_culprit(error.what())) throw;
-      throw Error(error.code(), fmt::format("{}: view {}: {}", *settings.run.batch, jobs[i].name, error.what()));
+      if (!settings.run.batch || names_culprit(error)) throw;
+      throw error.within(*settings.run.batch, "view " + jobs[i].name);
     }
     if (run.shard) run.shard->note(jobs[i]);
     tell(results.back(), settings, progress);
@@ -198,7 +198,7 @@ int render_whole(Run& run) {
   const Surfaces surfaces(scene, execution);
   const std::vector<std::string> warnings = model_warnings(run.jobs, surfaces, settings, progress);
   const bool is_often = is_drawn_often(run);
-  if (is_often) (void)surfaces.clusters(execution);
+  if (is_often) surfaces.make_clusters(execution);
   timings.surfaces = watch.milliseconds();
   watch = {};
   std::optional<RayIndex> index;

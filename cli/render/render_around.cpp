@@ -114,7 +114,7 @@ bool is_blank(const RangeScan& around) {
 }
 
 Image shade_around(const Job& job, const RangeScan& met, const RenderContext& context) {
-  (void)context.shader.shade(ScanInput(met, context.index), shade_options(job, context), context.execution);
+  (void)context.shader.shade(ScanInput{&met, context.index}, shade_options(job, context), context.execution);
   return context.shader.take();
 }
 

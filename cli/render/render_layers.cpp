@@ -33,8 +33,8 @@ void write_layer(const LayerFiles& layer, const RenderContext& context, ViewResu
   if (wants(layer.job, OutputKind::picture)) {
     const Stopwatch watch;
     ShadeOptions options = shade_options(layer.job, context);
-    options.see_through = SeeThrough::never;
-    picture = &context.shader.shade({*layer.picture, nullptr, context.index}, options, context.execution);
+    options.layers.see_through = SeeThrough::never;
+    picture = &context.shader.shade({.visible = layer.picture, .index = context.index}, options, context.execution);
     result.timings.shade += watch.milliseconds();
   }
   Sights sights;

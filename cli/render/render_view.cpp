@@ -224,16 +224,17 @@ bool has_key_light(const Job& job) {
 }
 
 ShadeOptions shade_options(const Job& job, const RenderContext& context) {
-  ShadeOptions options{job.output.shading, job.output.background, job.output.shadows, job.output.opacity};
-  const std::optional<Method> method = context.run.method;
-  if (method) options.see_through = *method == Method::abuffer ? SeeThrough::always : SeeThrough::never;
-  if (job.view.depth.is_used) options.see_through = SeeThrough::never;  // what its state lets through
-  if (is_fine(job)) options.grid = 8;
-  options.lights = job.output.lights.value_or(options.lights);
-  options.blend = job.output.blend;
-  if (job.output.ambient_occlusion > 0)
-    options.ambient_occlusion = {job.output.ambient_occlusion, job.output.occlusion_radius};
+  ShadeOptions options{job.output.shading, job.output.background, job.output.opacity};
   options.light = context.environments.light(job.output.light, context.execution);
+  options.light.shadows = job.output.shadows;
+  const std::optional<Method> method = context.run.method;
+  if (method) options.layers.see_through = *method == Method::abuffer ? SeeThrough::always : SeeThrough::never;
+  if (job.view.depth.is_used) options.layers.see_through = SeeThrough::never;  // what its state lets through
+  if (is_fine(job)) options.layers.grid = 8;
+  options.light.lights = job.output.lights.value_or(options.light.lights);
+  options.pixels.blend = job.output.blend;
+  if (job.output.ambient_occlusion > 0)
+    options.light.ambient_occlusion = {job.output.ambient_occlusion, job.output.occlusion_radius};
   return options;
 }
 
@@ -247,7 +248,7 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
   const Bitmap* bitmap = nullptr;
   if (wants_picture(job, context.keep_picture)) {
     const Stopwatch watch;
-    const Visible& visible = input().visible;
+    const Visible& visible = input().first();
     if (!context.keep_picture && needs_only_bitmap(job))
       bitmap = &context.shader.shade_bitmap(input(), options, context.execution);
     else

@@ -112,7 +112,8 @@ struct Sights {
   [[nodiscard]] const SeenView& for_maps() const { return shared ? *picture : *maps; }
   /// Precondition: there is a picture.
   [[nodiscard]] ShadeInput shade_input(const RayIndex* index) const {
-    return pixels ? ShadeInput(*pixels, seen_by_light, index) : ShadeInput(picture->visible, seen_by_light, index);
+    return pixels ? ShadeInput{.pixels = &*pixels, .seen_by_light = seen_by_light, .index = index}
+                  : ShadeInput{.visible = &picture->visible, .seen_by_light = seen_by_light, .index = index};
   }
   /// Nothing is seen at any sample of the picture, or of the maps.
   [[nodiscard]] bool is_blank() const {

@@ -19,10 +19,10 @@ glm::dmat4 pose_in(const std::string& text, const std::string& path) {
   std::vector<double> values;
   std::size_t number = 0;
   const auto refuse = [&](const std::string& place, const std::string& why) {
-    throw Error(ErrorCode::file_malformed, fmt::format("{}: {}{}", path, place, why));
+    throw Error(ErrorCode::file_malformed, path, place, why);
   };
   for (std::string_view line : split(text, '\n')) {
-    const std::string place = fmt::format("line {}: ", ++number);
+    const std::string place = fmt::format("line {}", ++number);
     try {
       for (std::string_view word = take_matrix_word(line); !word.empty(); word = take_matrix_word(line))
         values.push_back(parse_number(word, {-1e300, 1e300}));

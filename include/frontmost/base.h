@@ -30,15 +30,29 @@ enum class ErrorCode : std::uint8_t {
   cancelled,        ///< Watch::cancelled said so
 };
 
-/// Thrown by every public function that can be given bad input.
-/// what() names the culprit first: "engine.stl: triangle 41: ...".
+/// Thrown by every public function that can be given bad input. what() is file, place and reason, as far as they are
+/// known, with ": " between them: "engine.stl: triangle 41: its third corner is not a number".
 class Error : public std::runtime_error {
  public:
-  Error(ErrorCode code, const std::string& what) : std::runtime_error(what), code_(code) {}
+  Error(ErrorCode code, std::string reason);
+  Error(ErrorCode code, std::string place, std::string reason);
+  Error(ErrorCode code, std::string file, std::string place, std::string reason);
+
   [[nodiscard]] ErrorCode code() const noexcept { return code_; }
+  /// Whose contents or name is wrong: a path, "standard input", "builtin:..."; empty where no file is.
+  [[nodiscard]] const std::string& file() const noexcept { return parts_->file; }
+  /// Where in the file, or which argument or function: "line 7", "near"; may be empty.
+  [[nodiscard]] const std::string& place() const noexcept { return parts_->place; }
+  [[nodiscard]] const std::string& reason() const noexcept { return parts_->reason; }
+  /// The same error as one of this file and place; what it named itself comes behind the place.
+  [[nodiscard]] Error within(const std::string& file, const std::string& place = "") const;
 
  private:
+  struct Parts {
+    std::string file, place, reason;
+  };
   ErrorCode code_;
+  std::shared_ptr<const Parts> parts_;  // copies of an exception must not throw
 };
 
 /// Instruction sets that the kernels are compiled for. None changes any result.

@@ -31,9 +31,11 @@ namespace frontmost {
 // Directions are those of a Panorama: ahead is the middle of the picture, right a quarter of its width from there, up
 // its upper side. In the axes of an environment x is right, y up and z behind.
 
+class Environment;
 namespace shading {
 struct PrefilteredEnvironment;
-}
+const PrefilteredEnvironment& prefiltered(const Environment& environment);
+}  // namespace shading
 
 /// Cheap to copy: copies share what was made, which never changes, and may be used by several threads at once.
 class Environment {
@@ -65,10 +67,8 @@ class Environment {
   /// (R. Ramamoorthi, P. Hanrahan. An Efficient Representation for Irradiance Environment Maps. SIGGRAPH 2001.)
   [[nodiscard]] glm::vec3 irradiance(const glm::vec3& normal) const;
 
-  /// For the shading of fragments.
-  [[nodiscard]] const shading::PrefilteredEnvironment& prefiltered() const { return *made_; }
-
  private:
+  friend const shading::PrefilteredEnvironment& shading::prefiltered(const Environment& environment);
   explicit Environment(std::shared_ptr<const shading::PrefilteredEnvironment> made) : made_(std::move(made)) {}
   std::shared_ptr<const shading::PrefilteredEnvironment> made_;
 };
@@ -151,14 +151,17 @@ enum class ToneMapping : std::uint8_t {
   khronos,
 };
 
-/// The light of lit pictures: a key light, which throws shadows, and an environment.
+/// The light of lit pictures: a key light, the scene's own lights, and an environment.
 struct LightOptions {
+  Shadows shadows = Shadows::map;
+  Lights lights = Lights::key;
+  std::optional<AmbientOcclusion> ambient_occlusion = std::nullopt;
   /// None: Environment::studio().
   std::optional<Environment> environment = std::nullopt;
   /// Radians, counter-clockwise seen from above, by which the environment is turned about the scene's up. Finite.
   double environment_angle = 0;
-  /// Pictures show the environment where nothing hides it, in place of the background. Not figures,
-  /// pictures of scans, or other blends than linear.
+  /// Pictures show the environment where nothing hides it, in place of the background, also those that are not lit. Not
+  /// figures, pictures of scans, or other blends than linear.
   bool shows_environment = false;
   /// Stops, -32 to 32: light is multiplied by 2^exposure before tone mapping; unlit materials stay as they are.
   double exposure = 0;
@@ -170,55 +173,50 @@ struct LightOptions {
   std::optional<double> intensity = std::nullopt;
 };
 
+/// What lies one behind another.
+struct LayerOptions {
+  SeeThrough see_through = SeeThrough::where_needed;
+  int grid = 0;  ///< the A-buffer's sub-samples: as AbufferOptions::grid
+};
+
+/// How the pixels of a picture are found.
+struct PixelOptions {
+  Blend blend = Blend::linear;                 ///< not of deep images or figures
+  ShadingRate rate = ShadingRate::each_pixel;  ///< of views; not of scans, deep images or figures
+};
+
 struct ShadeOptions {
   Shading shading = Shading::lit;
   /// sRGB, 0 to 1. None: transparent.
   std::optional<glm::vec3> background = glm::vec3(1.0f);
-  Shadows shadows = Shadows::map;
-  /// Multiplies the opacity of everything, 0 to 1. Lit, flat and normals alone.
+  /// Multiplies the opacity of everything, 0 to 1. Of lit, flat and normals.
   float opacity = 1.0f;
-  SeeThrough see_through = SeeThrough::where_needed;
-  /// The A-buffer's sub-samples: as AbufferOptions::grid.
-  int grid = 0;
-  Lights lights = Lights::key;
-  /// Of lit pictures.
-  std::optional<AmbientOcclusion> ambient_occlusion = std::nullopt;
-  /// Of lit, flat and normals; of pictures, neither deep ones nor figures.
-  Blend blend = Blend::linear;
-  /// Of lit pictures alone, but for the environment as background.
-  LightOptions light = {};
-  /// Of pictures of views; not of scans, deep images or figures.
-  ShadingRate rate = ShadingRate::each_pixel;
+  LightOptions light = {};   ///< of lit
+  LayerOptions layers = {};  ///< of lit, flat and normals
+  PixelOptions pixels = {};  ///< of lit, flat and normals
 };
 
 /// What is to be shaded, and what a caller may have found already of what shadows need. Borrows everything.
 struct ShadeInput {
-  ShadeInput(const Visible& what_is_visible, const Visible* light_sees = nullptr, const RayIndex* ray_index = nullptr)
-      : visible(what_is_visible), seen_by_light(light_sees), index(ray_index) {}
-  /// The same by pixels. For all shadings but depth; not for figures.
-  ShadeInput(const VisiblePixels& what_is_visible, const Visible* light_sees = nullptr,
-             const RayIndex* ray_index = nullptr)
-      : visible(what_is_visible.first), seen_by_light(light_sees), index(ray_index), pixels(&what_is_visible) {}
-
-  [[nodiscard]] const View& view() const { return pixels ? pixels->view : visible.view; }
-
-  const Visible& visible;  ///< front-most: at every sample, or, with `pixels`, at the first
+  /// What is visible in the view: front-most, at every sample. One of both is given.
+  const Visible* visible = nullptr;
+  const VisiblePixels* pixels = nullptr;  ///< for all shadings but depth; not for figures
   /// For Shadows::map of the key light: what is visible in key_light_view(). Null: shade() finds what is visible of the
   /// surfaces there.
-  const Visible* seen_by_light;
+  const Visible* seen_by_light = nullptr;
   /// For Shadows::rays: that of the surfaces. Null: shade() makes one, as it does where materials are see-through.
-  const RayIndex* index;
-  const VisiblePixels* pixels = nullptr;  ///< at every sample; null where `visible` says that
+  const RayIndex* index = nullptr;
+
+  /// At every sample, or of `pixels` at the first.
+  [[nodiscard]] const Visible& first() const { return pixels ? pixels->first : *visible; }
+  [[nodiscard]] const View& view() const { return pixels ? pixels->view : visible->view; }
 };
 
 /// A scan that is to be shaded, of cameras all around. Borrows everything.
 struct ScanInput {
-  ScanInput(const RangeScan& what_rays_meet, const RayIndex* ray_index = nullptr)
-      : scan(what_rays_meet), index(ray_index) {}
-
-  const RangeScan& scan;
+  const RangeScan* scan = nullptr;
   /// That of the surfaces, for Shadows::rays and for what is seen through. Null: shade() makes one where it needs it.
-  const RayIndex* index;
+  const RayIndex* index = nullptr;
 };
 
 /// The view in which the key light sees what `visible` shows: whatever is visible in it is lit, the rest in shadow. For
@@ -236,11 +234,20 @@ struct ScanInput {
 /// Borrows everything; O(covered pixels). The bytes do not depend on threads or instruction set.
 [[nodiscard]] Image shade(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
                           const Execution& execution = {});
+/// The same of nothing but what is visible.
+[[nodiscard]] Image shade(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
+                          const Execution& execution = {});
+[[nodiscard]] Image shade(const Surfaces& surfaces, const VisiblePixels& pixels, const ShadeOptions& options = {},
+                          const Execution& execution = {});
 
 /// The same picture as a PNG file of shade()'s holds it, to the byte, without the planes of floats that are four times
 /// as large: for pictures that are only to be shown or saved.
 [[nodiscard]] Bitmap shade_bitmap(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
                                   const Execution& execution = {});
+[[nodiscard]] Bitmap shade_bitmap(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
+                                  const Execution& execution = {});
+[[nodiscard]] Bitmap shade_bitmap(const Surfaces& surfaces, const VisiblePixels& pixels,
+                                  const ShadeOptions& options = {}, const Execution& execution = {});
 
 /// Every fragment of the picture by itself, nearest first: channels R, G, B (multiplied by A), A, Z and ZBack, and the
 /// integers "primitive", "object" and "material". A is the part that a sample hides of what those before it leave
@@ -250,6 +257,8 @@ struct ScanInput {
 /// twice that while it works. Options as for shade(). \throws Error as shade() and abuffer() do, unsupported for other
 /// shadings than lit, flat and normals.
 [[nodiscard]] DeepImage shade_deep(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
+                                   const Execution& execution = {});
+[[nodiscard]] DeepImage shade_deep(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
                                    const Execution& execution = {});
 
 class Shader;
@@ -303,6 +312,8 @@ class Shader {
 /// materials are blended, or the opacity is below 1, the rays go on behind what they met first. `depth` is the range.
 /// \throws Error bad_argument for a scan or options that do not fit. O(rays).
 [[nodiscard]] Image shade(const Surfaces& surfaces, const ScanInput& input, const ShadeOptions& options = {},
+                          const Execution& execution = {});
+[[nodiscard]] Image shade(const Surfaces& surfaces, const RangeScan& scan, const ShadeOptions& options = {},
                           const Execution& execution = {});
 
 /// World-space unit shading normals at the first sample: channels N.X, N.Y, N.Z; zero where nothing is seen.

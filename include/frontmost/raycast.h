@@ -57,9 +57,8 @@ class RayIndex {
   [[nodiscard]] const Box& bounds() const;
   [[nodiscard]] std::size_t byte_count() const;
 
-  [[nodiscard]] const RayTree& tree() const { return *tree_; }
-
  private:
+  friend const RayTree& ray_tree(const RayIndex& index);
   std::unique_ptr<RayTree> tree_;
 };
 
@@ -76,7 +75,7 @@ class RayIndex {
 [[nodiscard]] Visible raycast(const Surfaces& surfaces, const View& view, const Execution& execution = {});
 
 /// The same for repeated views: casts after the first reuse the memory of those before. Not for several threads at
-/// once; each cast() uses the threads it is given.
+/// once; each draw() uses the threads it is given.
 class RayCaster {
  public:
   RayCaster();
@@ -86,10 +85,10 @@ class RayCaster {
   RayCaster(const RayCaster&) = delete;
   RayCaster& operator=(const RayCaster&) = delete;
 
-  /// What raycast() gives. The result stays as it is until the next cast() or take(); after an error it is unspecified.
+  /// What raycast() gives. The result stays as it is until the next draw() or take(); after an error it is unspecified.
   /// \throws Error as validate(view) does.
-  const Visible& cast(const RayIndex& index, const View& view, const Execution& execution = {});
-  /// Moves the last result out; the next cast() allocates another.
+  const Visible& draw(const RayIndex& index, const View& view, const Execution& execution = {});
+  /// Moves the last result out; the next draw() allocates another.
   [[nodiscard]] Visible take();
 
  private:

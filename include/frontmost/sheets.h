@@ -74,6 +74,8 @@ struct FigureOptions {
 /// each other, or overlap, too often.
 [[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const ShadeInput& input, const FigureOptions& options = {},
                                  const Execution& execution = {});
+[[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const Visible& visible, const FigureOptions& options = {},
+                                 const Execution& execution = {});
 /// The same of a view, which need not have one sample. \throws Error as validate(view) does, too.
 [[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const View& view, const FigureOptions& options = {},
                                  const Execution& execution = {});

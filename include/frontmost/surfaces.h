@@ -84,16 +84,14 @@ class Surfaces {
   /// Bytes held beside the scene's own arrays; those of the clusters count once they are made.
   [[nodiscard]] std::size_t byte_count() const;
 
-  // For the methods.
-  [[nodiscard]] const PlacedScene& placed() const;
-  /// Made now where they are not there.
-  [[nodiscard]] const ClusterSet& clusters(const Execution& execution = {}) const;
-  /// Null where they have not been made yet.
-  [[nodiscard]] const ClusterSet* made_clusters() const;
-  /// Null where a single picture is drawn sooner without.
-  [[nodiscard]] const ClusterSet* clusters_for_picture(const Execution& execution) const;
+  /// Brings the triangles into clusters now, for whoever will show many pictures.
+  void make_clusters(const Execution& execution = {}) const;
 
  private:
+  friend const PlacedScene& placed_scene(const Surfaces& surfaces);
+  friend const ClusterSet& cluster_set(const Surfaces& surfaces, const Execution& execution);
+  friend const ClusterSet* made_cluster_set(const Surfaces& surfaces);
+  friend const ClusterSet* cluster_set_for_picture(const Surfaces& surfaces, const Execution& execution);
   struct State;
   std::unique_ptr<State> state_;
 };

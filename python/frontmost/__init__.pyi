@@ -51,6 +51,12 @@ class Error(RuntimeError):
     code: Literal["bad_argument", "file_unreadable", "file_malformed", "file_unwritable", "unsupported", "limit_exceeded",
                   "singular_camera", "cancelled"]
     """What kind of failure it is: "file_unreadable", ..."""
+    file: str
+    """Whose contents or name is wrong: a path, "standard input", "builtin:..."; empty where no file is."""
+    place: str
+    """Where in the file, or which argument or function: "line 7", "near"; may be empty."""
+    reason: str
+    """What is wrong. The message is file, place and reason with ": " between them."""
 
 class Object:
     """One of a scene's objects: a mesh at a place."""

@@ -273,7 +273,7 @@ TEST(TileParts, ComeTogetherInTheOrderOfPixelsHoweverTheyArrive) {
       for (int i = 0; i < (y == 2 && x > 4 ? 0 : length(x, y)); ++i) wanted.push_back(100 * (10 * y + x) + i);
   for (int round = 0; round < 4; ++round) {
     std::rotate(parts.begin(), parts.begin() + 1, parts.end());
-    TileParts<int> all(view, wanted.size(), "too many");
+    TileParts<int> all(view, wanted.size(), "abuffer", "too many");
     for (const TilePart<int>& part : parts) all.add(part);
     const Buffer<std::uint64_t> first = all.beginnings();
     ASSERT_EQ(first.size(), 36u);
@@ -282,7 +282,7 @@ TEST(TileParts, ComeTogetherInTheOrderOfPixelsHoweverTheyArrive) {
     std::vector<int> items(wanted.size(), -1);
     all.place(first, [&](std::uint64_t at, int item) { items.at(at) = item; }, {.threads = 2});
     EXPECT_EQ(items, wanted);
-    TileParts<int> too_many(view, wanted.size() - 1, "too many");
+    TileParts<int> too_many(view, wanted.size() - 1, "abuffer", "too many");
     for (std::size_t i = 0; i + 1 < parts.size(); ++i) too_many.add(parts[i]);
     EXPECT_THROW(too_many.add(parts.back()), Error);
   }

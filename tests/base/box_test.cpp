@@ -75,6 +75,30 @@ TEST(Error, KeepsItsCodeAndWords) {
   EXPECT_STREQ(base.what(), "a.stl: triangle 3: too far") << "whoever knows no Error gets the words all the same";
 }
 
+TEST(Error, HasFilePlaceAndReason) {
+  const Error whole(ErrorCode::file_malformed, "a.stl", "triangle 3", "too far");
+  EXPECT_STREQ(whole.what(), "a.stl: triangle 3: too far");
+  EXPECT_EQ(whole.file(), "a.stl");
+  EXPECT_EQ(whole.place(), "triangle 3");
+  EXPECT_EQ(whole.reason(), "too far");
+  const Error of_value(ErrorCode::bad_argument, "near", "must be greater than 0");
+  EXPECT_STREQ(of_value.what(), "near: must be greater than 0");
+  EXPECT_EQ(of_value.file(), "");
+  EXPECT_STREQ(Error(ErrorCode::file_unwritable, "a.png", "", "is a folder").what(), "a.png: is a folder");
+  EXPECT_STREQ(Error(ErrorCode::cancelled, "cancelled").what(), "cancelled");
+}
+
+TEST(Error, WithinAFileKeepsWhatItNamed) {
+  const Error of_value(ErrorCode::bad_argument, "near", "must be greater than 0");
+  const Error of_file = of_value.within("views.json", "view front");
+  EXPECT_EQ(of_file.code(), ErrorCode::bad_argument);
+  EXPECT_STREQ(of_file.what(), "views.json: view front: near: must be greater than 0");
+  EXPECT_EQ(of_file.place(), "view front: near");
+  const Error of_two = of_file.within("all.json");
+  EXPECT_EQ(of_two.file(), "all.json");
+  EXPECT_STREQ(of_two.what(), "all.json: views.json: view front: near: must be greater than 0");
+}
+
 TEST(Buffer, CopiesAreDeepAndMovesLeaveNothing) {
   Buffer<int> first(5, 7);
   Buffer<int> copy = first;

@@ -16,7 +16,8 @@ inline std::vector<ObjectSight> sights_by_hand(const Surfaces& surfaces, const V
   std::vector<CulledObject> objects;
   std::vector<Box> boxes;
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    OccluderMesh& mesh = meshes[scene.instances[i].mesh] = occluder_mesh(surfaces.placed(), i, ObjectUnit::instances);
+    OccluderMesh& mesh = meshes[scene.instances[i].mesh] =
+        occluder_mesh(placed_scene(surfaces), i, ObjectUnit::instances);
     // What lies beyond each side counts always: the triangle itself.
     if (ends == Ends::are_forgotten)
       for (std::uint32_t t = 0; t < mesh.neighbours.size(); ++t) mesh.neighbours[t] = glm::uvec3(t);
@@ -27,7 +28,7 @@ inline std::vector<ObjectSight> sights_by_hand(const Surfaces& surfaces, const V
   std::vector<ObjectSight> sights(objects.size());
   CellCover cover;
   const ObjectTree tree(boxes, boxes.size());
-  Sweep().run({scene, meshes, objects, tree, surfaces.placed().mirrored}, {grid, view.culling, Isa::best}, sights,
+  Sweep().run({scene, meshes, objects, tree, placed_scene(surfaces).mirrored}, {grid, view.culling, Isa::best}, sights,
               cover);
   return sights;
 }

@@ -16,7 +16,7 @@ using namespace test;
 OccluderMesh mesh_of(const Mesh& mesh, bool tells_parts_apart = false) {
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
-  return occluder_mesh(surfaces.placed(), 0, tells_parts_apart ? ObjectUnit::parts : ObjectUnit::instances);
+  return occluder_mesh(placed_scene(surfaces), 0, tells_parts_apart ? ObjectUnit::parts : ObjectUnit::instances);
 }
 
 TEST(OccluderMesh, NeighboursAreThoseAcrossSharedPlaces) {
@@ -92,7 +92,7 @@ TEST(OccluderMesh, PartsHaveTheirTrianglesAndVerticesTogether) {
 TEST(OccluderMesh, ClustersHoldEveryTriangleOnceAndReachIntoTheNext) {
   const Scene scene = scene_of(tessellated_box({1, 1, 1}, 12, 0));
   const Surfaces surfaces(scene);
-  const OccluderMesh mesh = occluder_mesh(surfaces.placed(), 0, ObjectUnit::clusters);
+  const OccluderMesh mesh = occluder_mesh(placed_scene(surfaces), 0, ObjectUnit::clusters);
   std::vector<int> times(scene.meshes[0].triangles.size(), 0);
   for (const OccluderPart& part : mesh.parts) {
     EXPECT_LE(part.own.size(), most_in_cluster);

@@ -204,6 +204,8 @@ def test_files_come_back(box, tmp_path):
     with pytest.raises(fm.Error, match="cannot open") as raised:
         fm.load(tmp_path / "none.stl")
     assert raised.value.code == "file_unreadable"
+    assert raised.value.file == str(tmp_path / "none.stl") and raised.value.place == ""
+    assert str(raised.value) == f"{raised.value.file}: {raised.value.reason}"
     with pytest.raises(fm.Error) as raised:
         scene.save(tmp_path / "crate.xyz")
     assert raised.value.code == "unsupported"

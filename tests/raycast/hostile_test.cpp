@@ -153,11 +153,11 @@ TEST(RayCaster, ReusesItsMemoryForTheSameAnswers) {
   View larger = view;
   larger.width = 128, larger.samples = 2;
   for (const View& v : {view, larger, view, view}) {
-    EXPECT_EQ(content_hash(caster.cast(index, v)), content_hash(raycast(index, v)));
-    EXPECT_EQ(content_hash(caster.cast(second, v)), content_hash(raycast(second, v)));
+    EXPECT_EQ(content_hash(caster.draw(index, v)), content_hash(raycast(index, v)));
+    EXPECT_EQ(content_hash(caster.draw(second, v)), content_hash(raycast(second, v)));
   }
   EXPECT_EQ(content_hash(caster.take()), content_hash(raycast(second, view)));
-  EXPECT_EQ(content_hash(caster.cast(index, view)), content_hash(raycast(index, view)));
+  EXPECT_EQ(content_hash(caster.draw(index, view)), content_hash(raycast(index, view)));
 }
 
 TEST(RayIndex, StaysBelowItsPromisedSize) {
@@ -183,7 +183,7 @@ TEST(HostileRayCast, WithoutMemoryForAllPlanesNoneIsUsed) {
     setrlimit(RLIMIT_AS, &limit);
     int failures = 0;
     for (int i = 0; i < 2; ++i) try {
-        (void)caster.cast(index, view, {.threads = 1});
+        (void)caster.draw(index, view, {.threads = 1});
       } catch (const std::bad_alloc&) {
         ++failures;
       }

@@ -153,9 +153,9 @@ bool expect_each_triangle_asked(const Indexed& of, const raycast_detail::Query& 
   for (const Isa isa : available_isas()) {
     SCOPED_TRACE(name(isa));
     std::vector<RayHit> all, closest, any;
-    walk(of.index.tree(), query, raycast_detail::Want::all, all, isa);
-    walk(of.index.tree(), query, raycast_detail::Want::closest, closest, isa);
-    walk(of.index.tree(), query, raycast_detail::Want::any, any, isa);
+    walk(ray_tree(of.index), query, raycast_detail::Want::all, all, isa);
+    walk(ray_tree(of.index), query, raycast_detail::Want::closest, closest, isa);
+    walk(ray_tree(of.index), query, raycast_detail::Want::any, any, isa);
     std::sort(all.begin(), all.end(), order);
     EXPECT_EQ(all.size(), expected.size());
     for (std::size_t k = 0; k < std::min(all.size(), expected.size()); ++k) {
@@ -304,11 +304,11 @@ TEST(Query, BatchesOfLargeTreesEqualSingleRays) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
     std::vector<RayHit> one, any;
     const raycast_detail::Query ray{rays[i].origin, rays[i].origin, rays[i].direction, false};
-    if (raycast_detail::is_valid(ray)) walk(of.index.tree(), ray, raycast_detail::Want::closest, one, Isa::best);
+    if (raycast_detail::is_valid(ray)) walk(ray_tree(of.index), ray, raycast_detail::Want::closest, one, Isa::best);
     ASSERT_EQ(hits[i].primitive, one.empty() ? no_primitive : one[0].primitive);
     ASSERT_EQ(hits[i].t, one.empty() ? RayHit{}.t : one[0].t);
     const Segment& s = segments[i];
-    walk(of.index.tree(), {s.from, s.to, s.to - s.from, true}, raycast_detail::Want::any, any, Isa::best);
+    walk(ray_tree(of.index), {s.from, s.to, s.to - s.from, true}, raycast_detail::Want::any, any, Isa::best);
     ASSERT_EQ(bool(clear[i]), any.empty());
     met += !one.empty();
   }

@@ -134,7 +134,7 @@ TEST(Holes, AreInNoLayer) {
     Random random(seed);
     const Scene scene = cutout_scene(random_mesh(Kind::soup, 200, seed), Cut::half, 0.5f, seed);
     const Surfaces surfaces(scene);
-    const Cutouts& cutouts = *surfaces.placed().cutouts;
+    const Cutouts& cutouts = *placed_scene(surfaces).cutouts;
     const View view = random_view(random, 80, 60);
     const ScreenRays rays(view);
     std::size_t looked_at = 0;

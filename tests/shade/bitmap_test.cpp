@@ -65,7 +65,12 @@ TEST(ShadeBitmap, OfPixelsThatAreNotThoseOfTheSurfacesIsRefused) {
   const VisiblePixels pixels = zbuffer_pixels(surfaces, view);
   EXPECT_THROW((void)shade_bitmap(surfaces, pixels, {Shading::depth}), Error);
   EXPECT_THROW((void)shade_bitmap(surfaces, zbuffer_pixels(Surfaces(other), view)), Error);
-  EXPECT_THROW((void)draw_figure(surfaces, pixels), Error);
+  EXPECT_THROW((void)draw_figure(surfaces, {.pixels = &pixels}), Error);
+  EXPECT_THROW((void)shade(surfaces, ShadeInput{}), Error) << "nothing is given";
+  EXPECT_THROW((void)shade(surfaces, ShadeInput{&pixels.first, &pixels}), Error) << "both are given";
+  EXPECT_THROW((void)shade_deep(surfaces, ShadeInput{}), Error);
+  EXPECT_THROW((void)draw_figure(surfaces, ShadeInput{}), Error);
+  EXPECT_THROW((void)shade(surfaces, ScanInput{}), Error);
   VisiblePixels short_of_runs = pixels, short_of_others = pixels;
   short_of_runs.mixed = Buffer<std::uint16_t>(1);
   ++short_of_others.other_count;

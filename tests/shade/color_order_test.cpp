@@ -255,9 +255,9 @@ TEST(ColorOrder, ShadowsAreDrawn) {
   scene.instances[1].world_from_mesh[3] = {0, 0, 0.5, 1};
   for (const Shadows shadows : {Shadows::map, Shadows::rays}) {
     FigureOptions options = merging();
-    options.shade.shadows = shadows;
+    options.shade.light.shadows = shadows;
     const ColoredOrder lit = figure_of(scene, options);
-    options.shade.shadows = Shadows::off;
+    options.shade.light.shadows = Shadows::off;
     const ColoredOrder bare = figure_of(scene, options);
     EXPECT_LT(areas_by_red(lit).begin()->first + 30, areas_by_red(bare).begin()->first);
     EXPECT_GT(lit.polygons.size(), bare.polygons.size());

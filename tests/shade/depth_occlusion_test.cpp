@@ -158,7 +158,7 @@ float brightness(const Image& image, int x, int y) {
 constexpr AmbientOcclusion kNear{1, 1.0};
 
 ShadeOptions options_with(std::optional<AmbientOcclusion> occlusion) {
-  return {.shadows = Shadows::off, .ambient_occlusion = occlusion};
+  return {.light = {.shadows = Shadows::off, .ambient_occlusion = occlusion}};
 }
 
 TEST(DepthOcclusion, DarkensAPictureWhereSomethingIsNear) {

@@ -144,7 +144,7 @@ TEST(Environment, ASunOfOnePixelIsInEveryLevel) {
     const double angle = 2 * kPi * kPi / width / (width / 2) * std::cos(elevation);
     for (Channel& channel : picture.channels) channel.floats()[std::size_t(at.y * width + at.x)] = 1e6f;
     const Environment environment(std::move(picture));
-    for (const shading::OctahedralMap& level : environment.prefiltered().levels)
+    for (const shading::OctahedralMap& level : shading::prefiltered(environment).levels)
       EXPECT_NEAR(whole_light(level) / (1e6 * angle), 1, 0.1) << width << " " << level.size();
   }
 }
@@ -165,8 +165,9 @@ TEST(Environment, SameBitsOnEveryInstructionSetAndForAnyNumberOfThreads) {
   const Environment expected(picture, {.threads = 1});
   const auto expect_same = [&](const Execution& execution) {
     const Environment found(picture, execution);
-    for (std::size_t k = 0; k < expected.prefiltered().levels.size(); ++k) {
-      const shading::OctahedralMap &a = expected.prefiltered().levels[k], &b = found.prefiltered().levels[k];
+    for (std::size_t k = 0; k < shading::prefiltered(expected).levels.size(); ++k) {
+      const shading::OctahedralMap &a = shading::prefiltered(expected).levels[k],
+                                   &b = shading::prefiltered(found).levels[k];
       ASSERT_EQ(a.size(), b.size());
       const std::size_t bytes = std::size_t(a.stride() * a.stride() * shading::OctahedralMap::channels) * sizeof(float);
       EXPECT_EQ(std::memcmp(a.texels(), b.texels(), bytes), 0) << name(execution.isa) << " " << k;

@@ -3,9 +3,17 @@
 #pragma once
 
 #include "figures/colored_order.h"
+#include "shade/prepared_scene.h"
 #include "shade/support.h"
 
 namespace frontmost::test {
+
+/// The colours of the first picture of these surfaces.
+inline ColoredOrder color_order(const Surfaces& surfaces, const Visible& visible, const VisibleParts& parts,
+                                const FigureOptions& options = {}, const Execution& execution = {}) {
+  shading::PreparedScene scene(surfaces);
+  return frontmost::color_order(scene, {.visible = &visible}, parts, options, execution);
+}
 
 /// A polygon of a figure made by hand, counter-clockwise as it is seen.
 struct Tile {

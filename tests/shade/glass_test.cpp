@@ -52,7 +52,7 @@ glm::vec4 middle_of(const Scene& scene, const ShadeOptions& options) {
 }
 
 const ShadeOptions flat{.shading = Shading::flat};
-const ShadeOptions lit{.shadows = Shadows::off};
+const ShadeOptions lit{.light = {.shadows = Shadows::off}};
 
 void expect_near(const glm::vec4& color, const glm::vec3& wanted, float tolerance, const char* what = "") {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(color[c], wanted[c], tolerance) << what << ", channel " << c;

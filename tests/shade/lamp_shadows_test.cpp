@@ -40,7 +40,7 @@ Scene floor_and_roof(const std::vector<Light>& lights) {
 
 Image picture(const Scene& scene, const View& view, Shadows shadows, Lights lights = Lights::file) {
   const Surfaces surfaces(scene);
-  return shade(surfaces, zbuffer(surfaces, view), {.shadows = shadows, .lights = lights});
+  return shade(surfaces, zbuffer(surfaces, view), {.light = {.shadows = shadows, .lights = lights}});
 }
 
 /// How far outside of the roof the way from a point of the floor to the light passes; negative: through it.
@@ -221,7 +221,7 @@ TEST(LampShadows, MapsOfAFlightAreDrawnOnlyWhenTheSunsWindowNoLongerFits) {
   const auto maps_for = [&](int i) {
     const Visible visible = zbuffer(flight.surfaces, flight.view(i));
     drawn = 0;
-    shader.shade(visible, {.lights = Lights::file}, {.threads = 1, .watch = &watch});
+    shader.shade({.visible = &visible}, {.light = {.lights = Lights::file}}, {.threads = 1, .watch = &watch});
     return drawn;
   };
   EXPECT_EQ(maps_for(0), 2u) << "the sun's and the spot's";
@@ -263,9 +263,9 @@ TEST(LampShadows, PicturesOneAfterAnotherAreThoseOfTheFunctionAndAllocateNothing
     std::size_t count = 0;
     for (int i = 0; i < 60; i += 9) {
       const Visible& visible = buffer.draw(flight.surfaces, flight.view(i), {.threads = 1});
-      const ShadeOptions options{.lights = Lights::both};
+      const ShadeOptions options{.light = {.lights = Lights::both}};
       const std::size_t before = allocation_count();
-      const Bitmap& bitmap = shader.shade_bitmap(visible, options, {.threads = 1});
+      const Bitmap& bitmap = shader.shade_bitmap({.visible = &visible}, options, {.threads = 1});
       count += allocation_count() - before + (planes && bitmap.rgba.data() != planes);
       planes = bitmap.rgba.data();
       if (!compares) continue;

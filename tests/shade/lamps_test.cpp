@@ -93,10 +93,11 @@ Scene lit_floor(const std::vector<Light>& lights, const Material& material) {
   return scene;
 }
 
-Image lit_by_file(const Scene& scene, const View& view, const ShadeOptions& options = {.shadows = Shadows::off}) {
+Image lit_by_file(const Scene& scene, const View& view,
+                  const ShadeOptions& options = {.light = {.shadows = Shadows::off}}) {
   const Surfaces surfaces(scene);
   ShadeOptions by_file = options;
-  by_file.lights = Lights::file;
+  by_file.light.lights = Lights::file;
   return shade(surfaces, zbuffer(surfaces, view), by_file);
 }
 
@@ -169,9 +170,11 @@ TEST(Lamps, KeyFileBothAndNoneAreWhatTheirNamesSay) {
   const View view = slanted_view(48);
   const Surfaces surfaces(scene), bare(without);
   const Visible visible = zbuffer(surfaces, view);
-  const auto lit = [&](Lights lights) { return shade(surfaces, visible, {.shadows = Shadows::off, .lights = lights}); };
+  const auto lit = [&](Lights lights) {
+    return shade(surfaces, visible, {.light = {.shadows = Shadows::off, .lights = lights}});
+  };
   const Image key = lit(Lights::key), file = lit(Lights::file), both = lit(Lights::both), none = lit(Lights::none);
-  const Image bare_key = shade(bare, visible, {.shadows = Shadows::off});
+  const Image bare_key = shade(bare, visible, {.light = {.shadows = Shadows::off}});
   for (int y = 0; y < view.height; ++y)
     for (int x = 0; x < view.width; ++x) {
       ASSERT_EQ(color_at(key, x, y), color_at(bare_key, x, y)) << "the file's lights count unasked";
@@ -279,7 +282,7 @@ TEST(Lamps, DarkOnesDoNotCountAndTooManyAreRefused) {
   const Surfaces surfaces(scene);
   const Visible visible = zbuffer(surfaces, front_view());
   EXPECT_NO_THROW((void)shade(surfaces, visible));
-  EXPECT_THROW((void)shade(surfaces, visible, {.lights = Lights::both}), Error);
+  EXPECT_THROW((void)shade(surfaces, visible, {.light = {.lights = Lights::both}}), Error);
 }
 
 TEST(Lamps, AnyNumbersGiveColoursBetweenZeroAndOne) {
@@ -292,7 +295,8 @@ TEST(Lamps, AnyNumbersGiveColoursBetweenZeroAndOne) {
         Material smooth = colored({1, 1, 1, 1});
         smooth.roughness = 0, smooth.metallic = 1;
         for (const Shadows shadows : {Shadows::off, Shadows::map, Shadows::rays}) {
-          const Image image = lit_by_file(lit_floor({light}, smooth), slanted_view(24), {.shadows = shadows});
+          const Image image =
+              lit_by_file(lit_floor({light}, smooth), slanted_view(24), {.light = {.shadows = shadows}});
           for (const Channel& channel : image.channels)
             for (const float value : channel.floats()) ASSERT_TRUE(value >= 0 && value <= 1) << value;
         }
@@ -309,7 +313,7 @@ TEST(Lamps, PicturesAreTheSameForAllThreadsAndInstructionSets) {
   const Surfaces surfaces(scene);
   const Visible visible = zbuffer(surfaces, frame(surfaces, 160, 120));
   for (const Shadows shadows : {Shadows::off, Shadows::map, Shadows::rays}) {
-    const ShadeOptions options{.shadows = shadows, .lights = Lights::both};
+    const ShadeOptions options{.light = {.shadows = shadows, .lights = Lights::both}};
     const Image expected = shade(surfaces, visible, options, {.threads = 1});
     for (const Isa isa : available_isas())
       for (const int threads : {1, 4}) {

@@ -76,7 +76,7 @@ TEST(DeepImage, FlattensToThePicture) {
       ShadeOptions options{.background = std::nullopt, .opacity = opacity};
       const Visible visible = zbuffer(surfaces, view);
       const DeepImage deep = shade_deep(surfaces, visible, options);
-      options.see_through = SeeThrough::always;
+      options.layers.see_through = SeeThrough::always;
       const Image picture = shade(surfaces, visible, options);
       double worst = 0;
       for (std::size_t pixel = 0; pixel < view.pixel_count(); ++pixel) {
@@ -156,7 +156,7 @@ TEST(DeepImage, RefusesWhatItCannotHold) {
   const Visible visible = zbuffer(surfaces, front_view());
   EXPECT_THROW((void)shade_deep(surfaces, visible, {.shading = Shading::depth}), Error);
   EXPECT_THROW((void)shade_deep(surfaces, visible, {.opacity = 2}), Error);
-  EXPECT_THROW((void)shade_deep(surfaces, visible, {.grid = 3}), Error);
+  EXPECT_THROW((void)shade_deep(surfaces, visible, {.layers = {.grid = 3}}), Error);
   DeepImage image = shade_deep(surfaces, visible);
   image.first[5] = 1u << 30;
   EXPECT_THROW(validate(image), Error);
@@ -166,7 +166,7 @@ TEST(SeeThrough, NeverShowsOneLayerOverTheBackground) {
   const Scene scene = layered_scene(Material::Alpha::blend, {1, 0, 0, 0.25f});
   const Surfaces surfaces(scene);
   ShadeOptions options = flat_over_nothing;
-  options.see_through = SeeThrough::never;
+  options.layers.see_through = SeeThrough::never;
   const Image image = shade(surfaces, zbuffer(surfaces, front_view()), options);
   EXPECT_EQ(color_at(image, 32, 32), glm::vec4(0.25f, 0, 0, 0.25f));
   EXPECT_EQ(color_at(image, 10, 32), glm::vec4(0, 0, 1, 1));
@@ -183,7 +183,7 @@ TEST(SeeThrough, LayersLaidOverEachOtherAreThePicture) {
   const std::vector<Visible> layers = visible_layers(surfaces, view, 2);
   ShadeOptions options = flat_over_nothing;
   const Image picture = shade(surfaces, layers[0], options);
-  options.see_through = SeeThrough::never;
+  options.layers.see_through = SeeThrough::never;
   const Image front = shade(surfaces, layers[0], options), behind = shade(surfaces, layers[1], options);
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x) {
@@ -222,8 +222,8 @@ TEST(SeeThrough, AlwaysGivesOpaqueScenesTheSubSamplesOfTheABuffer) {
   scene.instances[0].world_from_mesh[3] = {0.3 / 16, 0, 0, 1};
   const Surfaces surfaces(scene);
   ShadeOptions options = flat_over_nothing;
-  options.see_through = SeeThrough::always;
-  options.grid = 8;
+  options.layers.see_through = SeeThrough::always;
+  options.layers.grid = 8;
   const Image image = shade(surfaces, zbuffer(surfaces, front_view()), options);
   EXPECT_FLOAT_EQ(color_at(image, 16, 32).a, 6.0f / 8);
   EXPECT_EQ(color_at(image, 17, 32), glm::vec4(1, 0, 0, 1));
@@ -250,9 +250,9 @@ Difference difference_of(const Image& a, const Image& b) {
 struct Pictures {
   Image everywhere, where_needed;
 
-  Pictures(const Surfaces& surfaces, const ShadeInput& input, ShadeOptions options = {}) {
+  Pictures(const Surfaces& surfaces, const auto& input, ShadeOptions options = {}) {
     where_needed = shade(surfaces, input, options);
-    options.see_through = SeeThrough::always;
+    options.layers.see_through = SeeThrough::always;
     everywhere = shade(surfaces, input, options);
   }
   [[nodiscard]] Difference difference() const { return difference_of(everywhere, where_needed); }

@@ -269,7 +269,7 @@ glm::vec4 shown(const Material& material, std::vector<Texture> textures = {}) {
   Scene scene = scene_of(square(), material);
   scene.textures = std::move(textures);
   const Surfaces surfaces(scene);
-  return color_at(shade(surfaces, zbuffer(surfaces, front_view()), {.shadows = Shadows::off}), 30, 35);
+  return color_at(shade(surfaces, zbuffer(surfaces, front_view()), {.light = {.shadows = Shadows::off}}), 30, 35);
 }
 
 TEST(MaterialLayers, TexturesMultiplyTheirFactors) {
@@ -329,7 +329,7 @@ TEST(MaterialLayers, ColoursOfVerticesAreZeroToOne) {
     Scene scene = scene_of(square(), metal);
     scene.meshes[0].colors.values.assign(scene.meshes[0].positions.size(), color);
     const Surfaces surfaces(scene);
-    return color_at(shade(surfaces, zbuffer(surfaces, front_view()), {.shadows = Shadows::off}), 30, 35);
+    return color_at(shade(surfaces, zbuffer(surfaces, front_view()), {.light = {.shadows = Shadows::off}}), 30, 35);
   };
   EXPECT_EQ(shown_with({3, 0.5f, -2, 1}), shown_with({1, 0.5f, 0, 1}));
   EXPECT_EQ(shown_with({std::numeric_limits<float>::quiet_NaN(), 0.5f, 1e38f, 1}), shown_with({0, 0.5f, 1, 1}));

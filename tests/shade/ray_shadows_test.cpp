@@ -22,8 +22,12 @@ Image picture(const Scene& scene, const View& view, const ShadeOptions& options,
   return shade(surfaces, zbuffer(surfaces, view, execution), options, execution);
 }
 
-Image by_rays(const Scene& scene, const View& view) { return picture(scene, view, {.shadows = Shadows::rays}); }
-Image unshadowed(const Scene& scene, const View& view) { return picture(scene, view, {.shadows = Shadows::off}); }
+Image by_rays(const Scene& scene, const View& view) {
+  return picture(scene, view, {.light = {.shadows = Shadows::rays}});
+}
+Image unshadowed(const Scene& scene, const View& view) {
+  return picture(scene, view, {.light = {.shadows = Shadows::off}});
+}
 
 std::size_t differing(const Image& a, const Image& b) {
   std::size_t count = 0;
@@ -117,12 +121,13 @@ TEST(RayShadows, TheSameForAnyThreadsInstructionSetAndIndex) {
   four.samples = 4;
   const Visible visible = zbuffer(surfaces, frame(surfaces, 240, 160, four));
   const RayIndex index(surfaces);
-  const Image first = shade(surfaces, visible, {.shadows = Shadows::rays}, {.threads = 1});
-  const Image with_index = shade(surfaces, {visible, nullptr, &index}, {.shadows = Shadows::rays}, {.threads = 3});
-  const Image scalar = shade(surfaces, visible, {.shadows = Shadows::rays}, {.isa = Isa::scalar});
+  const Image first = shade(surfaces, visible, {.light = {.shadows = Shadows::rays}}, {.threads = 1});
+  const Image with_index =
+      shade(surfaces, {.visible = &visible, .index = &index}, {.light = {.shadows = Shadows::rays}}, {.threads = 3});
+  const Image scalar = shade(surfaces, visible, {.light = {.shadows = Shadows::rays}}, {.isa = Isa::scalar});
   EXPECT_EQ(differing(first, with_index), 0u);
   EXPECT_EQ(differing(first, scalar), 0u);
-  EXPECT_GT(differing(first, shade(surfaces, visible, {.shadows = Shadows::off})), 100u);
+  EXPECT_GT(differing(first, shade(surfaces, visible, {.light = {.shadows = Shadows::off}})), 100u);
 }
 
 TEST(RayShadows, GlassThrowsNoneAndIsNotKnownByIds) {

@@ -26,7 +26,7 @@ Scene wall(const glm::vec4& color) {
 struct Scanned {
   Scanned(Scene what, const RayCamera& camera) : scene(std::move(what)), scan(frontmost::scan(index, camera)) {}
   [[nodiscard]] Image picture(const ShadeOptions& options, const Execution& execution = {}) const {
-    return shade(surfaces, ScanInput(scan, &index), options, execution);
+    return shade(surfaces, ScanInput{&scan, &index}, options, execution);
   }
 
   Scene scene;
@@ -190,18 +190,18 @@ TEST(ShadeScan, AgreesWithAPinholesPictureOfTheSamePose) {
   const RayCamera cameras[] = {{Fisheye{400, 400, 0.9 * half_turn}, pose}, {Panorama{800, 400}, pose}};
   for (const RayCamera& camera : cameras)
     for (const ShadeOptions& options :
-         {ShadeOptions{.shadows = Shadows::off}, ShadeOptions{.shadows = Shadows::rays}, ShadeOptions{},
-          ShadeOptions{.shading = Shading::flat}, ShadeOptions{.shading = Shading::normals}}) {
+         {ShadeOptions{.light = {.shadows = Shadows::off}}, ShadeOptions{.light = {.shadows = Shadows::rays}},
+          ShadeOptions{}, ShadeOptions{.shading = Shading::flat}, ShadeOptions{.shading = Shading::normals}}) {
       SCOPED_TRACE(testing::Message() << "model " << camera.model.index() << " shading " << int(options.shading)
-                                      << " shadows " << int(options.shadows));
+                                      << " shadows " << int(options.light.shadows));
       const Scanned of(furnished_room(), camera);
       const Visible visible = zbuffer(of.surfaces, view);
       const PictureDifference found =
-          difference(of, of.picture(options), visible, shade(of.surfaces, ShadeInput(visible), options));
+          difference(of, of.picture(options), visible, shade(of.surfaces, visible, options));
       EXPECT_GT(found.count, 30'000);
       EXPECT_LT(found.mean, 0.6);
       // Edges of shadows run through triangles; elsewhere there are none.
-      if (options.shading != Shading::lit || options.shadows == Shadows::off) {
+      if (options.shading != Shading::lit || options.light.shadows == Shadows::off) {
         EXPECT_LT(found.most, 5);
       }
     }
@@ -312,7 +312,7 @@ TEST(ShadeScan, WhatIsSeenThroughLiesOverWhatIsBehind) {
   expect_color(of.picture(faint), 7, 7,
                glm::vec4(0, 0.125f, 0.875f * 0.5f, 0) + 0.4375f * glm::vec4(1) + glm::vec4(0, 0, 0, 0.5625f));
   ShadeOptions front = flat;
-  front.see_through = SeeThrough::never;
+  front.layers.see_through = SeeThrough::never;
   expect_color(of.picture(front), 7, 7, {0.75f, 1, 0.75f, 1});
   // The same without an index of the caller's.
   const Image own = shade(of.surfaces, of.scan, flat);
@@ -327,8 +327,8 @@ TEST(ShadeScan, ARoofThrowsItsShadowByMapAndByRays) {
   scene.instances[1].world_from_mesh[3] = {-1, 1, 1, 1};
   const RayCamera camera{Panorama{512, 256}, look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0})};
   const Scanned of(scene, camera);
-  const Image lit = of.picture({.shadows = Shadows::off}), map = of.picture({}),
-              rays = of.picture({.shadows = Shadows::rays});
+  const Image lit = of.picture({.light = {.shadows = Shadows::off}}), map = of.picture({}),
+              rays = of.picture({.light = {.shadows = Shadows::rays}});
   int dark = 0, other = 0;
   for (int y = 0; y < 256; ++y)
     for (int x = 0; x < 512; ++x) {
@@ -349,8 +349,8 @@ TEST(ShadeScan, AShaderGivesTheSamePicturesOneAfterAnother) {
     const glm::dmat4 pose = look_at({0, 0, 0}, {std::sin(turn), 0, -std::cos(turn)}, {0, 1, 0});
     const RangeScan around = scan(index, {Panorama{96, 48}, pose, 4});
     for (const Shadows shadows : {Shadows::map, Shadows::rays, Shadows::off}) {
-      const Image& kept = shader.shade(around, {.shadows = shadows});
-      EXPECT_EQ(content_hash(kept), content_hash(shade(surfaces, around, {.shadows = shadows})));
+      const Image& kept = shader.shade({.scan = &around}, {.light = {.shadows = shadows}});
+      EXPECT_EQ(content_hash(kept), content_hash(shade(surfaces, around, {.light = {.shadows = shadows}})));
     }
   }
 }

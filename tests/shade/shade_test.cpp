@@ -276,7 +276,7 @@ Scene shadow_scene() {
 
 TEST(Shade, AShadowFallsToTheLowerRightAndNowhereElse) {
   const Image with_shadow = picture(shadow_scene(), front_view(128));
-  const Image without = picture(shadow_scene(), front_view(128), {.shadows = Shadows::off});
+  const Image without = picture(shadow_scene(), front_view(128), {.light = {.shadows = Shadows::off}});
   const auto difference = [&](int x, int y) { return color_at(without, x, y).g - color_at(with_shadow, x, y).g; };
   // The light stands at (-0.50, 0.78, 0.62): at height 0.6 the shadow moves by (0.48, -0.75).
   EXPECT_GT(difference(64, 72), 0.1f);
@@ -289,7 +289,7 @@ TEST(Shade, SmoothAndSlantedSurfacesDoNotShadowThemselves) {
   for (const double angle : {0.2, 0.7, 1.2, 1.4}) {
     tilted.instances[0].world_from_mesh = glm::dmat4({std::cos(angle), 0, std::sin(angle), 0}, {0, 1, 0, 0},
                                                      {-std::sin(angle), 0, std::cos(angle), 0}, {0, 0, 0, 1});
-    const Image lit = picture(tilted, front_view(), {.shadows = Shadows::off}),
+    const Image lit = picture(tilted, front_view(), {.light = {.shadows = Shadows::off}}),
                 shadowed = picture(tilted, front_view());
     for (int y = 0; y < 64; ++y)
       for (int x = 0; x < 64; ++x)

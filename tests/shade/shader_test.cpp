@@ -71,12 +71,13 @@ TEST(Shader, PicturesOneAfterAnotherAreThoseOfTheFunctions) {
       const Visible visible = zbuffer(surfaces, view_of_flight(surfaces, i, i % 7 == 6 ? 4 : 1));
       ShadeOptions options;
       options.shading = i % 3 == 0 ? Shading::lit : Shading(i % 6);
-      options.shadows = Shadows(i / 3 % 3);
+      options.light.shadows = Shadows(i / 3 % 3);
       const Execution execution{.threads = 1 + i % 3};
       if (i % 2 == 0)
-        expect_same(shade_bitmap(surfaces, visible, options), shader.shade_bitmap(visible, options, execution));
+        expect_same(shade_bitmap(surfaces, visible, options),
+                    shader.shade_bitmap({.visible = &visible}, options, execution));
       else
-        expect_same(shade(surfaces, visible, options), shader.shade(visible, options, execution));
+        expect_same(shade(surfaces, visible, options), shader.shade({.visible = &visible}, options, execution));
       if (i % 8 == 5) expect_same(normal_image(surfaces, visible), shader.normal_image(visible, execution));
     }
   }
@@ -88,12 +89,12 @@ TEST(Shader, FiguresAndDeepImagesAreThoseOfTheFunctions) {
   Shader shader(surfaces);
   for (int i = 0; i < 3; ++i) {
     const Visible visible = zbuffer(surfaces, view_of_flight(surfaces, i));
-    const DeepImage expected = shade_deep(surfaces, visible), found = shader.shade_deep(visible);
+    const DeepImage expected = shade_deep(surfaces, visible), found = shader.shade_deep({.visible = &visible});
     ASSERT_EQ(expected.first.size(), found.first.size());
     EXPECT_EQ(std::memcmp(expected.channels[0].floats().data(), found.channels[0].floats().data(),
                           expected.channels[0].floats().size() * sizeof(float)),
               0);
-    const Figure figure = draw_figure(surfaces, visible), again = draw_figure(shader, visible);
+    const Figure figure = draw_figure(surfaces, visible), again = draw_figure(shader, {.visible = &visible});
     ASSERT_EQ(figure.shapes.size(), again.shapes.size());
     for (std::size_t s = 0; s < figure.shapes.size(); ++s)
       ASSERT_EQ(figure.shapes[s].color, again.shapes[s].color) << s;
@@ -107,15 +108,15 @@ TEST(Shader, AFlightAllocatesNothingOnceItHasBeenFlown) {
   ZBuffer buffer;
   for (const Shading shading : {Shading::lit, Shading::flat, Shading::normals, Shading::ids}) {
     ShadeOptions options{.shading = shading};
-    if (shading == Shading::lit) options.ambient_occlusion.emplace();
-    if (shading == Shading::flat) options.rate = ShadingRate::each_2x2;
+    if (shading == Shading::lit) options.light.ambient_occlusion.emplace();
+    if (shading == Shading::flat) options.pixels.rate = ShadingRate::each_2x2;
     const void* planes = nullptr;
     const auto fly = [&] {
       std::size_t count = 0;
       for (int i = 0; i < 8; ++i) {
         const Visible& visible = buffer.draw(surfaces, view_of_flight(surfaces, i % 4), {.threads = 1});
         const std::size_t before = allocation_count();
-        const Bitmap& bitmap = shader.shade_bitmap(visible, options, {.threads = 1});
+        const Bitmap& bitmap = shader.shade_bitmap({.visible = &visible}, options, {.threads = 1});
         count += allocation_count() - before + (planes && bitmap.rgba.data() != planes);
         planes = bitmap.rgba.data();
       }
@@ -136,7 +137,7 @@ TEST(Shader, DrawsTheLightsMapAgainOnlyWhenTheLightSeesSomethingElse) {
   const Watch watch{[&](std::string_view stage, double fraction) { drawn += stage == "visible" && fraction == 1; }, {}};
   const auto maps_for = [&](const Visible& visible) {
     drawn = 0;
-    shader.shade(visible, {}, {.threads = 1, .watch = &watch});
+    shader.shade({.visible = &visible}, {}, {.threads = 1, .watch = &watch});
     return drawn;
   };
   EXPECT_EQ(maps_for(first), 1u);
@@ -157,7 +158,7 @@ TEST(Shader, AMaterialThatIsNeverSeenCostsNoMemory) {
   Shader shader(surfaces);
   for (int i = 0; i < 4; ++i) {
     const std::size_t before = allocation_count();
-    shader.shade_bitmap(visible, {}, {.threads = 1});
+    shader.shade_bitmap({.visible = &visible}, {}, {.threads = 1});
     if (i > 1) {
       EXPECT_EQ(allocation_count(), before);
     }
@@ -169,7 +170,7 @@ TEST(Shader, RefusesWhatItCannotReadBeforeItAsksForMemory) {
   const Surfaces surfaces(scene);
   const Visible visible = zbuffer(surfaces, view_of_flight(surfaces, 0));
   Shader shader(surfaces);
-  const Bitmap good = shader.shade_bitmap(visible);
+  const Bitmap good = shader.shade_bitmap({.visible = &visible});
   const auto is_refused = [](const auto& call) {
     try {
       call();
@@ -181,22 +182,24 @@ TEST(Shader, RefusesWhatItCannotReadBeforeItAsksForMemory) {
   for (const int width : {-5, 2'000'000'000}) {
     Visible wrong = visible;
     wrong.view.width = width;
-    EXPECT_TRUE(is_refused([&] { shader.shade(wrong); })) << width;
-    EXPECT_TRUE(is_refused([&] { shader.shade_bitmap(wrong); })) << width;
+    EXPECT_TRUE(is_refused([&] { shader.shade({.visible = &wrong}); })) << width;
+    EXPECT_TRUE(is_refused([&] { shader.shade_bitmap({.visible = &wrong}); })) << width;
     EXPECT_TRUE(is_refused([&] { (void)draw_figure(surfaces, wrong); })) << width;
   }
   Visible moved = visible;
   const Visible planes = std::move(moved);
   EXPECT_TRUE(is_refused([&] { (void)draw_figure(surfaces, moved); }));
-  EXPECT_TRUE(is_refused([&] { shader.shade({visible, &moved}); })) << "what the light sees";
-  EXPECT_TRUE(is_refused([&] { shader.shade({visible, &visible}); })) << "not a light's view";
-  EXPECT_TRUE(is_refused([&] { (void)draw_figure(surfaces, {visible, &moved}); }));
+  EXPECT_TRUE(is_refused([&] { shader.shade({.visible = &visible, .seen_by_light = &moved}); }))
+      << "what the light sees";
+  EXPECT_TRUE(is_refused([&] { shader.shade({.visible = &visible, .seen_by_light = &visible}); }))
+      << "not a light's view";
+  EXPECT_TRUE(is_refused([&] { (void)draw_figure(surfaces, {.visible = &visible, .seen_by_light = &moved}); }));
   expect_same(good, shader.take_bitmap());
   EXPECT_TRUE(shader.take_bitmap().rgba.empty());
   EXPECT_EQ(shader.take_bitmap().width, 0);
   // What it takes is what key_light_view() gives.
   const Visible light = zbuffer(surfaces, *key_light_view(visible, surfaces.bounds()));
-  expect_same(good, shader.shade_bitmap({visible, &light}));
+  expect_same(good, shader.shade_bitmap({.visible = &visible, .seen_by_light = &light}));
 }
 
 TEST(Shader, ErrorsLeaveItUsable) {
@@ -209,18 +212,18 @@ TEST(Shader, ErrorsLeaveItUsable) {
     int asked = 0;
     const Watch watch{{}, [&] { return ++asked >= last; }};
     try {
-      shader.shade_bitmap(visible, {}, {.threads = 1, .watch = &watch});
+      shader.shade_bitmap({.visible = &visible}, {}, {.threads = 1, .watch = &watch});
       EXPECT_GT(last, 10);
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::cancelled);
     }
-    expect_same(expected, shader.shade_bitmap(visible));
+    expect_same(expected, shader.shade_bitmap({.visible = &visible}));
   }
   Shader shader(surfaces);
-  EXPECT_THROW(shader.shade(visible, {.opacity = 2}), Error);
+  EXPECT_THROW(shader.shade({.visible = &visible}, {.opacity = 2}), Error);
   Visible other = visible;
   other.primitives[0] = surfaces.primitive_count();
-  EXPECT_THROW(shader.shade(other), Error);
+  EXPECT_THROW(shader.shade({.visible = &other}), Error);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ using namespace test;
 std::vector<std::uint8_t> bytes_of(const Bitmap& bitmap) { return {bitmap.rgba.begin(), bitmap.rgba.end()}; }
 
 ShadeOptions with_rate(ShadeOptions options, ShadingRate rate) {
-  options.rate = rate;
+  options.pixels.rate = rate;
   return options;
 }
 
@@ -73,7 +73,7 @@ TEST(ShadingRate, PixelsOfABlockHaveTheColourOfTheFirstThatShowsTheirPrimitive) 
         const Scene scene = builtin(name);
         const Surfaces surfaces(scene);
         const Visible visible = zbuffer(surfaces, odd_view(surfaces, samples));
-        const ShadeOptions options{.shading = shading, .see_through = SeeThrough::never};
+        const ShadeOptions options{.shading = shading, .layers = {.see_through = SeeThrough::never}};
         const Image fine = shade(surfaces, visible, options);
         const Image coarse = shade(surfaces, visible, with_rate(options, ShadingRate::each_2x2));
         const Compared compared = compare_with_leaders(visible, coarse, fine);
@@ -102,7 +102,7 @@ TEST(ShadingRate, LayersOfWholePixelsAreSharedWithWholePixelsAlone) {
   scene.instances[0].world_from_mesh = glm::rotate(glm::dmat4(1), 0.3, glm::dvec3(0, 0, 1));
   const Surfaces surfaces(scene);
   const Visible visible = zbuffer(surfaces, front_view(65, 4));
-  const ShadeOptions options{.shading = Shading::flat, .see_through = SeeThrough::always};
+  const ShadeOptions options{.shading = Shading::flat, .layers = {.see_through = SeeThrough::always}};
   const Image fine = shade(surfaces, visible, options);
   const Image coarse = shade(surfaces, visible, with_rate(options, ShadingRate::each_2x2));
   float farthest = 0;
@@ -121,7 +121,7 @@ TEST(ShadingRate, RaysOfShadowsAreCastFromTheFirstPixel) {
   const Scene scene = builtin("cubes");
   const Surfaces surfaces(scene);
   const Visible visible = zbuffer(surfaces, odd_view(surfaces, 2));
-  const ShadeOptions options{.shadows = Shadows::rays};
+  const ShadeOptions options{.light = {.shadows = Shadows::rays}};
   const Image fine = shade(surfaces, visible, options);
   const Image coarse = shade(surfaces, visible, with_rate(options, ShadingRate::each_2x2));
   EXPECT_LT(compare_with_leaders(visible, coarse, fine).farthest, plane_rounding);
@@ -188,7 +188,7 @@ glm::vec4 laid_over(const DeepImage& deep, int x, int y, std::size_t& shared) {
 
 /// Whether two images of odd sizes are the same but for what pixels share.
 void expect_shared_layers(const Surfaces& surfaces, const View& view, std::size_t least_shared) {
-  const ShadeOptions options{.background = std::nullopt, .shadows = Shadows::off};
+  const ShadeOptions options{.background = std::nullopt, .light = {.shadows = Shadows::off}};
   const Visible visible = zbuffer(surfaces, view);
   const DeepImage deep = shade_deep(surfaces, visible, options);
   const Image coarse = shade(surfaces, visible, with_rate(options, ShadingRate::each_2x2));
@@ -228,7 +228,8 @@ TEST(ShadingRate, TintedGlassIsShared) {
     View view = front_view(65, 4);
     const Visible visible = zbuffer(surfaces, view);
     for (const Shading shading : {Shading::lit, Shading::flat}) {
-      const ShadeOptions options{.shading = shading, .shadows = Shadows::off, .see_through = SeeThrough::always};
+      const ShadeOptions options{
+          .shading = shading, .light = {.shadows = Shadows::off}, .layers = {.see_through = SeeThrough::always}};
       const Image fine = shade(surfaces, visible, options);
       const Image coarse = shade(surfaces, visible, with_rate(options, ShadingRate::each_2x2));
       // Colours change slowly from pixel to pixel; those of other triangles, and of edges, are farther away.
@@ -250,7 +251,7 @@ TEST(ShadingRate, PixelsOfSeveralSamplesAreThoseOfPlanes) {
     const Surfaces surfaces(scene);
     for (const int samples : {2, 4, 16}) {
       const View view = odd_view(surfaces, samples);
-      const ShadeOptions options{.rate = ShadingRate::each_2x2};
+      const ShadeOptions options{.pixels = {.rate = ShadingRate::each_2x2}};
       EXPECT_EQ(bytes_of(shade_bitmap(surfaces, zbuffer_pixels(surfaces, view), options)),
                 bytes_of(shade_bitmap(surfaces, zbuffer(surfaces, view), options)))
           << name << ", " << samples << " samples";
@@ -266,7 +267,7 @@ TEST(ShadingRate, TheSmallestPicturesAreWhole) {
       View view = front_view(64, 2);
       view.width = width;
       view.height = height;
-      const ShadeOptions options{.shading = Shading::flat, .see_through = see_through};
+      const ShadeOptions options{.shading = Shading::flat, .layers = {.see_through = see_through}};
       const Image fine = shade(surfaces, zbuffer(surfaces, view), options);
       const Image coarse = shade(surfaces, zbuffer(surfaces, view), with_rate(options, ShadingRate::each_2x2));
       for (int y = 0; y < height; ++y)
@@ -279,7 +280,7 @@ TEST(ShadingRate, TheBytesDependNeitherOnThreadsNorOnTheInstructionSet) {
     const Scene scene = builtin(name);
     const Surfaces surfaces(scene);
     const Visible visible = zbuffer(surfaces, odd_view(surfaces, 1));
-    const ShadeOptions options{.rate = ShadingRate::each_2x2};
+    const ShadeOptions options{.pixels = {.rate = ShadingRate::each_2x2}};
     const std::vector<std::uint8_t> one = bytes_of(shade_bitmap(surfaces, visible, options, {.threads = 1}));
     for (const Isa isa : available_isas())
       EXPECT_EQ(bytes_of(shade_bitmap(surfaces, visible, options, {.threads = 3, .isa = isa})), one) << name;

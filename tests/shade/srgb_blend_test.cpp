@@ -45,7 +45,7 @@ TEST(SrgbBlend, HalfARedIsWhatViewersMakeOfIt) {
     const Shown linear = shown({.shading = Shading::flat}, samples);
     expect_near(linear.over_background, {255, 188, 188, 255});
     expect_near(linear.over_blue, {188, 0, 188, 255});
-    const Shown srgb = shown({.shading = Shading::flat, .blend = Blend::srgb}, samples);
+    const Shown srgb = shown({.shading = Shading::flat, .pixels = {.blend = Blend::srgb}}, samples);
     expect_near(srgb.over_background, {255, 128, 128, 255});
     expect_near(srgb.over_blue, {128, 0, 128, 255});
   }
@@ -54,7 +54,7 @@ TEST(SrgbBlend, HalfARedIsWhatViewersMakeOfIt) {
 // Over nothing there is nothing to blend with.
 TEST(SrgbBlend, ATransparentBackgroundKeepsColourAndAlpha) {
   for (const Blend blend : {Blend::linear, Blend::srgb}) {
-    const Shown found = shown({.shading = Shading::flat, .background = std::nullopt, .blend = blend});
+    const Shown found = shown({.shading = Shading::flat, .background = std::nullopt, .pixels = {.blend = blend}});
     expect_near(found.over_background, {255, 0, 0, 128});
   }
 }
@@ -64,7 +64,7 @@ TEST(SrgbBlend, PicturesAreWhatFiguresAre) {
   const Scene scene = red_before_blue();
   const Surfaces surfaces(scene);
   const Figure figure = draw_figure(surfaces, zbuffer(surfaces, front_view()), {.shade = {.shading = Shading::flat}});
-  const Shown srgb = shown({.shading = Shading::flat, .blend = Blend::srgb});
+  const Shown srgb = shown({.shading = Shading::flat, .pixels = {.blend = Blend::srgb}});
   int reds = 0;
   for (const FigureShape& shape : figure.shapes) {
     if (shape.color.r < 200) continue;
@@ -81,7 +81,8 @@ TEST(SrgbBlend, OpaqueColoursStayWhatTheyAre) {
   const Scene scene = builtin("teapot");
   const Surfaces surfaces(scene);
   const Visible visible = zbuffer(surfaces, frame(surfaces, 80, 60));
-  const Bitmap one = shade_bitmap(surfaces, visible), other = shade_bitmap(surfaces, visible, {.blend = Blend::srgb});
+  const Bitmap one = shade_bitmap(surfaces, visible),
+               other = shade_bitmap(surfaces, visible, {.pixels = {.blend = Blend::srgb}});
   for (std::size_t i = 0; i < one.rgba.size(); ++i) EXPECT_NEAR(one.rgba[i], other.rgba[i], 1);
 }
 
@@ -93,7 +94,7 @@ TEST(SrgbBlend, RimsAreAsWellBlended) {
   view.projection = make_orthographic(-2 + 2.0 / 64, 2 + 2.0 / 64, -2, 2, {1, 20});  // half a pixel to the left
   const Visible visible = zbuffer(surfaces, view);
   const auto rim = [&](Blend blend) {
-    return pixel_of(shade_bitmap(surfaces, visible, {.shading = Shading::flat, .blend = blend}), 15, 32).r;
+    return pixel_of(shade_bitmap(surfaces, visible, {.shading = Shading::flat, .pixels = {.blend = blend}}), 15, 32).r;
   };
   EXPECT_NEAR(rim(Blend::linear), 188, 1);
   EXPECT_NEAR(rim(Blend::srgb), 128, 1);

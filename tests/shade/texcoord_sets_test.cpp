@@ -81,8 +81,8 @@ std::vector<float> everything(const Scene& scene) {
       add(normal_image(surfaces, visible));
       for (const SeeThrough see_through : {SeeThrough::never, SeeThrough::always})
         for (const Shading shading : {Shading::lit, Shading::flat, Shading::normals})
-          add(shade(surfaces, visible, {.shading = shading, .see_through = see_through}));
-      add(shade(surfaces, visible, {.shadows = Shadows::rays}));
+          add(shade(surfaces, visible, {.shading = shading, .layers = {.see_through = see_through}}));
+      add(shade(surfaces, visible, {.light = {.shadows = Shadows::rays}}));
     }
   }
   view.samples = 1;

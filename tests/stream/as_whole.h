@@ -93,7 +93,8 @@ inline void expect_as_whole(Stream& stream, const std::vector<std::string>& path
   expect_same(excerpt.in_stream(excerpt.visible[0]), whole);
   expect_same(excerpt.in_stream(excerpt.visible[1]), whole_map);
 
-  const ShadeInput input(excerpt.visible[0], excerpt.seen_by_light ? &*excerpt.seen_by_light : nullptr);
+  const ShadeInput input{.visible = &excerpt.visible[0],
+                         .seen_by_light = excerpt.seen_by_light ? &*excerpt.seen_by_light : nullptr};
   EXPECT_EQ(content_hash(shade(excerpt.surfaces(), input)), content_hash(shade(surfaces, whole)));
   EXPECT_EQ(content_hash(normal_image(excerpt.surfaces(), excerpt.visible[1])),
             content_hash(normal_image(surfaces, whole_map)));

@@ -33,8 +33,8 @@ inline Image flat_picture(const Surfaces& surfaces, const View& view, const Abuf
                           const Execution& execution = {}) {
   ShadeOptions flat{.shading = Shading::flat, .background = std::nullopt};
   flat.opacity = options.opacity;
-  flat.see_through = SeeThrough::always;
-  flat.grid = options.grid;
+  flat.layers.see_through = SeeThrough::always;
+  flat.layers.grid = options.grid;
   return shade(surfaces, zbuffer(surfaces, view, execution), flat, execution);
 }
 

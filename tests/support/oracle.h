@@ -103,7 +103,8 @@ void for_each_triangle(const ScreenTransform& transform, Culling culling, const 
 /// The holes of triangles, as a view sees them.
 class OracleHoles {
  public:
-  OracleHoles(const Surfaces& surfaces, const View& view) : cutouts_(surfaces.placed().cutouts.get()), rays_(view) {}
+  OracleHoles(const Surfaces& surfaces, const View& view)
+      : cutouts_(placed_scene(surfaces).cutouts.get()), rays_(view) {}
   [[nodiscard]] std::optional<ScreenCutout> of(PrimitiveId id) const {
     if (!cutouts_ || !cutouts_->has(id)) return std::nullopt;
     return ScreenCutout((*cutouts_)[id], rays_);

@@ -71,7 +71,7 @@ inline Visible draw_clusters(const Surfaces& surfaces, const View& view, const E
 inline Visible draw_both_ways(const Surfaces& surfaces, const View& view, const Execution& execution = {}) {
   Visible visible = draw_clusters(surfaces, view, execution);
   const IeeeScope ieee;
-  expect_same(visible, zbuffer_detail::draw_directly(surfaces.placed(), view, execution));
+  expect_same(visible, zbuffer_detail::draw_directly(placed_scene(surfaces), view, execution));
   return visible;
 }
 

@@ -62,13 +62,13 @@ TEST(Cones, HoldTheNormalsOfAllTriangles) {
         // Soups have a cone only where a cluster is a few triangles.
         const Scene scene = scene_of(random_mesh(kind, 1 + int(seed) * 40, seed));
         const Surfaces surfaces(scene);
-        count += check_cones(surfaces.clusters(), make_cones(surfaces.clusters(), {.isa = isa}));
+        count += check_cones(cluster_set(surfaces), make_cones(cluster_set(surfaces), {.isa = isa}));
       }
     for (const float roughness : {0.0f, 0.001f, 0.02f}) {
       const Scene scene = scene_of(bumpy_ball(30, roughness, 3));
       const Surfaces surfaces(scene);
-      const std::size_t with = check_cones(surfaces.clusters(), make_cones(surfaces.clusters(), {.isa = isa}));
-      EXPECT_GT(with, surfaces.clusters().clusters.size() / 2);
+      const std::size_t with = check_cones(cluster_set(surfaces), make_cones(cluster_set(surfaces), {.isa = isa}));
+      EXPECT_GT(with, cluster_set(surfaces).clusters.size() / 2);
       count += with;
     }
   }
@@ -82,7 +82,7 @@ TEST(Cones, AreTheSameForEverySizeAndMirrored) {
     Scene scene = scene_of(mesh);
     scene.instances[0].world_from_mesh = glm::dmat4(-size, 0, 0, 0, 0, size, 0, 0, 0, 0, size, 0, 0, 0, 0, 1);
     const Surfaces surfaces(scene);
-    const ClusterSet& set = surfaces.clusters();
+    const ClusterSet& set = cluster_set(surfaces);
     const ConeArrays cones = make_cones(set, {});
     EXPECT_GT(check_cones(set, cones), set.clusters.size() * 3 / 4);
     // What is outside stays outside: away from the middle.
@@ -99,7 +99,7 @@ TEST(Cones, OfAPlaneAreClosed) {
   for (int i = 0; i < 9; ++i) add_triangle(mesh, {i, 0, 5}, {i + 1, 0, 5}, {i, 2, 5});
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
-  const ConeArrays cones = make_cones(surfaces.clusters(), {});
+  const ConeArrays cones = make_cones(cluster_set(surfaces), {});
   EXPECT_EQ(glm::vec3(cones.x[0], cones.y[0], cones.z[0]), glm::vec3(0, 0, 1));
   EXPECT_EQ(cones.cosine[0], 1);
   EXPECT_NEAR(cones.altitude[0], 2 / std::sqrt(5.0), 1e-6);
@@ -121,7 +121,7 @@ TEST(Cones, AreNotMadeForSliversAndNothing) {
     const Scene scene = scene_of(mesh);
     const Surfaces surfaces(scene);
     for (const Isa isa : available_isas()) {
-      const ConeArrays cones = make_cones(surfaces.clusters(), {.isa = isa});
+      const ConeArrays cones = make_cones(cluster_set(surfaces), {.isa = isa});
       EXPECT_EQ(cones.altitude[0], 0);
     }
   }
@@ -134,13 +134,13 @@ TEST(Cones, AreMadeBesideDegenerateTriangles) {
   add_triangle(mesh, {1, 0, 0}, {1, 0, 0}, {0, 1, 0});
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
-  EXPECT_GT(make_cones(surfaces.clusters(), {}).altitude[0], 0);
+  EXPECT_GT(make_cones(cluster_set(surfaces), {}).altitude[0], 0);
 }
 
 TEST(Cones, AreMadeOnceAndNotForTheFirstFrame) {
   const Scene scene = scene_of(bumpy_ball(10, 0, 1));
   const Surfaces surfaces(scene);
-  const ClusterSet& set = surfaces.clusters();
+  const ClusterSet& set = cluster_set(surfaces);
   EXPECT_EQ(set.cones.get(set, {}), nullptr);
   const ConeArrays* made = nullptr;
   for (int i = 0; i < 50; ++i) made = set.cones.get(set, {});
@@ -152,7 +152,7 @@ TEST(Cones, AreMadeOnceAndNotForTheFirstFrame) {
 TEST(Cones, MayBeAskedForBySeveralThreads) {
   const Scene scene = scene_of(bumpy_ball(30, 0, 1));
   const Surfaces surfaces(scene);
-  const ClusterSet& set = surfaces.clusters();
+  const ClusterSet& set = cluster_set(surfaces);
   std::array<const ConeArrays*, 4> found{};
   std::vector<std::thread> threads;
   for (const ConeArrays*& one : found)

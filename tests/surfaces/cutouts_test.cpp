@@ -33,7 +33,7 @@ Scene one_triangle(std::vector<std::uint8_t> alphas, int width) {
 
 bool is_hole(const Scene& scene, const glm::dvec3& point) {
   const Surfaces surfaces(scene);
-  return (*surfaces.placed().cutouts)[0].is_hole_at(point);
+  return (*placed_scene(surfaces).cutouts)[0].is_hole_at(point);
 }
 
 TEST(Cutouts, FollowTheTexels) {
@@ -94,7 +94,7 @@ TEST(Cutouts, TurnWithTheTexture) {
 TEST(Cutouts, AreFoundByTheirId) {
   const Scene scene = cutout_scene(random_mesh(Kind::soup, 300, 4), Cut::half, 0.5f, 4);
   const Surfaces surfaces(scene);
-  const ClusterSet& set = surfaces.clusters();
+  const ClusterSet& set = cluster_set(surfaces);
   ASSERT_NE(set.cutouts, nullptr);
   EXPECT_EQ(set.cutouts->count(), 150u);
   for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
@@ -109,7 +109,7 @@ TEST(Cutouts, HaveClustersOfTheirOwn) {
   for (const Cut cut : {Cut::all, Cut::half, Cut::none}) {
     const Scene scene = cutout_scene(random_mesh(Kind::soup, 1000, 5), cut, 0.5f, 5);
     const Surfaces surfaces(scene);
-    const ClusterSet& set = surfaces.clusters();
+    const ClusterSet& set = cluster_set(surfaces);
     std::size_t triangles = 0;
     for (std::size_t c = 0; c < set.clusters.size(); ++c)
       for (std::size_t i = 0; i < set.clusters[c].triangle_count; ++i, ++triangles) {

@@ -130,11 +130,11 @@ TEST(Move, PicturesAreThoseOfSurfacesMadeAnew) {
       Surfaces surfaces(scene);
       Shader shader(surfaces);
       Random random(seed + 80);
-      const ShadeOptions options{.shadows = shadows};
+      const ShadeOptions options{.light = {.shadows = shadows}};
       for (int step = 0; step < 4; ++step) {
         const View view = test::random_view(64, 48, seed + 7 * std::uint64_t(step));
         const Visible visible = zbuffer(surfaces, view);
-        const Image& kept = shader.shade(visible, options);
+        const Image& kept = shader.shade({.visible = &visible}, options);
         const Surfaces anew(scene);
         ASSERT_NO_FATAL_FAILURE(expect_same_image(shade(anew, visible, options), kept)) << step;
         for (int moves = 0; moves < 3; ++moves)
@@ -170,12 +170,12 @@ TEST(Move, WhoLooksSeldomFollowsAllTheSame) {
 TEST(Move, ClustersStayWhereTheyCanAndKeepTheirCones) {
   Scene scene = moving_scene(5);
   Surfaces surfaces(scene);
-  const ClusterSet* const before = &surfaces.clusters();
+  const ClusterSet* const before = &cluster_set(surfaces);
   static_cast<void>(before->cones.get_now(*before, {}));
   Random random(5);
   for (int i = 0; i < 40; ++i)
     surfaces.move(scene, std::uint32_t(random.below(scene.instances.size())), random_placement(random, 1, 0.4f));
-  ASSERT_EQ(surfaces.made_clusters(), before);
+  ASSERT_EQ(made_cluster_set(surfaces), before);
   const ConeArrays& kept = before->cones.get_now(*before, {});
   const ConeArrays anew = make_cones(*before, {});
   for (std::size_t c = 0; c < before->clusters.size(); ++c) {

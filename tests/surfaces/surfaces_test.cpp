@@ -68,7 +68,7 @@ TEST(Surfaces, ClustersHoldEveryTriangleOnce) {
     Scene scene = scene_of(random_mesh(kind, 40'000, 1));
     scene.instances.push_back({"again", 0, glm::dmat4(2.0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 5, 6, 7, 1)});
     const Surfaces surfaces(scene);
-    const auto triangles = triangles_of(surfaces.clusters(), surfaces.primitive_count());
+    const auto triangles = triangles_of(cluster_set(surfaces), surfaces.primitive_count());
     for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) EXPECT_EQ(triangles[id], surfaces.corners(id));
   }
 }
@@ -76,7 +76,7 @@ TEST(Surfaces, ClustersHoldEveryTriangleOnce) {
 TEST(Surfaces, AreTheSameForAnyNumberOfThreads) {
   const Scene scene = scene_of(random_mesh(Kind::soup, 100'000, 2));
   const Surfaces one(scene, {.threads = 1}), four(scene, {.threads = 4});
-  const ClusterSet &a = one.clusters(), &b = four.clusters();
+  const ClusterSet &a = cluster_set(one), &b = cluster_set(four);
   ASSERT_EQ(a.clusters.size(), b.clusters.size());
   ASSERT_EQ(a.x.size(), b.x.size());
   EXPECT_EQ(std::memcmp(a.x.data(), b.x.data(), a.x.size() * 4), 0);
@@ -86,7 +86,7 @@ TEST(Surfaces, AreTheSameForAnyNumberOfThreads) {
 TEST(Surfaces, BoxesHoldTheirClusters) {
   const Scene scene = scene_of(random_mesh(Kind::tiny, 5000, 2));
   const Surfaces surfaces(scene);
-  const ClusterSet& set = surfaces.clusters();
+  const ClusterSet& set = cluster_set(surfaces);
   Box all;
   for (std::size_t i = 0; i < set.clusters.size(); ++i) {
     const Box box = set.boxes.get(i);
@@ -126,11 +126,11 @@ TEST(Surfaces, ClustersAreSmallWhateverTheOrderOfTheFile) {
   const auto expect_small_clusters = [&] {
     const Scene scene = scene_of(mesh);
     const Surfaces surfaces(scene);
-    const std::size_t count = surfaces.clusters().clusters.size();
+    const std::size_t count = cluster_set(surfaces).clusters.size();
     EXPECT_LT(count, 20'000u / 45);
     double sum = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      const float size = surfaces.clusters().boxes.get(i).diagonal();
+      const float size = cluster_set(surfaces).boxes.get(i).diagonal();
       sum += size;
       EXPECT_LT(size, 1.6);  // a row is longer; the curve leaves a flat sheet and comes back elsewhere
     }
@@ -167,7 +167,7 @@ TEST(Surfaces, NonFiniteTrianglesAreDegenerateAndOutOfTheBounds) {
   const Surfaces surfaces(scene);
   EXPECT_EQ(surfaces.primitive_count(), 2u);
   EXPECT_LT(surfaces.bounds().high.x, 10);
-  const ClusterSet& set = surfaces.clusters();
+  const ClusterSet& set = cluster_set(surfaces);
   const auto bad = std::size_t(std::find(set.id.begin(), set.id.end(), 1u) - set.id.begin());
   EXPECT_TRUE(set.i0[bad] == set.i1[bad] && set.i1[bad] == set.i2[bad]);
 
@@ -200,7 +200,7 @@ TEST(Surfaces, CornersKeepTheSignOfZero) {
   add_triangle(mesh, {-0.0f, -0.0f, 1}, {1, -0.0f, 0}, {0, 1, -0.0f});
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
-  const auto drawn = triangles_of(surfaces.clusters(), 1)[0], told = surfaces.corners(0);
+  const auto drawn = triangles_of(cluster_set(surfaces), 1)[0], told = surfaces.corners(0);
   EXPECT_EQ(std::memcmp(&drawn, &told, sizeof told), 0);
 }
 
@@ -247,7 +247,7 @@ TEST(Surfaces, StayWithinTheirMemory) {
   const Scene scene = scene_of(random_mesh(Kind::shared_grid, 200'000, 1));
   const Surfaces surfaces(scene);
   EXPECT_LT(double(surfaces.byte_count()) / surfaces.primitive_count(), 1);
-  (void)surfaces.clusters();
+  (void)cluster_set(surfaces);
   EXPECT_LT(double(surfaces.byte_count()) / surfaces.primitive_count(), 64);
 }
 

@@ -40,10 +40,10 @@ void expect_boxes_give_the_same(std::vector<glm::vec3> points, const FilledFrust
   const Scene scene = cloud(points);
   const Surfaces surfaces(scene);
   Extremes whole(frustum);
-  whole.include(surfaces.placed());
+  whole.include(placed_scene(surfaces));
   EXPECT_EQ(whole.points(), expected);
   Extremes by_clusters(frustum);
-  by_clusters.include(surfaces.clusters());
+  by_clusters.include(cluster_set(surfaces));
   EXPECT_EQ(by_clusters.points(), expected);
   std::shuffle(points.begin(), points.end(), std::mt19937(5));
   EXPECT_EQ(one_by_one(points, frustum), expected);

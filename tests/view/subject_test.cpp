@@ -148,7 +148,7 @@ TEST(Subject, IsFramedAsIfItWereAlone) {
   const Surfaces houses(alone), surfaces(scene);
   const View view = frame(surfaces, 320, 200);
   expect_same_place(view, frame(houses, 320, 200));
-  (void)surfaces.clusters();
+  (void)cluster_set(surfaces);
   expect_same_place(view, frame(surfaces, 320, 200));
   // Planes hold what is left out, but not at the price of the subject.
   EXPECT_GT(view.projection.clip.far, 9e5);

@@ -47,7 +47,7 @@ View view_of_ball(Random& random, double size, const glm::dvec3& place, double p
 }
 
 std::vector<ClusterFate> fates(const Surfaces& surfaces, const View& view, bool with_cones, Isa isa) {
-  const ClusterSet& set = surfaces.clusters();
+  const ClusterSet& set = cluster_set(surfaces);
   CullResult result;
   result.resize(set.clusters.size());
   const ScreenTransform transform(view);
@@ -78,7 +78,7 @@ struct Count {
 
 /// Culls with and without cones: what only the cones cull must hold no triangle that faces the eye.
 Count check(const Surfaces& surfaces, const View& view, Isa isa) {
-  const ClusterSet& set = surfaces.clusters();
+  const ClusterSet& set = cluster_set(surfaces);
   const std::vector<ClusterFate> without = fates(surfaces, view, false, isa), with = fates(surfaces, view, true, isa);
   Count count;
   for (std::size_t i = 0; i < without.size(); ++i) {
@@ -140,7 +140,7 @@ TEST(ConeCulling, LeavesOutMostOfTheFarSideOfABall) {
   for (const Culling culling : {Culling::back, Culling::front}) {
     view.culling = culling;
     const Count count = check(surfaces, view, Isa::best);
-    EXPECT_GT(count.culled, surfaces.clusters().clusters.size() / 5);
+    EXPECT_GT(count.culled, cluster_set(surfaces).clusters.size() / 5);
     EXPECT_GT(count.culled, count.facing_away * 8 / 10);
   }
 }

@@ -25,8 +25,8 @@ std::size_t expect_same_both_ways(const Scene& scene, const View& view, int thre
     SCOPED_TRACE(name(isa));
     const Surfaces again(scene, {.isa = isa});
     const Execution execution{.threads = threads, .isa = isa};
-    expect_same(expected, draw_directly(again.placed(), view, execution));
-    const std::size_t mixed = expect_same_pixels(expected, draw_pixels_directly(again.placed(), view, execution));
+    expect_same(expected, draw_directly(placed_scene(again), view, execution));
+    const std::size_t mixed = expect_same_pixels(expected, draw_pixels_directly(placed_scene(again), view, execution));
     EXPECT_EQ(mixed, expect_same_pixels(expected, pixels_of(expected)));
   }
   return covered(expected);

@@ -38,7 +38,7 @@ TEST(FramePlan, RoundsListTheSameRecordsWithinTheirBudget) {
   const ScreenTransform transform(view);
   FramePlan whole;
   const PlaceTarget target(transform, view, nullptr, Isa::best);
-  whole.make(surfaces.clusters(), target, {});
+  whole.make(cluster_set(surfaces), target, {});
   ASSERT_EQ(whole.records().rounds().size(), 1u);
   const auto expected = lists_of(whole, view, kMostRecordItems);
   std::size_t items = 0;
@@ -46,7 +46,7 @@ TEST(FramePlan, RoundsListTheSameRecordsWithinTheirBudget) {
   ASSERT_GT(items, 1000u);
   FramePlan plan;
   for (const std::size_t budget : {std::size_t(0), std::size_t(1), std::size_t(200), items - 1, items}) {
-    plan.make(surfaces.clusters(), target, {}, budget);
+    plan.make(cluster_set(surfaces), target, {}, budget);
     EXPECT_EQ(plan.records().rounds().size() == 1, budget == items) << budget;
     EXPECT_EQ(lists_of(plan, view, budget), expected) << budget;
   }
@@ -61,7 +61,7 @@ TEST(FramePlan, ListsHoldEveryRecordThatCoversASample) {
     const View view = random_view(random, 400, 300);
     FramePlan plan;
     const ScreenTransform transform(view);
-    plan.make(surfaces.clusters(), PlaceTarget(transform, view, nullptr, Isa::best), {});
+    plan.make(cluster_set(surfaces), PlaceTarget(transform, view, nullptr, Isa::best), {});
     const auto lists = lists_of(plan, view, kMostRecordItems);
     for (std::uint32_t i = 0; i < plan.records().records.size(); ++i)
       for (int y = 0; y < view.height; y += 9)

@@ -139,7 +139,7 @@ TEST(ZBuffer, AFlightAllocatesNothingOnceItHasBeenFlown) {
   const Scene scene = builtin("city");
   const Surfaces surfaces(scene);
   const glm::dvec3 middle = surfaces.bounds().centre(), up = direction(scene.up);
-  (void)surfaces.clusters();  // which the first frame would make
+  (void)cluster_set(surfaces);  // which the first frame would make
   ZBuffer buffer;
   const int frames = under_sanitizer ? 40 : 300;
   const auto fly = [&] {

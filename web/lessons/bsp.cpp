@@ -160,7 +160,7 @@ PlainJson bsp_lesson(const PlainJson& question) {
   const View view = lesson_view(stage, question);
   constexpr std::uint32_t most_triangles = 200;
   if (stage.surfaces.primitive_count() > most_triangles)
-    throw Error(ErrorCode::bad_argument, "scene: more than 200 triangles");
+    throw Error(ErrorCode::bad_argument, "scene", "more than 200 triangles");
   const BspTree tree(stage.surfaces);
   std::vector<int> order;
   tree.walk(view.eye(), tree.nodes().empty() ? -1 : 0, order);

@@ -90,7 +90,7 @@ PlainJson methods_lesson(const PlainJson& question) {
     std::optional<RayIndex> index;
     answer["ready"] = time_of([&] { index.emplace(stage.surfaces); });
     RayCaster caster;
-    answer["milliseconds"] = time_of([&] { caster.cast(*index, view); });
+    answer["milliseconds"] = time_of([&] { caster.draw(*index, view); });
     answer["bytes"] = bytes_of(right) + index->byte_count();
     answer["differing"] = differing_from(right, caster.take());
   } else if (method == "abuffer") {
@@ -110,7 +110,7 @@ PlainJson methods_lesson(const PlainJson& question) {
     answer["milliseconds"] = time_of([&] { drawing = draw_lines(stage.surfaces, view); });
     answer["bytes"] = drawing.edges.size() * sizeof(DrawnEdge) + drawing.parts.size() * sizeof(DrawnPart);
   } else {
-    throw Error(ErrorCode::bad_argument, "method: there is no '" + method + "'");
+    throw Error(ErrorCode::bad_argument, "method", "there is no '" + method + "'");
   }
   return answer;
 }

@@ -117,7 +117,7 @@ PlainJson newell_lesson(const PlainJson& question) {
   const View view = lesson_view(stage, question);
   constexpr std::uint32_t most_triangles = 200;
   if (stage.surfaces.primitive_count() > most_triangles)
-    throw Error(ErrorCode::bad_argument, "scene: more than 200 triangles");
+    throw Error(ErrorCode::bad_argument, "scene", "more than 200 triangles");
   std::vector<NewellTriangle> triangles;
   for (PrimitiveId id = 0; id < stage.surfaces.primitive_count(); ++id)
     triangles.push_back(seen_triangle(stage.surfaces, view, id));

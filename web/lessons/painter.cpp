@@ -24,7 +24,7 @@ PaintMethod method_of(const std::string& name) {
   constexpr const char* names[] = {"depth_sort", "bsp", "farthest", "centroid"};
   for (std::size_t i = 0; i < std::size(names); ++i)
     if (name == names[i]) return PaintMethod(i);
-  throw Error(ErrorCode::bad_argument, "method: there is no '" + name + "'");
+  throw Error(ErrorCode::bad_argument, "method", "there is no '" + name + "'");
 }
 
 }  // namespace

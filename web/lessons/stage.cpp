@@ -209,8 +209,8 @@ std::vector<std::uint8_t> triangle_colors(const Visible& visible) {
 Bitmap lesson_picture(const LessonScene& stage, const Visible& visible) {
   ShadeOptions options;
   options.background.reset();
-  options.shadows = Shadows::off;
-  return shade_bitmap(stage.surfaces, ShadeInput(visible), options);
+  options.light.shadows = Shadows::off;
+  return shade_bitmap(stage.surfaces, visible, options);
 }
 
 glm::dvec3 from_eye(const View& view, const glm::dvec3& world) {

@@ -63,8 +63,9 @@ Json pose_json(const DatasetView& view, std::uint32_t object, double millimetres
   double most = 0;
   for (int column = 0; column < 3; ++column) most = std::max(most, glm::length(rest[column]));
   if (!(scale > 0 && most < 1e-4))
-    throw Error(ErrorCode::unsupported, "object " + std::to_string(object) + " (" + printable_text(instance.name) +
-                                            ") is stretched or mirrored, which BOP's poses cannot be; leave it out");
+    throw Error(ErrorCode::unsupported, "bop",
+                "object " + std::to_string(object) + " (" + printable_text(instance.name) +
+                    ") is stretched or mirrored, which BOP's poses cannot be; leave it out");
   return {{"cam_R_m2c", rows_json(turn)},
           {"cam_t_m2c", vector_json(glm::dvec3(pose[3]) * millimetres)},
           {"obj_id", object_number(scene, instance)}};
@@ -143,7 +144,7 @@ void append_view(std::string& file, std::size_t view, const std::string& text) {
 
 void BopFolder::begin_view(const DatasetView& view, const Execution& execution) {
   if (view.visible.view.projection.orthographic)
-    throw Error(ErrorCode::unsupported, "bop: needs a perspective camera: BOP has no others");
+    throw Error(ErrorCode::unsupported, "bop", "needs a perspective camera: BOP has no others");
   millimetres_ = millimetres_per_unit(view.surfaces.scene());
   const Image depths = depth_image(view.visible);
   if (visible_ == BopVisible::bop19) distances_ = ray_distance_image(view.visible);

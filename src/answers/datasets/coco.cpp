@@ -24,9 +24,9 @@ void append_line(std::string& list, const Json& json) {
 void CocoFile::add_category(std::uint32_t number, const std::string& name) {
   const auto [found, is_new] = categories_.emplace(number, name);
   if (!is_new && found->second != name)
-    throw Error(ErrorCode::bad_argument, "coco: category " + std::to_string(number) + " is " +
-                                             printable_text(found->second) + " in one view and " +
-                                             printable_text(name) + " in another");
+    throw Error(ErrorCode::bad_argument, "coco",
+                "category " + std::to_string(number) + " is " + printable_text(found->second) + " in one view and " +
+                    printable_text(name) + " in another");
   if (is_new) order_.push_back(number);
   last_ = std::max(last_, number);
 }

@@ -70,7 +70,7 @@ void DatasetFolder::write(const std::string& name, const Write& write) {
   try {
     write(staged_.path(name));
   } catch (const Error& error) {
-    throw Error(error.code(), staged_.told(error.what()));
+    throw Error(error.code(), staged_.told(error.file()), error.place(), error.reason());
   }
   names_.push_back(name);
 }
@@ -87,7 +87,7 @@ void DatasetFolder::add(const std::string& name, const std::string& text) {
 std::vector<std::string> DatasetFolder::finish() {
   for (const Within& made : within_)
     if (const fs::path path = fs::path(folder_) / made.name; fs::exists(path) && !fs::is_directory(path))
-      throw Error(ErrorCode::file_unwritable, path.string() + ": not a folder");
+      throw Error(ErrorCode::file_unwritable, path.string(), "", "not a folder");
   for (const Within& made : within_) fs::create_directories(fs::path(folder_) / made.name);
   staged_.commit(names_);
   remove_stale(folder_, within_, names_);

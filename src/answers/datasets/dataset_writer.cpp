@@ -23,7 +23,8 @@ std::vector<bool> named_objects(const Scene& scene, const std::vector<std::strin
       is_known |= is_it;
     }
     if (!is_known)
-      throw Error(ErrorCode::bad_argument, "leave_out: no object and no category has the name " + printable_text(name));
+      throw Error(ErrorCode::bad_argument, "leave_out",
+                  "no object and no category has the name " + printable_text(name));
   }
   return named;
 }
@@ -47,7 +48,7 @@ DatasetWriter::~DatasetWriter() = default;
 
 void DatasetWriter::add(const DatasetView& view, const std::string& picture, const Execution& execution) {
   if (view.visible.view.samples != 1)
-    throw Error(ErrorCode::bad_argument, "samples: views of data sets have one sample a pixel");
+    throw Error(ErrorCode::bad_argument, "samples", "views of data sets have one sample a pixel");
   Parts& parts = *parts_;
   const std::vector<bool> left_out = named_objects(view.surfaces.scene(), parts.options.leave_out);
   if (parts.coco) parts.coco->begin_view(view, picture, left_out);

@@ -60,7 +60,7 @@ struct Question {
   }
   /// Whether a triangle with holes lets the ray of a sample pass: asked as the methods ask.
   [[nodiscard]] bool is_hole(PrimitiveId id, std::size_t sample) const {
-    const Cutouts* const cutouts = surfaces.placed().cutouts.get();
+    const Cutouts* const cutouts = placed_scene(surfaces).cutouts.get();
     if (!cutouts || !cutouts->has(id)) return false;
     const std::size_t pixel = sample % view.pixel_count(), width = std::size_t(view.width);
     const glm::ivec2 at = glm::ivec2(pixel % width, pixel / width) * kSubPixels + offsets[sample / view.pixel_count()];
@@ -287,7 +287,7 @@ void check_views(const Visible& a, const Visible& b) {
   const std::size_t count = v.sample_count();
   if (v.width != w.width || v.height != w.height || v.samples != w.samples || v.world_from_eye != w.world_from_eye ||
       a.primitives.size() != count || b.primitives.size() != count || a.keys.size() != count || b.keys.size() != count)
-    throw Error(ErrorCode::bad_argument, "agreement: the two answers are of different views");
+    throw Error(ErrorCode::bad_argument, "agreement", "the two answers are of different views");
 }
 
 }  // namespace
@@ -316,7 +316,7 @@ Agreement check_agreement(const Surfaces& surfaces, const Visible& a, const Visi
                           SampleRays(a.view),
                           ScreenRays(a.view),
                           sample_offsets(a.view.samples),
-                          FacingRule(a.view.culling, surfaces.placed().sides.get())};
+                          FacingRule(a.view.culling, placed_scene(surfaces).sides.get())};
   look_at_samples(question, a, b, execution, result);
   const std::vector<Contest> contests = contests_of(question, a, b, result);
   Verdicts impossible(contests.size());
@@ -330,7 +330,7 @@ Agreement check_agreement(const Surfaces& surfaces, const Visible& a, const Visi
 void see_through(Agreement& agreement, const Surfaces& surfaces, const Visible& front, const Visible& behind) {
   check_views(front, behind);
   if (agreement.differences.size() != front.primitives.size())
-    throw Error(ErrorCode::bad_argument, "agreement: the layers are of different views");
+    throw Error(ErrorCode::bad_argument, "agreement", "the layers are of different views");
   const Scene& scene = surfaces.scene();
   const auto lets_light_through = [&](PrimitiveId id) {
     if (id >= surfaces.primitive_count()) return false;

@@ -63,7 +63,7 @@ void check_views(const ExactVisible& exact, const Visible& answer) {
   const View &a = exact.view, &b = answer.view;
   if (a.width != b.width || a.height != b.height || a.samples != b.samples || a.world_from_eye != b.world_from_eye ||
       exact.primitives.size() != a.sample_count() || exact.tied.size() != a.sample_count())
-    throw Error(ErrorCode::bad_argument, "depth fights: the two answers are of different views");
+    throw Error(ErrorCode::bad_argument, "depth fights", "the two answers are of different views");
 }
 
 glm::vec3 heat(float share) {
@@ -124,7 +124,7 @@ Image fight_image(const DepthFights& fights, const Image& backdrop) {
   validate(backdrop);
   const std::optional<ColorPlanes> planes = color_planes(backdrop);
   if (backdrop.width != fights.view.width || backdrop.height != fights.view.height || !planes)
-    throw Error(ErrorCode::bad_argument, "fight image: the backdrop must be a picture of the same size");
+    throw Error(ErrorCode::bad_argument, "fight image", "the backdrop must be a picture of the same size");
   const std::size_t count = fights.view.pixel_count();
   Image image{backdrop.width, backdrop.height, {}};
   for (const char* name : {"R", "G", "B", "A"}) image.channels.push_back({name, Buffer<float>(count, 1.0f)});

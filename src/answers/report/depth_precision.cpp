@@ -22,7 +22,7 @@ void check(const DepthSetup& setup, double distance) {
   else
     (void)make_frustum(-1, 1, -1, 1, p.clip);
   if (!(distance >= setup.clip.near && distance <= setup.clip.far) || !std::isfinite(distance))
-    throw Error(ErrorCode::bad_argument, "distance: must lie between near and far");
+    throw Error(ErrorCode::bad_argument, "distance", "must lie between near and far");
 }
 
 /// What z is divided by: 1 for an infinite far plane.
@@ -135,7 +135,7 @@ double share_of_values(const DepthSetup& setup, double distance) {
 
 std::optional<double> near_for_gap(const DepthSetup& setup, double distance, double gap) {
   check(setup, distance);
-  if (!(gap > 0)) throw Error(ErrorCode::bad_argument, "gap: must be greater than 0");
+  if (!(gap > 0)) throw Error(ErrorCode::bad_argument, "gap", "must be greater than 0");
   const double far = setup.clip.far;
   const bool is_float = setup.format == DepthFormat::f32;
   if (setup.orthographic) {

@@ -53,7 +53,7 @@ class TileContest {
     if (rect.is_empty()) return;
     steps_ += kStepsOfTriangle;
     const BoundedPlane plane(field_.surfaces.corners(r.id), field_.rays);
-    const Cutouts* const cutouts = field_.surfaces.placed().cutouts.get();
+    const Cutouts* const cutouts = placed_scene(field_.surfaces).cutouts.get();
     std::optional<ScreenCutout> cutout;
     if (cutouts && cutouts->has(r.id)) cutout.emplace((*cutouts)[r.id], field_.screen_rays);
     for (std::size_t s = 0; s < field_.samples.size(); ++s) {
@@ -68,7 +68,7 @@ class TileContest {
   /// Counts the steps since the last call. \throws Error limit_exceeded, cancelled.
   void tell() {
     work_.add(std::exchange(steps_, 0), [&] {
-      return "exact depths: too many of " + std::to_string(field_.surfaces.primitive_count()) +
+      return "too many of " + std::to_string(field_.surfaces.primitive_count()) +
              " triangles lie over each other in the picture";
     });
   }
@@ -138,8 +138,8 @@ ExactVisible find_exact_visible(const Surfaces& surfaces, const View& view, cons
   ExactVisible answer{view, Buffer<PrimitiveId>(count, no_primitive), Buffer<std::uint8_t>(count, 0)};
   NearestBounds field{surfaces, SampleRays(view),          ScreenRays(view), sample_offsets(view.samples),
                       answer,   Buffer<DepthBounds>(count)};
-  WorkLimit work(execution,
-                 kMostSteps + kMostStepsOfSample * count + kMostStepsOfTriangle * surfaces.primitive_count());
+  WorkLimit work(execution, kMostSteps + kMostStepsOfSample * count + kMostStepsOfTriangle * surfaces.primitive_count(),
+                 "exact depths");
   submit(surfaces, view, {0, surfaces.primitive_count()}, execution, [&](const Tile& tile, const OrderedBatch& batch) {
     TileContest contest(field, tile.rect(), work);
     batch.visit_tile(

@@ -233,7 +233,7 @@ class MeshTopology {
 
 Topology examine(const Mesh& mesh, const Execution& execution) {
   if (mesh.triangles.size() > kMaxTriangles)
-    throw Error(ErrorCode::limit_exceeded, "mesh " + mesh.name + ": more than 536870912 triangles to examine");
+    throw Error(ErrorCode::limit_exceeded, "mesh " + mesh.name, "more than 536870912 triangles to examine");
   return MeshTopology(mesh, execution).examine();
 }
 

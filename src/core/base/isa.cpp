@@ -82,8 +82,7 @@ std::int64_t highway_targets(Isa isa) {
   if (isa == Isa::best) return of_best;
   for (const Isa available : available_isas())
     if (available == isa) return kTargets[std::size_t(isa) - 1].bit;
-  throw Error(ErrorCode::unsupported,
-              std::string("isa: ") + std::string(name(isa)) + " is not available on this machine");
+  throw Error(ErrorCode::unsupported, "isa", std::string(name(isa)) + " is not available on this machine");
 }
 
 }  // namespace frontmost

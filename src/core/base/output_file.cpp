@@ -57,7 +57,10 @@ fs::path make_beside(const fs::path& target, Make&& make) {
 }  // namespace
 
 OutputFile::OutputFile(const std::string& path, Staging staging)
-    : name_(path == "-" ? "standard output" : path), target_(follow_links(path)) {
+    : name_(path == "-"    ? "standard output"
+            : path.empty() ? "''"
+                           : path),
+      target_(follow_links(path)) {
   if (path == "-") {
     kind_ = Kind::standard_output;
     descriptor_ = STDOUT_FILENO;
@@ -67,7 +70,7 @@ OutputFile::OutputFile(const std::string& path, Staging staging)
   errno = 0;
   const bool exists = ::stat(target_.c_str(), &status) == 0;
   if (!exists && errno != ENOENT) fail("cannot write");
-  if (exists && S_ISDIR(status.st_mode)) throw Error(ErrorCode::file_unwritable, name_ + ": is a folder");
+  if (exists && S_ISDIR(status.st_mode)) throw Error(ErrorCode::file_unwritable, name_, "", "is a folder");
   // Devices and pipes are written to, not replaced: nobody wants /dev/null to become a file.
   if (exists && !S_ISREG(status.st_mode)) {
     open_direct();
@@ -89,7 +92,7 @@ OutputFile::~OutputFile() {
 void OutputFile::fail(const char* doing) const {
   // Before anything else is called: making a string may change it.
   const int code = errno;
-  throw Error(ErrorCode::file_unwritable, name_ + ": " + doing + ": " + std::generic_category().message(code));
+  throw Error(ErrorCode::file_unwritable, name_, "", doing + (": " + std::generic_category().message(code)));
 }
 
 void OutputFile::open_direct() {
@@ -99,7 +102,7 @@ void OutputFile::open_direct() {
 }
 
 void OutputFile::open_staged(Staging staging) {
-  if (!target_.has_filename()) throw Error(ErrorCode::file_unwritable, name_ + ": is not a file name");
+  if (!target_.has_filename()) throw Error(ErrorCode::file_unwritable, name_, "", "is not a file name");
   // A file without a name goes by itself when the process ends, however it ends; a hidden one would stay behind.
   if (staging == Staging::named || !open_unnamed()) open_named();
 }

@@ -22,7 +22,7 @@ MadeFolder::MadeFolder(const std::string& folder) {
     made_.insert(made_.begin(), path);
   fs::create_directories(folder, error);
   if (!fs::is_directory(folder, error))
-    throw Error(ErrorCode::file_unwritable, folder + ": cannot be made into a folder");
+    throw Error(ErrorCode::file_unwritable, folder, "", "cannot be made into a folder");
 }
 
 MadeFolder::~MadeFolder() {
@@ -34,7 +34,7 @@ StagedFolder::StagedFolder(const std::string& folder) : folder_(folder) {
   std::string name = (folder_ / ".frontmost-XXXXXX").string();
   if (!::mkdtemp(name.data())) {
     const int code = errno;  // before strings are made: that may change it
-    throw Error(ErrorCode::file_unwritable, folder + ": cannot write: " + std::generic_category().message(code));
+    throw Error(ErrorCode::file_unwritable, folder, "", "cannot write: " + std::generic_category().message(code));
   }
   staged_ = name;
 }
@@ -51,7 +51,7 @@ std::string StagedFolder::told(const std::string& message) const {
 
 void StagedFolder::commit(const std::vector<std::string>& names) const {
   const auto fail = [](const fs::path& place, const std::string& why) {
-    throw Error(ErrorCode::file_unwritable, place.string() + ": cannot replace: " + why);
+    throw Error(ErrorCode::file_unwritable, place.string(), "", "cannot replace: " + why);
   };
   std::error_code unknown;
   for (const std::string& name : names)

@@ -174,7 +174,7 @@ void detail::run_chunks(const Execution& execution, std::size_t count, std::size
 int thread_count(const Execution& execution) {
   constexpr int kMostThreads = 1024;
   if (execution.threads < 0 || execution.threads > kMostThreads)
-    throw Error(ErrorCode::bad_argument, "threads: must be 0 (one per core) to 1024");
+    throw Error(ErrorCode::bad_argument, "threads", "must be 0 (one per core) to 1024");
   if (execution.threads > 0) return execution.threads;
   static const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   return cores;

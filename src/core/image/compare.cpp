@@ -32,16 +32,16 @@ class ImagePair {
     validate(image);
     validate(reference);
     if (image.width != reference.width || image.height != reference.height)
-      throw Error(ErrorCode::bad_argument, "comparison: the image has " + std::to_string(image.width) + " x " +
-                                               std::to_string(image.height) + " pixels, the reference " +
-                                               std::to_string(reference.width) + " x " +
-                                               std::to_string(reference.height));
+      throw Error(ErrorCode::bad_argument, "comparison",
+                  "the image has " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+                      " pixels, the reference " + std::to_string(reference.width) + " x " +
+                      std::to_string(reference.height));
     colors_[0] = color_planes(image);
     colors_[1] = color_planes(reference);
     if (!pair_maps(image, reference) || !pair_maps(reference, image) ||
         colors_[0].has_value() != colors_[1].has_value())
-      throw Error(ErrorCode::bad_argument,
-                  "comparison: the image has channels " + names_of(image) + ", the reference " + names_of(reference));
+      throw Error(ErrorCode::bad_argument, "comparison",
+                  "the image has channels " + names_of(image) + ", the reference " + names_of(reference));
     maps_.resize(maps_.size() / 2);  // each was found from both sides
   }
 
@@ -128,7 +128,7 @@ void paint(const ColorPlanes* reference, std::size_t i, double strength, float* 
 }  // namespace
 
 Comparison compare(const Image& image, const Image& reference, double threshold, const Execution& execution) {
-  if (!(threshold >= 0)) throw Error(ErrorCode::bad_argument, "comparison: the threshold must not be negative");
+  if (!(threshold >= 0)) throw Error(ErrorCode::bad_argument, "comparison", "the threshold must not be negative");
   const ImagePair pair(image, reference);
   std::vector<Comparison> rows(std::size_t(pair.height()));
   parallel_for(execution, rows.size(), rows_at_a_time, [&](std::size_t first, std::size_t end) {

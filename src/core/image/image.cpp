@@ -32,7 +32,7 @@ class WordHash {
   std::uint64_t value_ = 0xCBF29CE484222325u;
 };
 
-[[noreturn]] void fail(const std::string& reason) { throw Error(ErrorCode::bad_argument, "image: " + reason); }
+[[noreturn]] void fail(const std::string& reason) { throw Error(ErrorCode::bad_argument, "image", reason); }
 
 void validate_size(int width, int height) {
   constexpr int most = 1 << 20;  // keeps every product of sizes far below 64 bits

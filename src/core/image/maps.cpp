@@ -85,7 +85,7 @@ Image id_image(const Surfaces& surfaces, const Visible& visible, IdKind kind) {
 
 Image id_image(const Surfaces& surfaces, const glm::ivec2& size, std::span<const PrimitiveId> primitives, IdKind kind) {
   if (size.x < 0 || size.y < 0 || primitives.size() != std::size_t(size.x) * std::size_t(size.y))
-    throw Error(ErrorCode::bad_argument, "id image: the size does not fit the number of ids");
+    throw Error(ErrorCode::bad_argument, "id image", "the size does not fit the number of ids");
   Buffer<std::uint32_t> ids(primitives.size());
   // Neighbours mostly show the same triangle, which need not be looked up again.
   PrimitiveId last_primitive = no_primitive;
@@ -96,7 +96,7 @@ Image id_image(const Surfaces& surfaces, const glm::ivec2& size, std::span<const
       last_primitive = last_id = primitive;
       if (primitive != no_primitive) {
         if (primitive >= surfaces.primitive_count())
-          throw Error(ErrorCode::bad_argument, "id image: the surfaces are not those that were seen");
+          throw Error(ErrorCode::bad_argument, "id image", "the surfaces are not those that were seen");
         if (kind != IdKind::primitive) last_id = id_of(surfaces.scene(), surfaces.source(primitive), kind);
       }
     }
@@ -109,7 +109,7 @@ Image id_image(const Surfaces& surfaces, const glm::ivec2& size, std::span<const
 
 std::vector<std::uint64_t> count_pixels(const Image& ids, std::size_t count) {
   if (ids.channels.size() != 1 || !ids.channels[0].is_integer())
-    throw Error(ErrorCode::bad_argument, "pixel counts: the image must have one channel of integers");
+    throw Error(ErrorCode::bad_argument, "pixel counts", "the image must have one channel of integers");
   std::vector<std::uint64_t> pixels(count);
   for (const std::uint32_t id : ids.channels[0].integers())
     if (id < count) ++pixels[id];

@@ -31,7 +31,7 @@ Scene builtin(std::string_view name) {
     }
     known += (i == 0 ? "" : ", ") + std::string(kNames[i]);
   }
-  throw Error(ErrorCode::bad_argument, "builtin:" + std::string(name) + ": no such scene; there are " + known);
+  throw Error(ErrorCode::bad_argument, "builtin:" + std::string(name), "", "no such scene; there are " + known);
 }
 
 Scene make_teapot() {

@@ -15,8 +15,8 @@ namespace {
 
 [[noreturn]] void fail(const Scene& scene, std::size_t mesh, const std::string& reason) {
   const std::string& name = scene.meshes[mesh].name;
-  throw Error(ErrorCode::file_malformed,
-              scene.name + ": mesh " + std::to_string(mesh) + (name.empty() ? "" : " (" + name + ")") + ": " + reason);
+  throw Error(ErrorCode::file_malformed, scene.name,
+              "mesh " + std::to_string(mesh) + (name.empty() ? "" : " (" + name + ")"), reason);
 }
 
 void check_corners(const Scene& scene, std::size_t mesh, const std::vector<glm::uvec3>& triangles, std::size_t count,
@@ -74,19 +74,21 @@ void check_mesh(const Scene& scene, std::size_t m) {
 
 void check_use(const Scene& scene, const Material& material, const TextureUse& use) {
   if (!use.is_set()) return;
-  const std::string who = scene.name + ": material " + material.name + ": ";
+  const std::string who = "material " + material.name;
   if (use.texture >= scene.textures.size())
-    throw Error(ErrorCode::file_malformed, who + "texture " + std::to_string(use.texture) + " does not exist");
+    throw Error(ErrorCode::file_malformed, scene.name, who,
+                "texture " + std::to_string(use.texture) + " does not exist");
   if (use.set >= max_texcoord_sets)
-    throw Error(ErrorCode::file_malformed, who + "texture coordinates " + std::to_string(use.set) +
-                                               ", there are at most " + std::to_string(max_texcoord_sets) + " sets");
+    throw Error(ErrorCode::file_malformed, scene.name, who,
+                "texture coordinates " + std::to_string(use.set) + ", there are at most " +
+                    std::to_string(max_texcoord_sets) + " sets");
 }
 
 void check_instances(const Scene& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const auto refuse = [&](const char* what, std::uint32_t number) {
-      throw Error(ErrorCode::file_malformed, scene.name + ": instance " + std::to_string(i) + ": " + what + " " +
-                                                 std::to_string(number) + " does not exist");
+      throw Error(ErrorCode::file_malformed, scene.name, "instance " + std::to_string(i),
+                  std::string(what) + " " + std::to_string(number) + " does not exist");
     };
     const Instance& instance = scene.instances[i];
     if (instance.mesh >= scene.meshes.size()) refuse("mesh", instance.mesh);
@@ -123,8 +125,8 @@ void check_lights(const Scene& scene) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
     if (const char* fault = fault_of(scene.lights[i])) {
       const std::string& name = scene.lights[i].name;
-      throw Error(ErrorCode::file_malformed,
-                  scene.name + ": light " + std::to_string(i) + (name.empty() ? "" : " (" + name + ")") + ": " + fault);
+      throw Error(ErrorCode::file_malformed, scene.name,
+                  "light " + std::to_string(i) + (name.empty() ? "" : " (" + name + ")"), fault);
     }
 }
 
@@ -161,13 +163,12 @@ void validate_besides_vertices(const Scene& scene) {
   for (const Texture& texture : scene.textures)
     if (texture.width < 0 || texture.height < 0 ||
         texture.pixels.size() != std::size_t(texture.width) * std::size_t(texture.height))
-      throw Error(ErrorCode::file_malformed,
-                  scene.name + ": texture " + texture.name + ": pixels do not match its size");
+      throw Error(ErrorCode::file_malformed, scene.name, "texture " + texture.name, "pixels do not match its size");
   check_instances(scene);
   check_lights(scene);
   // One id fewer than there are numbers: the greatest stands for nothing seen.
   if (triangle_count(scene) > no_primitive - 1)
-    throw Error(ErrorCode::limit_exceeded, scene.name + ": more than 4294967294 triangles over all instances");
+    throw Error(ErrorCode::limit_exceeded, scene.name, "", "more than 4294967294 triangles over all instances");
 }
 
 }  // namespace frontmost

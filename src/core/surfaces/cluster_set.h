@@ -72,6 +72,13 @@ struct ClusterSet {
   void fit(std::size_t cluster);
 };
 
+/// The clusters of surfaces, made now where they are not there.
+[[nodiscard]] const ClusterSet& cluster_set(const Surfaces& surfaces, const Execution& execution = {});
+/// Null where they have not been made yet.
+[[nodiscard]] const ClusterSet* made_cluster_set(const Surfaces& surfaces);
+/// Null where a single picture is drawn sooner without.
+[[nodiscard]] const ClusterSet* cluster_set_for_picture(const Surfaces& surfaces, const Execution& execution);
+
 /// Cuts all triangles into clusters, every one into one. Triangles with a non-finite world-space corner become
 /// degenerate (three times the same corner number), so that no method sees them.
 [[nodiscard]] ClusterSet build_clusters(const PlacedScene& placed, const Execution& execution);

@@ -146,6 +146,9 @@ struct PlacedScene {
   void visit_box(std::size_t box, const Visit& visit) const;
 };
 
+/// What the methods read of surfaces.
+[[nodiscard]] const PlacedScene& placed_scene(const Surfaces& surfaces);
+
 /// Numbers the triangles and finds their boxes. Precondition: validate_besides_vertices(scene) and
 /// check_transforms(scene) have passed. O(triangles), in parallel: 3 ns a triangle on one thread.
 /// \throws Error as validate(scene) does for the number of a vertex that does not exist.

@@ -46,10 +46,10 @@ void Surfaces::move(Scene& scene, std::uint32_t instance, const glm::dmat4& worl
 
 void Surfaces::move(Scene& scene, std::span<const Placement> placements, const Execution& execution) {
   PlacedScene& placed = state_->placed;
-  if (&scene != placed.scene) throw Error(ErrorCode::bad_argument, "move: the surfaces are of another scene");
+  if (&scene != placed.scene) throw Error(ErrorCode::bad_argument, "move", "the surfaces are of another scene");
   for (const auto& [instance, world_from_mesh] : placements) {
     if (instance >= scene.instances.size())
-      throw Error(ErrorCode::bad_argument, "move: there is no instance " + std::to_string(instance));
+      throw Error(ErrorCode::bad_argument, "move", "there is no instance " + std::to_string(instance));
     check_transform(scene, instance, world_from_mesh);
   }
   const IeeeScope ieee;
@@ -67,34 +67,38 @@ Surfaces::~Surfaces() = default;
 Surfaces::Surfaces(Surfaces&&) noexcept = default;
 Surfaces& Surfaces::operator=(Surfaces&&) noexcept = default;
 
-const PlacedScene& Surfaces::placed() const { return state_->placed; }
+const PlacedScene& placed_scene(const Surfaces& surfaces) { return surfaces.state_->placed; }
 
-const ClusterSet& Surfaces::clusters(const Execution& execution) const {
-  return state_->clusters.get_now(placed(), execution);
+void Surfaces::make_clusters(const Execution& execution) const { (void)cluster_set(*this, execution); }
+
+const ClusterSet& cluster_set(const Surfaces& surfaces, const Execution& execution) {
+  return surfaces.state_->clusters.get_now(surfaces.state_->placed, execution);
 }
 
-const ClusterSet* Surfaces::made_clusters() const { return state_->clusters.made(); }
+const ClusterSet* made_cluster_set(const Surfaces& surfaces) { return surfaces.state_->clusters.made(); }
 
-const ClusterSet* Surfaces::clusters_for_picture(const Execution& execution) const {
-  return state_->clusters.get(placed(), execution);
+const ClusterSet* cluster_set_for_picture(const Surfaces& surfaces, const Execution& execution) {
+  return surfaces.state_->clusters.get(surfaces.state_->placed, execution);
 }
 
-const Scene& Surfaces::scene() const { return *placed().scene; }
+const Scene& Surfaces::scene() const { return *state_->placed.scene; }
 
-std::uint32_t Surfaces::primitive_count() const { return placed().first_primitives.back(); }
+std::uint32_t Surfaces::primitive_count() const { return state_->placed.first_primitives.back(); }
 
 PrimitiveSource Surfaces::source(PrimitiveId id) const {
-  const std::vector<PrimitiveId>& first = placed().first_primitives;
+  const std::vector<PrimitiveId>& first = state_->placed.first_primitives;
   const auto next = std::upper_bound(first.begin(), first.end(), id);
   const auto instance = static_cast<std::uint32_t>(next - first.begin() - 1);
   return {instance, scene().instances[instance].mesh, id - first[instance]};
 }
 
-PrimitiveId Surfaces::first_primitive(std::uint32_t instance) const { return placed().first_primitives[instance]; }
+PrimitiveId Surfaces::first_primitive(std::uint32_t instance) const {
+  return state_->placed.first_primitives[instance];
+}
 
-const Box& Surfaces::bounds() const { return placed().bounds; }
+const Box& Surfaces::bounds() const { return state_->placed.bounds; }
 
-const Box& Surfaces::bounds(std::uint32_t instance) const { return placed().instance_bounds[instance]; }
+const Box& Surfaces::bounds(std::uint32_t instance) const { return state_->placed.instance_bounds[instance]; }
 
 std::array<glm::vec3, 3> Surfaces::corners(PrimitiveId id) const {
   const PrimitiveSource from = source(id);
@@ -104,10 +108,10 @@ std::array<glm::vec3, 3> Surfaces::corners(PrimitiveId id) const {
   return {world(mesh.positions[corners.x]), world(mesh.positions[corners.y]), world(mesh.positions[corners.z])};
 }
 
-bool Surfaces::is_mirrored(std::uint32_t instance) const { return placed().mirrored[instance] != 0; }
+bool Surfaces::is_mirrored(std::uint32_t instance) const { return state_->placed.mirrored[instance] != 0; }
 
 std::size_t Surfaces::byte_count() const {
-  const PlacedScene& p = placed();
+  const PlacedScene& p = state_->placed;
   const ClusterSet* const made = state_->clusters.made();
   return sizeof(State) + p.first_primitives.size() * sizeof(PrimitiveId) + p.mirrored.size() +
          p.ranges.size() * sizeof(MeshRange) + (p.boxes.size() + p.instance_bounds.size()) * sizeof(Box) +

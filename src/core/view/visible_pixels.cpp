@@ -73,9 +73,9 @@ void check_answer(const VisiblePixels& pixels, std::uint32_t primitive_count, co
   const std::size_t runs = pixels.runs_across() * std::size_t(view.height);
   if (view.width != first.width || view.height != first.height || first.samples != 1 || pixels.mixed.size() != runs ||
       pixels.places.size() != runs || pixels.others.size() < pixels.other_count)
-    throw Error(ErrorCode::bad_argument, std::string(who) + ": the planes do not have the size of their view");
+    throw Error(ErrorCode::bad_argument, std::string(who), "the planes do not have the size of their view");
   if (!has_all_others(pixels))
-    throw Error(ErrorCode::bad_argument, std::string(who) + ": mixed pixels lie beyond the planes");
+    throw Error(ErrorCode::bad_argument, std::string(who), "mixed pixels lie beyond the planes");
   check_ids({pixels.others.data(), pixels.other_count}, primitive_count, who, execution);
 }
 

@@ -67,11 +67,12 @@ struct ColoredOrder {
   }
 };
 
-/// Colours as the picture of the same view has them, with textures, shadows and smooth normals. Shadows and colours
-/// of depth depend on the input, which is of the parts' view. Polygons whose colour varies are cut
-/// within their own place in the order, along lines that part their colours best: those of their textures' coordinates,
-/// those along which light is the same. Pieces are as large as the tolerance allows; details narrower than about a
-/// pixel and a half are left out, and so are holes of alpha mode MASK. Each shape is a sheet by itself.
+/// Colours as the picture of the same view has them, found with what pictures before made ready, with textures, shadows
+/// and smooth normals. Shadows and colours of depth depend on the input, which is of the parts' view. Polygons whose
+/// colour varies are cut within their own place in the order, along lines that part their colours best: those of their
+/// textures' coordinates, those along which light is the same. Pieces are as large as the tolerance allows; details
+/// narrower than about a pixel and a half are left out, and so are holes of alpha mode MASK. Each shape is a sheet by
+/// itself.
 ///
 /// Where neighbours are to be merged afterwards, pieces of a polygon whose colours nearly agree get the same colour and
 /// become one shape, as merge_neighbours() can use them; a third of the tolerance goes into that. Otherwise each piece
@@ -79,9 +80,6 @@ struct ColoredOrder {
 /// O(pixels of the picture that polygons cover, seen or not), in parallel; the result does not depend on threads.
 /// \throws Error bad_argument for an opacity out of range; limit_exceeded for more polygons and pieces
 /// than FigureOptions::most_polygons.
-[[nodiscard]] ColoredOrder color_order(const Surfaces& surfaces, const ShadeInput& input, const VisibleParts& parts,
-                                       const FigureOptions& options = {}, const Execution& execution = {});
-/// The same with what pictures before made ready.
 [[nodiscard]] ColoredOrder color_order(shading::PreparedScene& scene, const ShadeInput& input,
                                        const VisibleParts& parts, const FigureOptions& options,
                                        const Execution& execution);

@@ -60,21 +60,23 @@ VisibleParts parts_of(const Surfaces& surfaces, const View& view, const FigureOp
 
 void check_count(std::size_t polygons, const FigureOptions& options) {
   if (polygons <= options.most_polygons) return;
-  throw Error(ErrorCode::limit_exceeded,
-              "figure: " + std::to_string(polygons) + " polygons, more than " + std::to_string(options.most_polygons));
+  throw Error(ErrorCode::limit_exceeded, "figure",
+              std::to_string(polygons) + " polygons, more than " + std::to_string(options.most_polygons));
 }
 
 /// With what pictures before made ready.
 Figure figure_of(shading::PreparedScene& scene, const ShadeInput& input, const FigureOptions& options,
                  const Execution& execution) {
   const Surfaces& surfaces = scene.surfaces;
-  check_planes(input.visible, "figure");
+  shading::check_given(input, "figure");
+  if (!input.visible) throw Error(ErrorCode::unsupported, "figure", "needs the planes of a Visible");
+  check_planes(*input.visible, "figure");
   shading::check_opacity(options.shade);
   if (input.view().samples != 1)
-    throw Error(ErrorCode::bad_argument, "figure: what is visible must have one sample a pixel");
+    throw Error(ErrorCode::bad_argument, "figure", "what is visible must have one sample a pixel");
   if (!(options.tolerance >= 0 && options.tolerance <= 255))
-    throw Error(ErrorCode::bad_argument, "figure: tolerance: must be 0 to 255");
-  const VisibleParts parts = parts_of(surfaces, input.visible.view, options, execution);
+    throw Error(ErrorCode::bad_argument, "figure: tolerance", "must be 0 to 255");
+  const VisibleParts parts = parts_of(surfaces, input.first().view, options, execution);
   check_count(parts.polygons.size(), options);
   ColoredOrder colored = color_order(scene, input, parts, options, execution);
   if (options.merges_neighbours) colored = merge_neighbours(colored, execution);
@@ -95,6 +97,11 @@ Figure draw_figure(const Surfaces& surfaces, const ShadeInput& input, const Figu
 
 Figure draw_figure(Shader& shader, const ShadeInput& input, const FigureOptions& options, const Execution& execution) {
   return figure_of(shading::prepared(shader, execution), input, options, execution);
+}
+
+Figure draw_figure(const Surfaces& surfaces, const Visible& visible, const FigureOptions& options,
+                   const Execution& execution) {
+  return draw_figure(surfaces, ShadeInput{.visible = &visible}, options, execution);
 }
 
 Figure draw_figure(const Surfaces& surfaces, const View& view, const FigureOptions& options,

@@ -73,7 +73,7 @@ std::vector<std::uint32_t> sets_by_material(const std::vector<HatchSet>& sets, s
 }
 
 void check(const HatchOptions& options) {
-  const auto refuse = [](const char* what) { throw Error(ErrorCode::bad_argument, std::string("hatch: ") + what); };
+  const auto refuse = [](const char* what) { throw Error(ErrorCode::bad_argument, "hatch", what); };
   if (options.sets.size() > most_sets) refuse("more than 16 sets");
   for (const HatchSet& set : options.sets) {
     if (!(std::abs(set.angle) <= 1e3)) refuse("the angle must be from -1000 to 1000 radians");

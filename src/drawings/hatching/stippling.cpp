@@ -43,9 +43,9 @@ std::vector<Stipple> stipple(const Surfaces& surfaces, const View& view, const S
                              const Execution& execution) {
   validate(view);
   if (!(options.spacing >= 0.5 && options.spacing <= 1000))
-    throw Error(ErrorCode::bad_argument, "stipple: the spacing must be from 0.5 to 1000 pixels");
+    throw Error(ErrorCode::bad_argument, "stipple", "the spacing must be from 0.5 to 1000 pixels");
   if (double(view.width) * view.height / (options.spacing * options.spacing) > most_dots)
-    throw Error(ErrorCode::limit_exceeded, "stipple: there would be room for more than 20000000 dots");
+    throw Error(ErrorCode::limit_exceeded, "stipple", "there would be room for more than 20000000 dots");
   const IeeeScope ieee;
   report_progress(execution, "hatching", 0);
   const TonedScene scene(surfaces, view, options.tone, execution);

@@ -27,11 +27,11 @@ constexpr std::uint64_t most_boxes = std::uint64_t(1) << 33, most_boxes_of_trian
 /// \returns where the light is, of unit length.
 glm::dvec3 light_of(const ToneOptions& tone, const View& view) {
   if (!(tone.crease_angle >= 0 && tone.crease_angle <= std::numbers::pi))
-    throw Error(ErrorCode::bad_argument, "hatch: the crease angle must be from 0 to pi");
+    throw Error(ErrorCode::bad_argument, "hatch", "the crease angle must be from 0 to pi");
   if (!tone.to_light) return glm::normalize(-0.48 * view.right() + 0.68 * view.up() - 0.72 * view.forward());
   const double length = glm::length(*tone.to_light);
   if (!(length > 1e-100 && length < 1e100))
-    throw Error(ErrorCode::bad_argument, "hatch: the light must come from somewhere");
+    throw Error(ErrorCode::bad_argument, "hatch", "the light must come from somewhere");
   return *tone.to_light / length;
 }
 
@@ -89,7 +89,7 @@ class TonedScene::Hatcher {
   /// Counts the work since the last call. \throws Error limit_exceeded, cancelled.
   void tell() {
     work_.add(seen_.take_work() + (lit_ ? lit_->take_work() : 0),
-              [] { return std::string("hatch: too many triangles lie over each other"); });
+              [] { return std::string("too many triangles lie over each other"); });
   }
 
   void hatch(std::uint32_t number, std::vector<HatchPiece>& pieces) {
@@ -247,7 +247,7 @@ std::vector<HatchPiece> TonedScene::pieces(const Task& task, const std::vector<H
   const std::size_t count = mesh_.triangles.size();
   std::vector<std::vector<HatchPiece>> lists((count + triangles_per_part - 1) / triangles_per_part);
   Pool<Hatcher> hatchers;
-  WorkLimit work(execution, most_boxes + most_boxes_of_triangle * count);
+  WorkLimit work(execution, most_boxes + most_boxes_of_triangle * count, "hatch");
   std::atomic<std::size_t> done{0}, found{0};
   parallel_for(execution, count, triangles_per_part, [&](std::size_t begin, std::size_t end) {
     const auto hatcher = hatchers.borrow([&] { return std::make_unique<Hatcher>(*this, task, rows, work); });
@@ -259,7 +259,8 @@ std::vector<HatchPiece> TonedScene::pieces(const Task& task, const std::vector<H
       // A triangle alone may have as many as there are others before it, for every line.
       if (list.size() - counted < pieces_per_tally && i + 1 < end) continue;
       if ((found += list.size() - counted) > most_pieces)
-        throw Error(ErrorCode::limit_exceeded, "hatch: more than " + std::to_string(most_pieces) + " pieces of lines");
+        throw Error(ErrorCode::limit_exceeded, "hatch",
+                    "more than " + std::to_string(most_pieces) + " pieces of lines");
       counted = list.size();
     }
     hatcher->tell();

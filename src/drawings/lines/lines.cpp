@@ -91,9 +91,9 @@ void cut_all(const Candidates& candidates, const EdgeOccluders& occlusion, const
   Pool<EdgeCutter> cutters;
   std::atomic<std::size_t> done{0}, parts{0};
   const std::size_t most_parts = kMostParts + kMostPartsOfEdge * count;
-  WorkLimit work(execution, kMostBoxes + kMostBoxesOfEdge * count);
+  WorkLimit work(execution, kMostBoxes + kMostBoxesOfEdge * count, "lines");
   const auto tell = [&](EdgeCutter& cutter) {
-    work.add(cutter.take_work(), [] { return std::string("lines: too many triangles lie over each other"); });
+    work.add(cutter.take_work(), [] { return std::string("too many triangles lie over each other"); });
   };
   const auto cut = [&](std::vector<DrawnPart>& list, std::size_t begin, std::size_t end) {
     const auto cutter = cutters.borrow([&] { return std::make_unique<EdgeCutter>(occlusion); });
@@ -104,7 +104,7 @@ void cut_all(const Candidates& candidates, const EdgeOccluders& occlusion, const
       // An edge alone may have as many as there are triangles.
       if (list.size() - counted < kPartsPerTally && i + 1 < end) continue;
       if ((parts += list.size() - counted) > most_parts)
-        throw Error(ErrorCode::limit_exceeded, "lines: more than " + std::to_string(most_parts) + " parts of edges");
+        throw Error(ErrorCode::limit_exceeded, "lines", "more than " + std::to_string(most_parts) + " parts of edges");
       counted = list.size();
     }
     tell(*cutter);
@@ -126,10 +126,10 @@ Error with_place(const Error& error, const OccluderGrid& grid, const WeldedMesh&
   const OccluderGrid::Crowd crowd = grid.largest_crowd();
   if (error.code() != ErrorCode::limit_exceeded || crowd.count == 0) return error;
   const PrimitiveId id = mesh.ids[crowd.triangle];
-  return {error.code(), error.what() + std::string(": most of them, ") + std::to_string(crowd.count) +
-                            ", in one place, among them face " + std::to_string(surfaces.source(id).triangle) +
-                            " of object " + std::to_string(surfaces.source(id).instance) +
-                            "; leave out what lies there many times"};
+  return {error.code(), error.file(), error.place(),
+          error.reason() + ": most of them, " + std::to_string(crowd.count) + ", in one place, among them face " +
+              std::to_string(surfaces.source(id).triangle) + " of object " +
+              std::to_string(surfaces.source(id).instance) + "; leave out what lies there many times"};
 }
 
 /// Closes the mesh's seams.
@@ -144,7 +144,7 @@ SeenMesh see_closed(WeldedMesh& mesh, const Sight& sight, const Execution& execu
 Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions& options, const Execution& execution) {
   validate(view);
   if (options.crease_angle && !(*options.crease_angle >= 0 && *options.crease_angle <= 3.1415926535897932))
-    throw Error(ErrorCode::bad_argument, "crease_angle: must be from 0 to pi");
+    throw Error(ErrorCode::bad_argument, "crease_angle", "must be from 0 to pi");
   const IeeeScope ieee;
   const Arena arena(kBytesPerTriangle * surfaces.primitive_count());
   report_progress(execution, "lines", 0);

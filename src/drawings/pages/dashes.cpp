@@ -197,7 +197,7 @@ class DashCutter {
       return;
     }
     if (double(cut_.paths.size()) + pattern_.count_on(ruler.length()) > most_)
-      throw Error(ErrorCode::limit_exceeded, "dashes: more than 20000000 of them");
+      throw Error(ErrorCode::limit_exceeded, "dashes", "more than 20000000 of them");
     for (const Span& span : drawn_of(ruler, path.is_closed)) {
       poll();
       ruler.cut(span, cut_);

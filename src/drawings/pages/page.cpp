@@ -16,7 +16,7 @@ namespace {
 constexpr double least_side = 0.01, most_side = 1e5, farthest = 1e6, most_width = 1000, most_bulge = 10;
 
 [[noreturn]] void refuse(const std::string& where, const char* reason) {
-  throw Error(ErrorCode::bad_argument, where + ": " + reason);
+  throw Error(ErrorCode::bad_argument, where, reason);
 }
 
 void check_pen(const Pen& pen, const std::string& where) {
@@ -29,7 +29,7 @@ void check_pen(const Pen& pen, const std::string& where) {
 
 void check_group(const PageGroup& group, const std::string& where) {
   check_pen(group.pen, where);
-  if (group.points.size() > 0xFFFFFFFFu) throw Error(ErrorCode::limit_exceeded, where + ": over 2^32 points");
+  if (group.points.size() > 0xFFFFFFFFu) throw Error(ErrorCode::limit_exceeded, where, "over 2^32 points");
   for (const glm::dvec2& p : group.points)
     if (!(std::abs(p.x) <= farthest && std::abs(p.y) <= farthest))
       refuse(where, "a point is not finite, or further than 1000 m from the page");
@@ -76,13 +76,13 @@ void save(const Page& page, const std::string& path, std::optional<PageFormat> f
 
 void save(std::span<const Page> pages, const std::string& path, std::optional<PageFormat> format,
           const Execution& execution) {
-  if (pages.empty()) throw Error(ErrorCode::bad_argument, path + ": no pages");
+  if (pages.empty()) throw Error(ErrorCode::bad_argument, path, "", "no pages");
   for (const Page& page : pages) validate(page);
   if (!format) format = page_format(path);
   if (!format)
-    throw Error(ErrorCode::bad_argument, path + ": the suffix names no format; use .svg, .pdf, .dxf or .json");
+    throw Error(ErrorCode::bad_argument, path, "", "the suffix names no format; use .svg, .pdf, .dxf or .json");
   if (pages.size() > 1 && *format != PageFormat::pdf)
-    throw Error(ErrorCode::unsupported, path + ": of these formats PDF alone has several pages");
+    throw Error(ErrorCode::unsupported, path, "", "of these formats PDF alone has several pages");
   const Page& page = pages[0];
   OutputFile file(path);
   switch (*format) {

@@ -181,7 +181,7 @@ std::vector<double> drawn_lengths(const Rounds& all, const Drawing& drawing, boo
 std::vector<CentreLine> centre_lines_of(const Rounds& rounds, const Drawing& drawing, const Strokes& strokes,
                                         const CentreLineOptions& options) {
   if (!(options.overshoot > 0 && options.overshoot <= 1e6))
-    throw Error(ErrorCode::bad_argument, "overshoot: must be above 0, and at most a million pixels");
+    throw Error(ErrorCode::bad_argument, "overshoot", "must be above 0, and at most a million pixels");
   if (!drawing.view.projection.orthographic) return {};
   CentreLiner liner(drawing.view, options.overshoot);
   const std::vector<double> lengths = drawn_lengths(rounds, drawing, options.with_hidden);

@@ -142,7 +142,7 @@ SharpChains sharp_chains(const SmoothMesh& mesh, const Execution& execution, dou
   SharpChains all;
   all.edges = sharp_edges(mesh, execution);
   if (all.edges.size() >= std::size_t(1) << 31)
-    throw Error(ErrorCode::limit_exceeded, "rounds: more than 2147483647 sharp edges");
+    throw Error(ErrorCode::limit_exceeded, "rounds", "more than 2147483647 sharp edges");
   Chainer(mesh, all, least_cosine).run(execution);
   return all;
 }

@@ -152,7 +152,7 @@ Material material_of_face(const Scene& scene, const Instance& instance, const Me
 
 Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution& execution) {
   if (!std::isfinite(float(plane.at)))
-    throw Error(ErrorCode::bad_argument, "cut: the plane's place must be finite, as a float");
+    throw Error(ErrorCode::bad_argument, "cut", "the plane's place must be finite, as a float");
   const IeeeScope ieee;
   const Scene& whole = surfaces.scene();
   const PlaneAxes axes(plane);

@@ -133,7 +133,7 @@ Sheet finish(std::vector<PlannedView> views, const Surfaces& surfaces, const She
 
 Sheet draw_sheet(const Surfaces& surfaces, const SheetOptions& options, const Execution& execution) {
   validate(options);
-  if (!has_named_views(options)) throw Error(ErrorCode::bad_argument, "views: there is none, nor a section");
+  if (!has_named_views(options)) throw Error(ErrorCode::bad_argument, "views", "there is none, nor a section");
   report_progress(execution, "views", 0);
   return finish(draw_named_views(surfaces, options, execution), surfaces, options, execution);
 }

@@ -14,7 +14,7 @@
 namespace frontmost {
 
 void detail::refuse_option(const std::string& field, const std::string& reason) {
-  throw Error(ErrorCode::bad_argument, field + ": " + reason);
+  throw Error(ErrorCode::bad_argument, field, reason);
 }
 
 namespace {

@@ -47,8 +47,8 @@ ToneOptions tone_options(const SheetOptions& options, const View& view) {
 /// Millimetres are the unit of the paper, and pixels that of the limits.
 void check_spacing(const char* field, double spacing, double least) {
   if (spacing >= least) return;
-  throw Error(ErrorCode::limit_exceeded,
-              std::string(field) + ": " + number_text(spacing) + " mm would be too many for so large a drawing; take " +
+  throw Error(ErrorCode::limit_exceeded, std::string(field),
+              number_text(spacing) + " mm would be too many for so large a drawing; take " +
                   number_text(std::ceil(least * 100) / 100, 3) + " or more, or a smaller page or scale");
 }
 

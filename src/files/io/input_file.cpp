@@ -20,7 +20,8 @@ namespace {
 
 void check_size(std::uint64_t size, std::uint64_t max_bytes, const std::string& name) {
   if (size > max_bytes)
-    throw Error(ErrorCode::limit_exceeded, name + ": larger than the limit of " + std::to_string(max_bytes) + " bytes");
+    throw Error(ErrorCode::limit_exceeded, name, "",
+                "larger than the limit of " + std::to_string(max_bytes) + " bytes");
 }
 
 /// Closes a file descriptor.
@@ -126,7 +127,7 @@ std::string_view text_of(std::span<const std::byte> bytes) {
 }
 
 void fail_to_read(const std::string& name, const std::string& reason) {
-  throw Error(ErrorCode::file_unreadable, name + ": " + reason);
+  throw Error(ErrorCode::file_unreadable, name, "", reason);
 }
 
 void fail_to_read_by_errno(const std::string& name, const char* doing) {

@@ -67,11 +67,12 @@ void validate(const Table& table) {
   constexpr std::string_view known = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
   for (const TableColumn& column : table.columns) {
     if (column.name.empty() || column.name.find_first_not_of(known) != std::string::npos)
-      throw Error(ErrorCode::bad_argument,
-                  "table: a column is named '" + column.name + "': letters, digits and underscores make a name");
+      throw Error(ErrorCode::bad_argument, "table",
+                  "a column is named '" + column.name + "': letters, digits and underscores make a name");
     if (column.size() != table.row_count())
-      throw Error(ErrorCode::bad_argument, "table: " + column.name + ": has " + std::to_string(column.size()) +
-                                               " rows, others have " + std::to_string(table.row_count()));
+      throw Error(ErrorCode::bad_argument, "table",
+                  column.name + ": has " + std::to_string(column.size()) + " rows, others have " +
+                      std::to_string(table.row_count()));
   }
 }
 

@@ -19,7 +19,7 @@ FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferO
                       const Execution& execution) {
   using namespace abuffer_detail;
   const FragmentPass pass(surfaces, view, options, execution);
-  TileParts<Fragment> parts(view, most_fragments, "abuffer: more than 2^30 fragments");
+  TileParts<Fragment> parts(view, most_fragments, "abuffer", "more than 2^30 fragments");
   const auto look = [&](const Rectangle& pixels, PixelLists lists) {
     parts.add({pixels, std::move(lists.begin), std::move(lists.fragments)});
   };

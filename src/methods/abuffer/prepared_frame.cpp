@@ -18,7 +18,7 @@ namespace {
 const View& valid(const View& view, const AbufferOptions& options) {
   validate(view);
   if (!(options.opacity >= 0.0f && options.opacity <= 1.0f))
-    throw Error(ErrorCode::bad_argument, "abuffer: opacity: must be 0 to 1");
+    throw Error(ErrorCode::bad_argument, "abuffer: opacity", "must be 0 to 1");
   return view;
 }
 

@@ -26,15 +26,16 @@ struct TilePart {
 template <class T>
 class TileParts {
  public:
-  /// More than `most` items are an error, which says `error`.
-  TileParts(const View& view, std::uint64_t most, const char* error) : view_(view), most_(most), error_(error) {}
+  /// More than `most` items are an error of this place and reason.
+  TileParts(const View& view, std::uint64_t most, const char* place, const char* reason)
+      : view_(view), most_(most), place_(place), reason_(reason) {}
 
   /// May be called by several threads at once. \throws Error limit_exceeded.
   void add(TilePart<T> part) {
     const std::lock_guard lock(mutex_);
     item_count_ += part.items.size();
     // Only here the sum is known. Parts before this one are held already, but each was bounded by what a tile may hold.
-    if (item_count_ > most_) throw Error(ErrorCode::limit_exceeded, error_);
+    if (item_count_ > most_) throw Error(ErrorCode::limit_exceeded, place_, reason_);
     parts_.push_back(std::move(part));
   }
 
@@ -60,7 +61,7 @@ class TileParts {
 
   const View& view_;
   const std::uint64_t most_;
-  const char* const error_;
+  const char *const place_, *const reason_;
   std::mutex mutex_;
   std::uint64_t item_count_ = 0;
   std::vector<TilePart<T>> parts_;

@@ -59,7 +59,7 @@ class SampleLists {
 
 std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, int count,
                                     const AbufferOptions& options, const Execution& execution) {
-  if (count < 1 || count > 1024) throw Error(ErrorCode::bad_argument, "abuffer: layers: must be 1 to 1024");
+  if (count < 1 || count > 1024) throw Error(ErrorCode::bad_argument, "abuffer: layers", "must be 1 to 1024");
   // Layers are Visibles, whose samples are the view's; a grid of the A-buffer's own would have no place in them.
   const PreparedFrame frame(surfaces, view, {0, options.opacity}, execution);
   const Opacities opacities(surfaces, options.opacity, execution);

@@ -27,7 +27,7 @@ Box world_box(const glm::dmat4& world_from_mesh, const Box& box) {
 
 struct Occlusion::State {
   State(const Surfaces& its_surfaces, ObjectUnit its_unit, const Execution& execution)
-      : surfaces(its_surfaces), unit(its_unit), moves(its_surfaces.placed().moves.count()) {
+      : surfaces(its_surfaces), unit(its_unit), moves(placed_scene(its_surfaces).moves.count()) {
     const Scene& scene = surfaces.scene();
     find_meshes(execution);
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
@@ -54,7 +54,7 @@ struct Occlusion::State {
   }
 
   void follow_moves() {
-    surfaces.placed().moves.visit_since(moves, first_objects.size() - 1, [&](std::uint32_t instance) {
+    placed_scene(surfaces).moves.visit_since(moves, first_objects.size() - 1, [&](std::uint32_t instance) {
       for (std::uint32_t i = first_objects[instance]; i < first_objects[instance + 1]; ++i)
         tree.move(i, box_of(objects[i]));
     });
@@ -70,7 +70,7 @@ struct Occlusion::State {
       if (user[scene.instances[i].mesh] == no_index) user[scene.instances[i].mesh] = i;
     parallel_for(execution, meshes.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t m = begin; m < end; ++m)
-        if (user[m] != no_index) meshes[m] = occluder_mesh(surfaces.placed(), user[m], unit);
+        if (user[m] != no_index) meshes[m] = occluder_mesh(placed_scene(surfaces), user[m], unit);
     });
   }
 
@@ -112,13 +112,13 @@ std::span<const ObjectSight> Occlusion::cull(const View& view, const OcclusionOp
                                              const Execution& execution) & {
   validate(view);
   if (options.cell < 1 || options.cell > 64)
-    throw Error(ErrorCode::bad_argument, "occlusion: a cell must be 1 to 64 pixels wide");
+    throw Error(ErrorCode::bad_argument, "occlusion", "a cell must be 1 to 64 pixels wide");
   const IeeeScope ieee;
   State& s = *state_;
   s.follow_moves();
   s.isa = execution.isa;
   s.grid.emplace(view, options.cell);
-  const SweptScene swept{s.surfaces.scene(), s.meshes, s.objects, s.tree, s.surfaces.placed().mirrored};
+  const SweptScene swept{s.surfaces.scene(), s.meshes, s.objects, s.tree, placed_scene(s.surfaces).mirrored};
   s.sweep.run(swept, {*s.grid, view.culling, s.isa}, s.sights, s.cover);
   return s.sights;
 }

@@ -30,7 +30,7 @@ class Gatherer {
         view_(view),
         sight_(sight),
         empty_(sight),
-        facing_(view.culling, surfaces.placed().sides.get()) {}
+        facing_(view.culling, placed_scene(surfaces).sides.get()) {}
 
   enum class Place : std::uint8_t { outside, inside, crossing };
 

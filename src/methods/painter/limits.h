@@ -15,20 +15,21 @@
 namespace frontmost::painter_detail {
 
 [[noreturn]] inline void refuse_more_polygons_than(std::size_t most) {
-  throw Error(ErrorCode::limit_exceeded, "painter: more than " + std::to_string(most) + " polygons and pieces");
+  throw Error(ErrorCode::limit_exceeded, "painter", "more than " + std::to_string(most) + " polygons and pieces");
 }
 
 /// The steps of a function that takes `polygons` triangles or pieces, of all its threads together.
 class PaintEffort {
  public:
   PaintEffort(const Execution& execution, std::size_t polygons)
-      : execution_(execution), polygons_(polygons), limit_(execution, kMostSteps + kStepsOfPolygon * polygons) {}
+      : execution_(execution),
+        polygons_(polygons),
+        limit_(execution, kMostSteps + kStepsOfPolygon * polygons, "painter") {}
 
   [[nodiscard]] const Execution& execution() const { return execution_; }
   void add(std::size_t steps) {
     limit_.add(steps, [&] {
-      return "painter: too many of " + std::to_string(polygons_) +
-             " triangles and pieces overlap in one place of the picture";
+      return "too many of " + std::to_string(polygons_) + " triangles and pieces overlap in one place of the picture";
     });
   }
 

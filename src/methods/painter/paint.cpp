@@ -98,7 +98,7 @@ class Canvas {
   void paint(const PaintPolygon& polygon) {
     const CutTriangle outline({order_.corners.data() + polygon.first_corner, polygon.corner_count});
     const ClippedPolygon clipped = clip_triangle(transform_, surfaces_.corners(polygon.id));
-    const Cutouts* const cutouts = surfaces_.placed().cutouts.get();
+    const Cutouts* const cutouts = placed_scene(surfaces_).cutouts.get();
     std::optional<ScreenCutout> holes;
     if (cutouts && cutouts->has(polygon.id)) holes.emplace((*cutouts)[polygon.id], rays_);
     for (std::size_t k = 2; k < std::size_t(clipped.count); ++k) {
@@ -149,7 +149,7 @@ void check(const Surfaces& surfaces, const PaintOrder& order) {
   for (const PaintPolygon& polygon : order.polygons)
     if (polygon.id >= surfaces.primitive_count() || polygon.first_corner > order.corners.size() ||
         polygon.corner_count > order.corners.size() - polygon.first_corner)
-      throw Error(ErrorCode::bad_argument, "paint: the order is not of these surfaces");
+      throw Error(ErrorCode::bad_argument, "paint", "the order is not of these surfaces");
 }
 
 }  // namespace

@@ -75,8 +75,9 @@ class Orderer {
   }
 
   [[noreturn]] void refuse_more_cuts() const {
-    throw Error(ErrorCode::limit_exceeded, "painter: more than " + std::to_string(options_.most_cuts) +
-                                               " cuts: too many triangles pass through each other");
+    throw Error(
+        ErrorCode::limit_exceeded, "painter",
+        "more than " + std::to_string(options_.most_cuts) + " cuts: too many triangles pass through each other");
   }
 
   /// The error that would come after all cuts were made; before they are sorted, for every two would be compared.

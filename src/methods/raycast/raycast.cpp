@@ -50,10 +50,10 @@ RayCaster::~RayCaster() = default;
 RayCaster::RayCaster(RayCaster&&) noexcept = default;
 RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
 
-const Visible& RayCaster::cast(const RayIndex& index, const View& view, const Execution& execution) {
+const Visible& RayCaster::draw(const RayIndex& index, const View& view, const Execution& execution) {
   validate(view);
   const IeeeScope ieee;
-  const RayTree& tree = index.tree();
+  const RayTree& tree = ray_tree(index);
   const ScreenTransform transform(view);
   const bool is_used = state_->prepare_planes(view);
   Visible& visible = state_->visible;
@@ -87,7 +87,7 @@ Visible RayCaster::take() { return std::move(state_->visible); }
 
 Visible raycast(const RayIndex& index, const View& view, const Execution& execution) {
   RayCaster caster;
-  caster.cast(index, view, execution);
+  caster.draw(index, view, execution);
   return caster.take();
 }
 

@@ -164,7 +164,7 @@ RangeScan scan(const RayIndex& index, const RayCamera& camera, const Execution& 
   RangeScan result = prepare_scan(camera);
   const auto cast = [&](const auto& model) {
     for (int sample = 0; sample < camera.samples; ++sample)
-      ScanCaster(index.tree(), model, sample, result).cast(execution);
+      ScanCaster(ray_tree(index), model, sample, result).cast(execution);
   };
   std::visit(cast, camera.model);
   keep_in_range(result, execution);

@@ -58,10 +58,10 @@ ZBuffer& ZBuffer::operator=(ZBuffer&&) noexcept = default;
 const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const Execution& execution) {
   validate(view);
   const IeeeScope ieee;
-  const ClusterSet& set = surfaces.clusters(execution);
+  const ClusterSet& set = cluster_set(surfaces, execution);
   const ScreenTransform transform(view);
   FramePlan& plan = state_->plan;
-  const PlaceTarget target(transform, view, surfaces.placed().sides.get(), execution.isa);
+  const PlaceTarget target(transform, view, placed_scene(surfaces).sides.get(), execution.isa);
   plan.make(set, target, execution);
 
   // On planes that are touched for the first time streaming costs 20 % at 16 MiB and saves 15 % at 66 MiB; on planes
@@ -101,9 +101,9 @@ void ZBuffer::give_back(Visible&& planes) {
 
 Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& execution) {
   validate(view);
-  if (!surfaces.clusters_for_picture(execution)) {
+  if (!cluster_set_for_picture(surfaces, execution)) {
     const IeeeScope ieee;
-    return draw_directly(surfaces.placed(), view, execution);
+    return draw_directly(placed_scene(surfaces), view, execution);
   }
   ZBuffer buffer;
   buffer.draw(surfaces, view, execution);
@@ -112,9 +112,9 @@ Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& exe
 
 VisiblePixels zbuffer_pixels(const Surfaces& surfaces, const View& view, const Execution& execution) {
   validate(view);
-  if (!surfaces.clusters_for_picture(execution)) {
+  if (!cluster_set_for_picture(surfaces, execution)) {
     const IeeeScope ieee;
-    return draw_pixels_directly(surfaces.placed(), view, execution);
+    return draw_pixels_directly(placed_scene(surfaces), view, execution);
   }
   ZBuffer buffer;
   return pixels_of(buffer.draw(surfaces, view, execution));

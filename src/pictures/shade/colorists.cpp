@@ -84,7 +84,7 @@ glm::vec3 color_of_object(std::uint32_t object) {
 }
 
 Lit lit_by(const Lighting& lighting, const ShadedPicture& picture, PreparedScene& scene, const Execution& execution) {
-  const Lights lights = picture.options.lights;
+  const Lights lights = picture.options.light.lights;
   std::span<const Light> own;
   if (lights == Lights::file || lights == Lights::both) own = scene.surfaces.scene().lights;
   scene.lights.set(counts_key(lights) && lighting.key.is_on() ? &lighting.key : nullptr, own,

@@ -32,9 +32,14 @@ bool shows_materials(Shading shading) {
   return shading == Shading::lit || shading == Shading::flat || shading == Shading::normals;
 }
 
+void check_given(const ShadeInput& input, const char* who) {
+  if (!input.visible == !input.pixels)
+    throw Error(ErrorCode::bad_argument, who, "either what is visible or its pixels must be given");
+}
+
 void check_opacity(const ShadeOptions& options) {
   if (!(options.opacity >= 0.0f && options.opacity <= 1.0f))
-    throw Error(ErrorCode::bad_argument, "shade: opacity: must be 0 to 1");
+    throw Error(ErrorCode::bad_argument, "shade: opacity", "must be 0 to 1");
 }
 
 }  // namespace frontmost::shading

@@ -24,6 +24,8 @@ struct DepthRange {
 [[nodiscard]] bool lacks_normals(const Scene& scene);
 /// Colours come from materials.
 [[nodiscard]] bool shows_materials(Shading shading);
+/// \throws Error bad_argument unless one of both is given that can be visible.
+void check_given(const ShadeInput& input, const char* who);
 /// \throws Error bad_argument.
 void check_opacity(const ShadeOptions& options);
 

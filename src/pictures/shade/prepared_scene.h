@@ -17,7 +17,7 @@ namespace frontmost::shading {
 /// Every primitive that holds a sample.
 [[nodiscard]] inline BitSet seen_primitives(const Surfaces& surfaces, const ShadeInput& input,
                                             const Execution& execution, BitSet memory) {
-  BitSet seen = seen_primitives(surfaces, input.visible, execution, std::move(memory));
+  BitSet seen = seen_primitives(surfaces, input.first(), execution, std::move(memory));
   for (std::size_t i = 0; input.pixels && i < input.pixels->other_count; ++i)
     if (input.pixels->others[i] != no_primitive) seen.add(input.pixels->others[i]);
   return seen;
@@ -27,7 +27,7 @@ struct PreparedScene {
   /// Borrows the surfaces and their scene. O(instances + materials).
   explicit PreparedScene(const Surfaces& from)
       : surfaces(from),
-        moves(from.placed().moves.count()),
+        moves(placed_scene(from).moves.count()),
         triangles(from),
         materials(from.scene()),
         shadows(from),
@@ -35,7 +35,7 @@ struct PreparedScene {
 
   /// Follows what Surfaces::move() has moved since the last picture.
   void follow_moves(const Execution& execution) {
-    const MoveLog& log = surfaces.placed().moves;
+    const MoveLog& log = placed_scene(surfaces).moves;
     if (log.count() == moves) return;
     log.visit_since(moves, surfaces.scene().instances.size(), [&](std::uint32_t instance) {
       triangles.follow(surfaces, instance);
@@ -62,13 +62,13 @@ struct PreparedScene {
   /// That of a picture, which is borrowed; null where the options ask for none.
   const DepthOcclusion* find_occlusion(const ShadeInput& input, const ShadeOptions& options,
                                        const Execution& execution) {
-    if (!options.ambient_occlusion) return nullptr;
+    if (!options.light.ambient_occlusion) return nullptr;
     if (!occlusion_radius) occlusion_radius = default_occlusion_radius(surfaces);
-    const auto [strength, radius] = *options.ambient_occlusion;
+    const auto [strength, radius] = *options.light.ambient_occlusion;
     const OcclusionReach reach{radius.value_or(*occlusion_radius), strength};
     const Surfaces& opaque = shadows.casters(execution);
     if (&opaque == &surfaces) {
-      occlusion.find(input.visible, input.view().samples, reach);
+      occlusion.find(input.first(), input.view().samples, reach);
     } else {
       View view = input.view();
       view.samples = 1;

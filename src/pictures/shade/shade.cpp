@@ -49,32 +49,33 @@ void check(const PictureRequest& request) {
   check_opacity(request.options);
   check_ambient_occlusion(request.options);
   check_light(request.options.light);
-  if (request.options.light.shows_environment && request.options.blend != Blend::linear)
-    throw Error(ErrorCode::unsupported, "shade: an environment is shown as background by the blend linear alone");
+  if (request.options.light.shows_environment && request.options.pixels.blend != Blend::linear)
+    throw Error(ErrorCode::unsupported, "shade", "an environment is shown as background by the blend linear alone");
   const ShadeInput& input = request.input;
+  check_given(input, "shade");
   const PrimitiveId count = request.scene.surfaces.primitive_count();
-  if (!input.pixels) return check_answer(input.visible, count, "shade", request.execution);
+  if (!input.pixels) return check_answer(*input.visible, count, "shade", request.execution);
   check_answer(*input.pixels, count, "shade", request.execution);
   if (request.options.shading == Shading::depth)
-    throw Error(ErrorCode::unsupported, "shade: pictures of depths need the planes of a Visible");
+    throw Error(ErrorCode::unsupported, "shade", "pictures of depths need the planes of a Visible");
 }
 
 void paint_materials(const PictureRequest& request, TileCanvas& canvas) {
   const ShownMaterials shown(request);
   const ShadeOptions& options = request.options;
   with_colorist(request, shown, [&](const FragmentShader::Colorist& colorist) {
-    if (options.blend == Blend::linear)
-      return shown.paint({canvas, colorist, background_color(options), options.opacity, options.rate},
+    if (options.pixels.blend == Blend::linear)
+      return shown.paint({canvas, colorist, background_color(options), options.opacity, options.pixels.rate},
                          request.execution);
     LinearCanvas in_srgb(canvas);
     const FragmentShader::Colorist srgb = SrgbColorist{colorist};
     const glm::vec4 background = options.background ? glm::vec4(*options.background, 1) : glm::vec4(0);
-    shown.paint({in_srgb, srgb, background, options.opacity, options.rate}, request.execution);
+    shown.paint({in_srgb, srgb, background, options.opacity, options.pixels.rate}, request.execution);
   });
 }
 
 void paint_map(const PictureRequest& request, TileCanvas& canvas) {
-  const Visible& visible = request.input.visible;
+  const Visible& visible = request.input.first();
   const ShadeOptions& options = request.options;
   const TriangleSource source(request.scene.triangles, visible.view, nullptr);
   const auto paint = [&](const TileWork::Colorist& colorist) {
@@ -116,7 +117,7 @@ void paint_normals(PreparedScene& scene, const Visible& visible, const Execution
     large = large_primitives(scene.surfaces.primitive_count(), visible, execution);
     scene.triangles.smooth(*large, execution);
   }
-  scene.make_materials_ready(ShadeInput(visible), execution);
+  scene.make_materials_ready(ShadeInput{.visible = &visible}, execution);
   TriangleSource source(scene.triangles, visible.view, large ? &*large : nullptr);
   if (!scene.materials.has_textures()) source.leave_out_texcoords();
   const TileWork::Colorist colorist = RawNormals{scene.materials, execution.isa};
@@ -162,16 +163,16 @@ const Bitmap& Shader::shade_bitmap(const ShadeInput& input, const ShadeOptions& 
 const Image& Shader::shade(const ScanInput& input, const ShadeOptions& options, const Execution& execution) {
   const ScanRequest request{state_->now(execution), input, options, execution};
   check_scan(request);
-  PlanesCanvas canvas(SeenPoints(input.scan).view, {"R", "G", "B", "A"}, take());
+  PlanesCanvas canvas(SeenPoints(*input.scan).view, {"R", "G", "B", "A"}, take());
   paint_scan(request, canvas, background_color(options));
   return state_->image = canvas.take();
 }
 
 DeepImage Shader::shade_deep(const ShadeInput& input, const ShadeOptions& options, const Execution& execution) {
   if (!shows_materials(options.shading))
-    throw Error(ErrorCode::unsupported, "shade: deep images are lit, flat, or of normals");
+    throw Error(ErrorCode::unsupported, "shade", "deep images are lit, flat, or of normals");
   ShadeOptions in_layers = options;
-  in_layers.see_through = SeeThrough::always;
+  in_layers.layers.see_through = SeeThrough::always;
   return deep_image({state_->now(execution), input, in_layers, execution});
 }
 
@@ -196,6 +197,19 @@ Image shade(const Surfaces& surfaces, const ShadeInput& input, const ShadeOption
   return shader.take();
 }
 
+Image shade(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options, const Execution& execution) {
+  return shade(surfaces, ShadeInput{.visible = &visible}, options, execution);
+}
+
+Image shade(const Surfaces& surfaces, const VisiblePixels& pixels, const ShadeOptions& options,
+            const Execution& execution) {
+  return shade(surfaces, ShadeInput{.pixels = &pixels}, options, execution);
+}
+
+Image shade(const Surfaces& surfaces, const RangeScan& scan, const ShadeOptions& options, const Execution& execution) {
+  return shade(surfaces, ScanInput{.scan = &scan}, options, execution);
+}
+
 Image shade(const Surfaces& surfaces, const ScanInput& input, const ShadeOptions& options, const Execution& execution) {
   Shader shader(surfaces);
   shader.shade(input, options, execution);
@@ -207,6 +221,21 @@ Bitmap shade_bitmap(const Surfaces& surfaces, const ShadeInput& input, const Sha
   Shader shader(surfaces);
   shader.shade_bitmap(input, options, execution);
   return shader.take_bitmap();
+}
+
+Bitmap shade_bitmap(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options,
+                    const Execution& execution) {
+  return shade_bitmap(surfaces, ShadeInput{.visible = &visible}, options, execution);
+}
+
+Bitmap shade_bitmap(const Surfaces& surfaces, const VisiblePixels& pixels, const ShadeOptions& options,
+                    const Execution& execution) {
+  return shade_bitmap(surfaces, ShadeInput{.pixels = &pixels}, options, execution);
+}
+
+DeepImage shade_deep(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options,
+                     const Execution& execution) {
+  return shade_deep(surfaces, ShadeInput{.visible = &visible}, options, execution);
 }
 
 DeepImage shade_deep(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options,

@@ -15,7 +15,8 @@ using abuffer_detail::Rectangle;
 namespace {
 
 bool wants_layers(const PictureRequest& request) {
-  if (request.options.see_through != SeeThrough::where_needed) return request.options.see_through == SeeThrough::always;
+  if (request.options.layers.see_through != SeeThrough::where_needed)
+    return request.options.layers.see_through == SeeThrough::always;
   return has_see_through(request.scene.surfaces.scene()) || request.options.opacity < 1.0f;
 }
 
@@ -43,7 +44,7 @@ bool all_of_mixed(const VisiblePixels& pixels, const Rectangle& tile, int y, con
 /// Whether `is_so` holds for what any sample of a tile sees.
 template <class IsSo>
 bool all_of_tile(const ShadeInput& input, const Rectangle& tile, const IsSo& is_so) {
-  const Visible& visible = input.visible;
+  const Visible& visible = input.first();
   for (int y = tile.y; y < tile.y + tile.height; ++y) {
     for (int s = 0; s < visible.view.samples; ++s)
       if (!all_of(visible.primitives.data() + visible.index(tile.x, y, s), std::size_t(tile.width), is_so))
@@ -71,7 +72,7 @@ DeepImage ShownMaterials::deep(const Surfaces& surfaces, const FragmentShader::C
 }
 
 void ShownMaterials::paint(const Painting& painting, const Execution& execution) const {
-  const ShadedLayer front{*source_, input_.visible, SampleUse::all, input_.pixels};
+  const ShadedLayer front{*source_, input_.first(), SampleUse::all, input_.pixels};
   if (!layers_) return shade_tiles(front, painting, scene_.works, execution);
   const auto paint_opaque = [&](const Rectangle& tile) {
     if (!shows_front_alone(tile)) return false;
@@ -84,16 +85,16 @@ void ShownMaterials::paint(const Painting& painting, const Execution& execution)
 void ShownMaterials::find_front(const PictureRequest& request, bool wants_normals) {
   const Surfaces& surfaces = request.scene.surfaces;
   if (wants_normals)
-    large_ = large_primitives(surfaces.primitive_count(), input_.visible, request.execution, std::move(large_));
+    large_ = large_primitives(surfaces.primitive_count(), input_.first(), request.execution, std::move(large_));
   request.scene.make_materials_ready(input_, request.execution);
 }
 
 void ShownMaterials::find_layers(const PictureRequest& request, bool wants_normals) {
   const Surfaces& surfaces = request.scene.surfaces;
-  layers_.emplace(surfaces, input_.view(), AbufferOptions{request.options.grid, request.options.opacity},
+  layers_.emplace(surfaces, input_.view(), AbufferOptions{request.options.layers.grid, request.options.opacity},
                   request.execution);
   layer_samples_ = layers_->samples();
-  takes_front_ = request.options.see_through == SeeThrough::where_needed && request.options.grid == 0;
+  takes_front_ = request.options.layers.see_through == SeeThrough::where_needed && request.options.layers.grid == 0;
   if (!wants_normals && scene_.materials.is_ready()) return;
   if (takes_front_)
     large_ = seen_primitives(surfaces, input_, request.execution, std::move(large_));

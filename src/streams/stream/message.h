@@ -68,7 +68,7 @@ class MessageReader {
 
  private:
   [[noreturn]] static void fail() {
-    throw Error(ErrorCode::file_malformed, "stream: the ranks do not read the same files");
+    throw Error(ErrorCode::file_malformed, "stream", "the ranks do not read the same files");
   }
   [[nodiscard]] std::size_t count_of(std::size_t size) {
     const auto count = get<std::uint64_t>();

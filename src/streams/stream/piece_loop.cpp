@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint64_t most_triangles = no_primitive - 1;  // as of a scene that is read as a whole
 
 [[noreturn]] void fail_too_many() {
-  throw Error(ErrorCode::limit_exceeded, "stream: more than 4294967294 triangles over all files");
+  throw Error(ErrorCode::limit_exceeded, "stream", "more than 4294967294 triangles over all files");
 }
 
 /// Of a pipe every rank would get other bytes, and some would wait for it for ever.
@@ -27,8 +27,8 @@ void refuse_pipe(const std::string& path) {
   std::error_code ignored;
   if (path != "-" && (!std::filesystem::exists(path, ignored) || std::filesystem::is_regular_file(path, ignored)))
     return;
-  throw Error(ErrorCode::unsupported,
-              (path == "-" ? std::string("standard input") : path) + ": several ranks can read ordinary files alone");
+  throw Error(ErrorCode::unsupported, (path == "-" ? std::string("standard input") : path),
+              "several ranks can read ordinary files alone");
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ void refuse_pipe(const std::string& path) {
 Models::Models(const std::vector<std::string>& paths, const LoadOptions& options, const Turns& turns,
                const Execution& execution)
     : turns_(turns) {
-  if (paths.empty()) throw Error(ErrorCode::bad_argument, "stream: no files");
+  if (paths.empty()) throw Error(ErrorCode::bad_argument, "stream", "no files");
   std::uint64_t known = 0;
   for (const std::string& path : paths) {
     if (turns.count > 1) refuse_pipe(path);

@@ -49,7 +49,7 @@ struct Stream::State {
       : options(given), models(paths, given.load, turns_of(given), execution) {
     constexpr std::uint32_t most_at_once = 1u << 24;
     if (given.triangles_at_once < 1 || given.triangles_at_once > most_at_once)
-      throw Error(ErrorCode::bad_argument, "triangles_at_once: must be 1 to 16777216");
+      throw Error(ErrorCode::bad_argument, "triangles_at_once", "must be 1 to 16777216");
     options.triangles_at_once = shared_piece_size(paths, given);
   }
 
@@ -260,7 +260,7 @@ KeptPieces Stream::State::find_needs(KeptPieces kept, const StreamNeeds& needs, 
 }
 
 Excerpt Stream::look(const std::vector<View>& views, const StreamNeeds& needs, const Execution& execution) {
-  if (views.empty()) throw Error(ErrorCode::bad_argument, "stream: no views");
+  if (views.empty()) throw Error(ErrorCode::bad_argument, "stream", "no views");
   Excerpt excerpt;
   KeptPieces kept = state_->find_visible(views, needs, excerpt, execution);
   kept = state_->find_needs(std::move(kept), needs, excerpt, execution);

@@ -122,7 +122,7 @@ TEST(DeepExr, IsFlattenedToThePictureByOpenExr) {
   const Surfaces surfaces(scene);
   View view = frame(surfaces, 128, 72);
   view.samples = 4;
-  ShadeOptions options{.background = std::nullopt, .shadows = Shadows::off, .opacity = 0.4f};
+  ShadeOptions options{.background = std::nullopt, .opacity = 0.4f, .light = {.shadows = Shadows::off}};
   const Visible visible = zbuffer(surfaces, view);
   const Image picture = shade(surfaces, visible, options);
   save(shade_deep(surfaces, visible, options), folder.file("deep.exr"));

@@ -132,7 +132,7 @@ TEST_P(Output, DevicesAndPipesAreWrittenTo) {
 
 TEST_P(Output, WhatCannotBeWrittenIsNamed) {
   for (const std::string& path : {folder_.path().string(), folder_.file("missing/a.txt"), folder_.file("no/"),
-                                  folder_.file(std::string(300, 'x')), std::string("/proc/none.txt"), std::string()}) {
+                                  folder_.file(std::string(300, 'x')), std::string("/proc/none.txt")}) {
     std::string message;
     EXPECT_EQ(error_of([&] { write_file(path, "x"); }, &message), ErrorCode::file_unwritable) << path;
     EXPECT_EQ(message.rfind(path + ": ", 0), 0u) << message;
@@ -196,7 +196,7 @@ TEST_P(Output, ReasonsAreNamed) {
   };
   EXPECT_EQ(reason(folder_.path().string()), ": is a folder");
   EXPECT_EQ(reason(folder_.file("no/")), ": is not a file name");
-  EXPECT_EQ(reason(""), ": is not a file name");
+  EXPECT_EQ(reason(""), "'': is not a file name");
   EXPECT_EQ(reason(folder_.file("missing/a.txt")), ": cannot create: " + std::generic_category().message(ENOENT));
   write_text(folder_.file("file"), "");
   EXPECT_EQ(reason(folder_.file("file/a.txt")), ": cannot write: " + std::generic_category().message(ENOTDIR));

@@ -22,12 +22,14 @@ inline Scene load_text(const std::string& text, std::optional<ModelFormat> forma
   return load(bytes_of(text), "model", {.format = format, .up = {}});
 }
 
-/// The words of the error that loading ends in; "read" if there is none.
+/// The words of the error that loading ends in; "read" if there is none. Each error names its file and its reason.
 inline std::string error_of(const std::string& text, std::optional<ModelFormat> format) {
   try {
     (void)load_text(text, format);
     return "read";
   } catch (const Error& error) {
+    EXPECT_EQ(error.file(), "model") << error.what();
+    EXPECT_FALSE(error.reason().empty()) << error.what();
     return error.what();
   }
 }

@@ -97,7 +97,7 @@ TEST(SceneErrors, ModelsThatCannotBeReadAreNamedWithTheirObject) {
   EXPECT_THAT(error("broken.stl"), StartsWith("objects[0].model: broken.stl: "));
   EXPECT_THAT(error("bracket.step"), AllOf(StartsWith("objects[0].model: bracket.step: STEP"), HasSubstr("gmsh")));
   EXPECT_THAT(error("builtin:castle"), StartsWith("objects[0].model: "));
-  EXPECT_EQ(error(""), "objects[0].model: : not a file name");
+  EXPECT_EQ(error(""), "objects[0].model: not a file name");
   EXPECT_EQ(error("-"), "objects[0].model: -: cannot be found") << "standard input is not for scene files";
 }
 

@@ -65,7 +65,7 @@ struct AccountScratch {
 class Accountant {
  public:
   Accountant(const Surfaces& surfaces, const Visible& visible, double scale, const Execution& execution)
-      : scene_(surfaces.placed()),
+      : scene_(placed_scene(surfaces)),
         view_(visible.view),
         execution_(execution),
         canvas_(visible.view, scale),
@@ -148,11 +148,12 @@ Accounting account(const Surfaces& surfaces, const Visible& visible, const Accou
   validate(visible.view);
   check_answer(visible, surfaces.primitive_count(), "accounting", execution);
   if (!(options.canvas >= 1 && options.canvas <= kLargestScale))
-    throw Error(ErrorCode::bad_argument, "canvas: must be 1 to 16");
+    throw Error(ErrorCode::bad_argument, "canvas", "must be 1 to 16");
   const IeeeScope ieee;
   Accounting result = Accountant(surfaces, visible, options.canvas, execution).account();
   if (options.all_hiders) {
-    HiderLists lists = find_all_hiders(surfaces.placed(), ObjectCanvas(visible.view, 1), result.objects, execution);
+    HiderLists lists =
+        find_all_hiders(placed_scene(surfaces), ObjectCanvas(visible.view, 1), result.objects, execution);
     result.hidden_by_any = std::move(lists.any);
     result.hidden_only_by = std::move(lists.only);
   }

@@ -10,7 +10,7 @@ using namespace accounting_detail;
 
 struct PixelMasks::Parts {
   Parts(const Surfaces& surfaces, const Visible& seen, Isa chosen)
-      : scene(surfaces.placed()),
+      : scene(placed_scene(surfaces)),
         visible(seen),
         isa(chosen),
         canvas(seen.view, 1),

@@ -49,7 +49,7 @@ struct ObjectIds {
 class BandReader {
  public:
   BandReader(const Surfaces& surfaces, const Visible& visible, const glm::ivec2& margin, Isa isa)
-      : first_primitives_(surfaces.placed().first_primitives),
+      : first_primitives_(placed_scene(surfaces).first_primitives),
         visible_(visible),
         left_(margin.x % kWordPixels),
         isa_(isa) {}

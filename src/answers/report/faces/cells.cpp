@@ -479,7 +479,7 @@ std::string too_many_faces(const CellLists& lists, const FacesOfView& faces, con
   const CellBox box = lists.box(fullest, view);
   const Surfaces& surfaces = faces.surfaces;
   const PrimitiveId id = faces.screen.faces[face_of(lists[fullest].front())].id;
-  return "visible faces: too many faces lie over each other to be cut by each other: most of them, " +
+  return "too many faces lie over each other to be cut by each other: most of them, " +
          std::to_string(lists[fullest].size()) + ", in the pixels from " + std::to_string(int(box.left)) + "," +
          std::to_string(int(box.top)) + " to " + std::to_string(int(box.right)) + "," +
          std::to_string(int(box.bottom)) + ", among them face " + std::to_string(surfaces.source(id).triangle) +
@@ -493,7 +493,7 @@ SeenParts seen_parts(const FacesOfView& faces, const View& view, const Execution
   const CellLists lists(faces.screen, view);
   FaceMarks marks(faces.screen.faces.size());
   for (const std::uint32_t face : lists.beyond_picture()) marks.set_partial(face);
-  WorkLimit work(execution, faces.most_steps);
+  WorkLimit work(execution, faces.most_steps, "visible faces");
   const auto tell = [&](std::uint64_t steps) { work.add(steps, [&] { return too_many_faces(lists, faces, view); }); };
   const std::size_t chunks = (lists.size() + kCellsAtOnce - 1) / kCellsAtOnce;
   SeenParts seen;

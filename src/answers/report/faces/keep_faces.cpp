@@ -104,7 +104,7 @@ Scene keep_faces(const Scene& scene, std::span<const PrimitiveId> ids) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     triangles.clear();
     for (; id != ids.end() && *id < first + mesh.triangles.size(); ++id) {
-      if (id != ids.begin() && *id <= *(id - 1)) throw Error(ErrorCode::bad_argument, "ids: must ascend");
+      if (id != ids.begin() && *id <= *(id - 1)) throw Error(ErrorCode::bad_argument, "ids", "must ascend");
       triangles.push_back(std::uint32_t(*id - first));
     }
     first += mesh.triangles.size();
@@ -114,7 +114,7 @@ Scene keep_faces(const Scene& scene, std::span<const PrimitiveId> ids) {
     kept.meshes.push_back(kept_mesh(mesh, triangles));
   }
   if (id != ids.end())
-    throw Error(ErrorCode::bad_argument, "ids: " + std::to_string(*id) + " is beyond the scene's last triangle");
+    throw Error(ErrorCode::bad_argument, "ids", std::to_string(*id) + " is beyond the scene's last triangle");
   return kept;
 }
 

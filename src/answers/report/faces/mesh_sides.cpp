@@ -85,7 +85,7 @@ void join_pairs(std::span<SideEntry> sides, std::vector<std::uint32_t>& beyond) 
 
 MeshSides::MeshSides(const Mesh& mesh) : beyond_(3 * mesh.triangles.size(), no_index) {
   if (mesh.triangles.size() > most_triangles)
-    throw Error(ErrorCode::limit_exceeded, "mesh " + mesh.name + ": more than 536870912 triangles to join");
+    throw Error(ErrorCode::limit_exceeded, "mesh " + mesh.name, "more than 536870912 triangles to join");
   const std::vector<std::uint32_t> place = first_at_places(mesh.positions);
   const auto visit_sides = [&](const auto& visit) {
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {

@@ -249,7 +249,7 @@ ViewedFaces joined(const std::vector<FacePart>& parts, Buffer<ScreenPoint> verti
   std::size_t points = vertices.size(), faces = 0;
   for (const FacePart& part : parts) points += part.clipped.size(), faces += part.faces.size();
   if (points >= no_index || faces >= no_index)
-    throw Error(ErrorCode::limit_exceeded, "more than 4294967294 faces or corners within the view");
+    throw Error(ErrorCode::limit_exceeded, "visible faces", "more than 4294967294 faces or corners within the view");
   ViewedFaces all{Buffer<ScreenPoint>(), Buffer<ViewedFace>(faces), Buffer<std::uint8_t>(faces)};
   const std::size_t vertex_count = vertices.size();
   if (points == vertex_count) {
@@ -300,7 +300,7 @@ void find_endings(const PlacedScene& placed, const std::vector<MeshSides>& sides
 ViewedFaces viewed_faces(const Surfaces& surfaces, const View& view, const std::vector<MeshSides>& sides,
                          const Execution& execution) {
   constexpr std::size_t kRangesAtOnce = 16, kFacesAtOnce = 8192;
-  const PlacedScene& placed = surfaces.placed();
+  const PlacedScene& placed = placed_scene(surfaces);
   const Eye eye(view);
   VerticesOfView vertices(placed, eye, execution);
   std::vector<std::int8_t> facing(surfaces.primitive_count(), 0);

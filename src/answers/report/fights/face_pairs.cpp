@@ -13,6 +13,7 @@ namespace {
 
 using namespace zbuffer_detail;
 
+constexpr const char* kPlace = "fighting faces";
 constexpr std::uint64_t kMostLooks = std::uint64_t(1) << 28, kMostPairs = std::uint64_t(1) << 24;
 
 /// What is looked at and kept, by all threads together.
@@ -80,7 +81,7 @@ class FaceCells {
       return std::to_string(std::min(int(double(place) * side), size));
     };
     const std::size_t x = fullest % columns, y = fullest / columns;
-    return "fighting faces: too many " + things + ": most faces, " + std::to_string(lists_.of(fullest).size()) +
+    return "too many " + things + ": most faces, " + std::to_string(lists_.of(fullest).size()) +
            ", are in the pixels from " + at(x, view_.width) + "," + at(y, view_.height) + " to " +
            at(x + 1, view_.width) + "," + at(y + 1, view_.height) + "; leave out what lies there many times";
   }
@@ -170,7 +171,7 @@ std::vector<FacePair> find_face_pairs(const std::vector<ScreenFace>& faces, cons
                                       const Execution& execution) {
   const FaceCells cells(faces, view);
   std::vector<std::vector<FacePair>> by_row(std::size_t(cells.rows()));
-  PairLimits limits{{execution, kMostLooks}, {execution, kMostPairs}};
+  PairLimits limits{{execution, kMostLooks, kPlace}, {execution, kMostPairs, kPlace}};
   parallel_for(execution, by_row.size(), 1, [&](std::size_t row, std::size_t) {
     CellScratch scratch;
     for (int column = 0; column < cells.columns(); ++column)

@@ -79,7 +79,7 @@ struct FightSearch {
 FoundAreas find_areas(const FightSearch& search, const std::vector<FacePair>& pairs, const Execution& execution) {
   constexpr std::size_t kGrain = 4096, kMostAreas = std::size_t(1) << 22, kPairsAtOnce = 16;
   constexpr std::uint64_t kMostLooks = std::uint64_t(1) << 30, kMostLooksOfSample = 64;
-  WorkLimit work(execution, kMostLooks + kMostLooksOfSample * search.visible.view.sample_count());
+  WorkLimit work(execution, kMostLooks + kMostLooksOfSample * search.visible.view.sample_count(), "fighting faces");
   std::vector<FoundAreas> parts((pairs.size() + kGrain - 1) / kGrain);
   parallel_for(execution, pairs.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     RiskFinder finder(search.visible.view, search.setup);
@@ -101,7 +101,7 @@ FoundAreas find_areas(const FightSearch& search, const std::vector<FacePair>& pa
       all.faces.push_back(fight);
     }
     if (all.faces.size() > kMostAreas)
-      throw Error(ErrorCode::limit_exceeded, "fighting faces: more than 4194304 areas are at risk");
+      throw Error(ErrorCode::limit_exceeded, "fighting faces", "more than 4194304 areas are at risk");
   }
   return all;
 }

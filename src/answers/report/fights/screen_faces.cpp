@@ -154,7 +154,7 @@ bool FarthestSeen::hides(const PixelRect& rect, float high) const {
 std::vector<ScreenFace> screen_faces(const Surfaces& surfaces, const View& view, const KeyStep& step,
                                      const FarthestSeen& seen, const Execution& execution) {
   const ScreenTransform transform(view);
-  const PlacedScene& placed = surfaces.placed();
+  const PlacedScene& placed = placed_scene(surfaces);
   const PlaceTarget target(transform, view, placed.sides.get(), execution.isa);
   const PlaceErrors errors(transform, view);
   const glm::ivec2 size(view.width * kSubPixels, view.height * kSubPixels);

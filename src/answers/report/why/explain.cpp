@@ -37,7 +37,7 @@ class Explainer {
   [[nodiscard]] std::vector<Explanation> explain(std::span<const std::uint32_t> objects) const {
     constexpr std::size_t kObjectsAtOnce = 16;
     const std::vector<ObjectPlaces> places =
-        find_places(surfaces_.placed(), view_, accounts_, objects.size() == 1 ? objects[0] : no_index, execution_);
+        find_places(placed_scene(surfaces_), view_, accounts_, objects.size() == 1 ? objects[0] : no_index, execution_);
     std::vector<Explanation> all(objects.size());
     parallel_for(execution_, objects.size(), kObjectsAtOnce, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) all[i] = explain_by_view(objects[i], places[objects[i]]);
@@ -85,7 +85,7 @@ class Explainer {
   }
 
   [[nodiscard]] bool has_holes(std::uint32_t object) const {
-    const PlacedScene& scene = surfaces_.placed();
+    const PlacedScene& scene = placed_scene(surfaces_);
     if (!scene.cutouts) return false;
     for (PrimitiveId id = scene.first_primitives[object]; id < scene.first_primitives[object + 1]; ++id)
       if (scene.cutouts->has(id)) return true;
@@ -111,8 +111,8 @@ class Explainer {
       if (why.reason == SightReason::hidden) hidden.push_back(why.object);
     if (hidden.empty()) return;
     const ObjectCanvas canvas(view_, 1);
-    const std::vector<SampleProbe> probes = choose_probes(surfaces_.placed(), canvas, hidden, execution_);
-    std::vector<std::vector<std::uint32_t>> before = find_before(surfaces_.placed(), canvas, probes, execution_);
+    const std::vector<SampleProbe> probes = choose_probes(placed_scene(surfaces_), canvas, hidden, execution_);
+    std::vector<std::vector<std::uint32_t>> before = find_before(placed_scene(surfaces_), canvas, probes, execution_);
     auto why = all.begin();
     for (std::size_t i = 0; i < probes.size(); ++i) {
       while (why->object != probes[i].object) ++why;
@@ -138,7 +138,7 @@ std::vector<Explanation> explain_all(const Surfaces& surfaces, const Visible& vi
   check_answer(visible, surfaces.primitive_count(), "explanations", execution);
   const std::size_t count = surfaces.scene().instances.size();
   if (accounts.objects.size() != count)
-    throw Error(ErrorCode::bad_argument, "explanations: the accounts are of other objects");
+    throw Error(ErrorCode::bad_argument, "explanations", "the accounts are of other objects");
   std::vector<std::uint32_t> objects(count);
   for (std::size_t i = 0; i < count; ++i) objects[i] = std::uint32_t(i);
   return Explainer(surfaces, visible.view, accounts, execution).explain(objects);
@@ -147,7 +147,7 @@ std::vector<Explanation> explain_all(const Surfaces& surfaces, const Visible& vi
 Explanation explain(const Surfaces& surfaces, const View& view, std::uint32_t object, const Execution& execution) {
   const IeeeScope ieee;
   if (object >= surfaces.scene().instances.size())
-    throw Error(ErrorCode::bad_argument, "explain: there is no object " + std::to_string(object));
+    throw Error(ErrorCode::bad_argument, "explain", "there is no object " + std::to_string(object));
   const Accounting accounts = account(surfaces, zbuffer(surfaces, view, execution), {}, execution);
   return Explainer(surfaces, view, accounts, execution).explain(std::span(&object, 1))[0];
 }

@@ -66,8 +66,8 @@ bool LoneObject::has_sample(const View& view, const ObjectPlaces& places, int fa
   enlarged.width *= factor;
   enlarged.height *= factor;
   const accounting_detail::ObjectCanvas canvas(enlarged, touched_pixels(enlarged, places, factor));
-  accounting_detail::ObjectMask mask(surfaces_.placed(), canvas, Isa::best);
-  mask.draw(surfaces_.placed().ranges);
+  accounting_detail::ObjectMask mask(placed_scene(surfaces_), canvas, Isa::best);
+  mask.draw(placed_scene(surfaces_).ranges);
   const auto is_marked = [&](const accounting_detail::MaskPlane& plane) {
     return accounting_detail::count_marked(plane, mask.touched(), Isa::best).count > 0;
   };

@@ -178,11 +178,11 @@ void centre(glm::dmat4& pose, const FilledFrustum& frustum, const std::vector<gl
 std::vector<glm::vec3> extremes_of(const Surfaces& surfaces, const Subject& subject, const FilledFrustum& frustum) {
   Extremes extremes(frustum);
   if (!subject.left_out.empty())
-    extremes.include(surfaces.placed(), subject.left_out);
-  else if (const ClusterSet* const clusters = surfaces.made_clusters())
+    extremes.include(placed_scene(surfaces), subject.left_out);
+  else if (const ClusterSet* const clusters = made_cluster_set(surfaces))
     extremes.include(*clusters);
   else
-    extremes.include(surfaces.placed());
+    extremes.include(placed_scene(surfaces));
   return extremes.points();
 }
 
@@ -203,12 +203,15 @@ ClipDistances clip_around(const Surfaces& surfaces, const Subject& subject, cons
 }
 
 void check(int width, int height, const FrameOptions& options) {
-  if (width < 1 || height < 1) throw Error(ErrorCode::bad_argument, "resolution: width and height must be at least 1");
-  if (!(options.margin >= 0 && options.margin < 0.5)) throw Error(ErrorCode::bad_argument, "margin: must be 0 to 0.5");
+  if (width < 1 || height < 1)
+    throw Error(ErrorCode::bad_argument, "resolution", "width and height must be at least 1");
+  if (!(options.margin >= 0 && options.margin < 0.5))
+    throw Error(ErrorCode::bad_argument, "margin", "must be 0 to 0.5");
   if (options.orthographic && options.intrinsics)
-    throw Error(ErrorCode::bad_argument, "intrinsics: a parallel projection has none");
+    throw Error(ErrorCode::bad_argument, "intrinsics", "a parallel projection has none");
   for (int axis = 0; options.target && axis < 3; ++axis)
-    if (!std::isfinite((*options.target)[axis])) throw Error(ErrorCode::bad_argument, "target: must be finite numbers");
+    if (!std::isfinite((*options.target)[axis]))
+      throw Error(ErrorCode::bad_argument, "target", "must be finite numbers");
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ void check_rigid(const glm::dmat4& pose) {
     good = good && std::abs(pose[i][3]) < kTolerance;
   }
   if (!(good && std::abs(pose[3][3] - 1) < kTolerance))
-    throw Error(ErrorCode::singular_camera, "pose: must be a rotation and a translation, last row 0 0 0 1");
+    throw Error(ErrorCode::singular_camera, "pose", "must be a rotation and a translation, last row 0 0 0 1");
 }
 
 bool is_world_to_camera(PoseConvention convention) {
@@ -64,7 +64,7 @@ glm::dmat4 look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::d
   const glm::dvec3 direction = target - eye;
   const double distance = glm::length(direction);
   if (!is_finite(eye) || !is_finite(target) || !std::isfinite(distance) || !(distance > 0))
-    throw Error(ErrorCode::singular_camera, "camera: eye and target must be finite and apart");
+    throw Error(ErrorCode::singular_camera, "camera", "eye and target must be finite and apart");
   const glm::dvec3 back = -direction / distance;
   const double up_length = glm::length(up);
   const glm::dvec3 wanted = is_finite(up) && up_length > 0 ? up / up_length : glm::dvec3(0, 1, 0);

@@ -15,16 +15,16 @@ namespace frontmost {
 namespace {
 
 void check_finite(double value, const char* what) {
-  if (!std::isfinite(value)) throw Error(ErrorCode::bad_argument, std::string(what) + ": must be a finite number");
+  if (!std::isfinite(value)) throw Error(ErrorCode::bad_argument, std::string(what), "must be a finite number");
 }
 
 void check_clip(const ClipDistances& clip, bool orthographic) {
   check_finite(clip.near, "near");
-  if (std::isnan(clip.far)) throw Error(ErrorCode::bad_argument, "far: must be a number");
+  if (std::isnan(clip.far)) throw Error(ErrorCode::bad_argument, "far", "must be a number");
   if (!orthographic && !(clip.near > 0))
-    throw Error(ErrorCode::bad_argument, "near: must be greater than 0 in perspective");
+    throw Error(ErrorCode::bad_argument, "near", "must be greater than 0 in perspective");
   if (orthographic) check_finite(clip.far, "far");
-  if (!(clip.far > clip.near)) throw Error(ErrorCode::bad_argument, "far: must be greater than near");
+  if (!(clip.far > clip.near)) throw Error(ErrorCode::bad_argument, "far", "must be greater than near");
 }
 
 void check_sides(double left, double right, double bottom, double top) {
@@ -32,12 +32,13 @@ void check_sides(double left, double right, double bottom, double top) {
   check_finite(right, "right");
   check_finite(bottom, "bottom");
   check_finite(top, "top");
-  if (!(left < right)) throw Error(ErrorCode::bad_argument, "right: must be greater than left");
-  if (!(bottom < top)) throw Error(ErrorCode::bad_argument, "top: must be greater than bottom");
+  if (!(left < right)) throw Error(ErrorCode::bad_argument, "right", "must be greater than left");
+  if (!(bottom < top)) throw Error(ErrorCode::bad_argument, "top", "must be greater than bottom");
 }
 
 void check_size(int width, int height) {
-  if (width < 1 || height < 1) throw Error(ErrorCode::bad_argument, "resolution: width and height must be at least 1");
+  if (width < 1 || height < 1)
+    throw Error(ErrorCode::bad_argument, "resolution", "width and height must be at least 1");
 }
 
 /// What is added to image coordinates to count them from the top left corner.
@@ -66,8 +67,8 @@ Projection make_projection(double min_fov, double aspect, const ClipDistances& c
   check_finite(min_fov, "field of view");
   check_finite(aspect, "aspect");
   if (!(min_fov > 0 && min_fov < kPi))
-    throw Error(ErrorCode::bad_argument, "field of view: must be between 0 and 180 degrees");
-  if (!(aspect > 0)) throw Error(ErrorCode::bad_argument, "aspect: must be greater than 0");
+    throw Error(ErrorCode::bad_argument, "field of view", "must be between 0 and 180 degrees");
+  if (!(aspect > 0)) throw Error(ErrorCode::bad_argument, "aspect", "must be greater than 0");
   check_clip(clip, false);
   const double side = std::tan(min_fov / 2);
   const double x = aspect > 1 ? side * aspect : side, y = aspect > 1 ? side : side / aspect;
@@ -89,7 +90,8 @@ Projection make_orthographic(double left, double right, double bottom, double to
 
 Projection make_projection(const Intrinsics& k, int width, int height, const ClipDistances& clip) {
   for (const double value : {k.fx, k.fy, k.cx, k.cy}) check_finite(value, "intrinsics");
-  if (!(k.fx > 0 && k.fy > 0)) throw Error(ErrorCode::bad_argument, "intrinsics: focal lengths must be greater than 0");
+  if (!(k.fx > 0 && k.fy > 0))
+    throw Error(ErrorCode::bad_argument, "intrinsics", "focal lengths must be greater than 0");
   check_size(width, height);
   check_clip(clip, false);
   const double cx = k.cx + pixel_shift(k.rule), cy = k.cy + pixel_shift(k.rule);
@@ -97,7 +99,7 @@ Projection make_projection(const Intrinsics& k, int width, int height, const Cli
 }
 
 Intrinsics intrinsics_of(const Projection& projection, int width, int height, PixelRule rule) {
-  if (projection.orthographic) throw Error(ErrorCode::bad_argument, "intrinsics: a parallel projection has none");
+  if (projection.orthographic) throw Error(ErrorCode::bad_argument, "intrinsics", "a parallel projection has none");
   const double fx = width / (projection.right - projection.left), fy = height / (projection.top - projection.bottom);
   return {fx, fy, -projection.left * fx - pixel_shift(rule), projection.top * fy - pixel_shift(rule), rule};
 }

@@ -47,8 +47,8 @@ constexpr std::array<glm::ivec2, count> in_fixed_point(const std::array<glm::ive
 /// Too large is a limit of the house, too small a mistake of the caller; messages say both ends.
 void check_range(double value, double low, double high, const char* what) {
   if (!(value >= low && value <= high))
-    throw Error(value > high ? ErrorCode::limit_exceeded : ErrorCode::bad_argument,
-                std::string(what) + ": must be " + std::to_string(int(low)) + " to " + std::to_string(int(high)));
+    throw Error(value > high ? ErrorCode::limit_exceeded : ErrorCode::bad_argument, std::string(what),
+                "must be " + std::to_string(int(low)) + " to " + std::to_string(int(high)));
 }
 
 template <std::size_t count>
@@ -59,13 +59,15 @@ bool all_finite(const std::array<float, count>& values) {
 /// Vertices are transformed in floats: what the view makes of itself must be within their range.
 void check_float_range(const View& view) {
   const ScreenTransform t(view);
-  const auto refuse = [](const char* what) { throw Error(ErrorCode::limit_exceeded, what); };
-  if (!all_finite(t.eye)) refuse("pose: the eye is farther from the origin than floats reach");
-  if (!t.orthographic && !(t.near >= std::numeric_limits<float>::min())) refuse("near: must be at least 1.2e-38");
-  if (!(t.near < t.far)) refuse("far: too close to near, or too far, to be told apart in floats");
-  if (!all_finite<2>({t.far, t.inverse_range})) refuse("far: must lie within the range of floats, and not at near");
+  const auto refuse = [](const char* place, const char* reason) {
+    throw Error(ErrorCode::limit_exceeded, place, reason);
+  };
+  if (!all_finite(t.eye)) refuse("pose", "the eye is farther from the origin than floats reach");
+  if (!t.orthographic && !(t.near >= std::numeric_limits<float>::min())) refuse("near", "must be at least 1.2e-38");
+  if (!(t.near < t.far)) refuse("far", "too close to near, or too far, to be told apart in floats");
+  if (!all_finite<2>({t.far, t.inverse_range})) refuse("far", "must lie within the range of floats, and not at near");
   if (!all_finite(t.x_row) || !all_finite(t.y_row) || !all_finite<2>({t.x_offset, t.y_offset}))
-    refuse("projection: its sides are too close together, or too far from the axis, for floats");
+    refuse("projection", "its sides are too close together, or too far from the axis, for floats");
 }
 
 }  // namespace
@@ -82,7 +84,7 @@ std::span<const glm::ivec2> sample_offsets(int samples) {
     case 4: return four;
     case 8: return eight;
     case 16: return sixteen;
-    default: throw Error(ErrorCode::bad_argument, "samples: must be 1, 2, 4, 8 or 16");
+    default: throw Error(ErrorCode::bad_argument, "samples", "must be 1, 2, 4, 8 or 16");
   }
 }
 
@@ -93,8 +95,8 @@ void validate(const View& view) {
   (void)sample_offsets(view.samples);
   // 2^28 ids and keys are 2 GiB: what a picture of the greatest size takes at one sample.
   if (view.sample_count() > most_samples)
-    throw Error(ErrorCode::limit_exceeded,
-                "samples: at most " + std::to_string(most_samples) + " in all pixels together");
+    throw Error(ErrorCode::limit_exceeded, "samples",
+                "at most " + std::to_string(most_samples) + " in all pixels together");
   // Made anew by the functions that check their arguments.
   const Projection& p = view.projection;
   if (p.orthographic) {

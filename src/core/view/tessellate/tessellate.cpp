@@ -64,7 +64,7 @@ class Plan {
 
   Plan(const Scene& scene, const View& view, double pixels) {
     if (!(pixels > 0))
-      throw Error(ErrorCode::bad_argument, "tessellation error: " + std::to_string(pixels) + " pixels is not above 0");
+      throw Error(ErrorCode::bad_argument, "tessellation error", std::to_string(pixels) + " pixels is not above 0");
     validate(scene);
     validate(view);
     const ScreenTolerance tolerance(view, pixels);
@@ -86,9 +86,9 @@ class Plan {
     const auto over = std::find_if(counts_.begin(), counts_.end(), [](double n) { return !(n <= kMostTriangles); });
     if (over == counts_.end()) return;
     const auto instance = std::size_t(over - counts_.begin());
-    throw Error(ErrorCode::limit_exceeded, scene.name + ": instance " + std::to_string(instance) + ", mesh " +
-                                               std::to_string(scene.instances[instance].mesh) +
-                                               ": so small a tessellation error takes more than 2^26 triangles");
+    throw Error(ErrorCode::limit_exceeded, scene.name,
+                "instance " + std::to_string(instance) + ", mesh " + std::to_string(scene.instances[instance].mesh),
+                "so small a tessellation error takes more than 2^26 triangles");
   }
 
  private:

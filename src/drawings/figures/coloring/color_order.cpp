@@ -71,12 +71,6 @@ void reserve(const std::vector<ColoredOrder>& parts, ColoredOrder& into) {
 
 }  // namespace
 
-ColoredOrder color_order(const Surfaces& surfaces, const ShadeInput& input, const VisibleParts& parts,
-                         const FigureOptions& options, const Execution& execution) {
-  PreparedScene scene(surfaces);
-  return color_order(scene, input, parts, options, execution);
-}
-
 ColoredOrder color_order(PreparedScene& scene, const ShadeInput& input, const VisibleParts& parts,
                          const FigureOptions& options, const Execution& execution) {
   const IeeeScope ieee;

@@ -20,9 +20,9 @@ Lighting lighting_of(PreparedScene& scene, const ShadeInput& input, const ShadeO
                      const Execution& execution) {
   check_light(options.light);
   if (options.light.shows_environment)
-    throw Error(ErrorCode::unsupported, "figure: an environment cannot be shown as background");
+    throw Error(ErrorCode::unsupported, "figure", "an environment cannot be shown as background");
   if (options.shading != Shading::lit) return {};
-  return lighting_for(input.visible.view, scene.surfaces.scene().up, options.light,
+  return lighting_for(input.first().view, scene.surfaces.scene().up, options.light,
                       scene.environment(options.light, execution));
 }
 
@@ -38,7 +38,7 @@ Lit lit_at_points(PreparedScene& scene, const ShadeInput& input, const ShadeOpti
 
 PointShader::PointShader(PreparedScene& scene, const ShadeInput& input, const FigureTriangles& triangles,
                          const ShadeOptions& options, const Execution& execution)
-    : source_(smoothed(scene, triangles.large, execution), input.visible.view, &triangles.large),
+    : source_(smoothed(scene, triangles.large, execution), input.first().view, &triangles.large),
       lighting_(lighting_of(scene, input, options, execution)),
       opacity_(shows_materials(options.shading) ? options.opacity : 1.0f) {
   check_opacity(options);
@@ -51,8 +51,8 @@ PointShader::PointShader(PreparedScene& scene, const ShadeInput& input, const Fi
     case Shading::ids: colorist_ = Ids{}; break;
     case Shading::uv: colorist_ = Texcoords{}; break;
     case Shading::depth: {
-      const DepthRange range = depth_range(input.visible, execution);
-      colorist_ = Depths{glm::vec3(input.visible.view.forward()), range.nearest, range.farthest};
+      const DepthRange range = depth_range(input.first(), execution);
+      colorist_ = Depths{glm::vec3(input.first().view.forward()), range.nearest, range.farthest};
       break;
     }
   }

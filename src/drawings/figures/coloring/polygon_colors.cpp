@@ -54,7 +54,7 @@ bool is_opaque(const Surfaces& surfaces, PrimitiveId id) {
 }  // namespace
 
 void refuse_more_than(std::size_t most) {
-  throw Error(ErrorCode::limit_exceeded, "figure: more than " + std::to_string(most) + " polygons and pieces");
+  throw Error(ErrorCode::limit_exceeded, "figure", "more than " + std::to_string(most) + " polygons and pieces");
 }
 
 PolygonColors::PolygonColors(const Surfaces& surfaces, const View& view, const PointShader& shader,
@@ -83,7 +83,7 @@ void PolygonColors::begin(std::span<const PaintPolygon> polygons) {
   cuts_.clear();
   kept_.clear();
   started_ = 0;
-  const Cutouts* const cutouts = surfaces_.placed().cutouts.get();
+  const Cutouts* const cutouts = placed_scene(surfaces_).cutouts.get();
   for (const PaintPolygon& outline : polygons) {
     Polygon& polygon = polygons_.emplace_back(Polygon{outline});
     if (cutouts && cutouts->has(outline.id)) polygon.holes.emplace((*cutouts)[outline.id], rays_);

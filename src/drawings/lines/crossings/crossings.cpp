@@ -196,8 +196,8 @@ class Tally {
 
   void add(std::size_t count) {
     if ((all_ += count) > most_)
-      throw Error(ErrorCode::limit_exceeded,
-                  "lines: more than " + std::to_string(most_) + " segments where triangles pass through each other");
+      throw Error(ErrorCode::limit_exceeded, "lines",
+                  "more than " + std::to_string(most_) + " segments where triangles pass through each other");
   }
 
  private:
@@ -236,7 +236,7 @@ std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& fea
   std::vector<std::vector<Crossing>> crossings(parts);
   std::vector<std::vector<EdgeContact>> contacts(parts);
   Tally tally(mesh.triangles.size());
-  WorkLimit work(execution, kMostSteps + kMostStepsOfTriangle * mesh.triangles.size());
+  WorkLimit work(execution, kMostSteps + kMostStepsOfTriangle * mesh.triangles.size(), "lines");
   parallel_for(execution, tree.group_count(), kGroupsPerPart, [&](std::size_t begin, std::size_t end) {
     Found found;
     std::size_t counted = 0, asked = 0;
@@ -251,8 +251,7 @@ std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& fea
         add_crossing(mesh, std::min(a, b), std::max(a, b), found);
         if (++asked % kPairsPerPoll != 0) return;
         work.add(kStepsOfPair * kPairsPerPoll, [] {
-          return std::string(
-              "lines: too many triangles come near each other to find where they pass through each other");
+          return std::string("too many triangles come near each other to find where they pass through each other");
         });
         count();
       });

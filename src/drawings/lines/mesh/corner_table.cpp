@@ -25,7 +25,8 @@ constexpr std::size_t kTrianglesBetweenPolls = 1 << 18;
 
 CornerTable::CornerTable(const WeldedMesh& mesh, const Execution& execution) {
   if (mesh.triangles.size() > Corner::most_triangles)
-    throw Error(ErrorCode::limit_exceeded, "lines: more than " + std::to_string(Corner::most_triangles) + " triangles");
+    throw Error(ErrorCode::limit_exceeded, "lines",
+                "more than " + std::to_string(Corner::most_triangles) + " triangles");
   first_ = Buffer<std::uint32_t>(mesh.positions.size() + 1);
   corners_ = Buffer<Corner>(3 * mesh.triangles.size());
   const std::size_t bands = std::min(std::size_t(thread_count(execution)), kMostBands);

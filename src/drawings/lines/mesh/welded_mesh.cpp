@@ -101,7 +101,7 @@ class PlaceTable {
 Buffer<glm::vec3> places_of(const Scene& scene, const Execution& execution) {
   const std::vector<std::size_t> firsts = firsts_of(scene, [](const Mesh& mesh) { return mesh.positions.size(); });
   if (firsts.back() >= std::size_t(1) << 31)
-    throw Error(ErrorCode::limit_exceeded, "lines: more than 2147483647 vertices over all instances");
+    throw Error(ErrorCode::limit_exceeded, "lines", "more than 2147483647 vertices over all instances");
   Buffer<glm::vec3> places(firsts.back());
   parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
     visit_instances(firsts, begin, end, [&](std::size_t i, std::size_t first, std::size_t last) {
@@ -159,8 +159,8 @@ Buffer<glm::uvec3> corners_of(const Surfaces& surfaces, const Buffer<std::uint32
   const std::vector<std::size_t> vertices = firsts_of(scene, [](const Mesh& mesh) { return mesh.positions.size(); });
   const std::vector<std::size_t> firsts = firsts_of(scene, [](const Mesh& mesh) { return mesh.triangles.size(); });
   if (firsts.back() > Corner::most_triangles)
-    throw Error(ErrorCode::limit_exceeded,
-                "lines: more than " + std::to_string(Corner::most_triangles) + " triangles over all instances");
+    throw Error(ErrorCode::limit_exceeded, "lines",
+                "more than " + std::to_string(Corner::most_triangles) + " triangles over all instances");
   Buffer<glm::uvec3> all(firsts.back());
   parallel_for(execution, all.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
     visit_instances(firsts, begin, end, [&](std::size_t i, std::size_t first, std::size_t last) {

@@ -49,15 +49,15 @@ class Classes {
 
 void check(const StrokeOptions& options) {
   if (!(options.apart >= 0.002 && options.apart <= 1))
-    throw Error(ErrorCode::bad_argument, "strokes: lines that count as one must be apart by from 0.002 to 1 pixel");
+    throw Error(ErrorCode::bad_argument, "strokes", "lines that count as one must be apart by from 0.002 to 1 pixel");
   if (!(options.tolerance >= 1e-4 && options.tolerance <= 1))
-    throw Error(ErrorCode::bad_argument, "strokes: the tolerance must be from 0.0001 to 1 pixel");
+    throw Error(ErrorCode::bad_argument, "strokes", "the tolerance must be from 0.0001 to 1 pixel");
   if (!(options.arc_tolerance >= 0 && options.arc_tolerance <= 100))
-    throw Error(ErrorCode::bad_argument, "strokes: the tolerance of arcs must be from 0 to 100 pixels");
+    throw Error(ErrorCode::bad_argument, "strokes", "the tolerance of arcs must be from 0 to 100 pixels");
   if (!(options.shortest >= 0 && options.shortest <= 1e4))
-    throw Error(ErrorCode::bad_argument, "strokes: the shortest stroke must be from 0 to 10000 pixels");
+    throw Error(ErrorCode::bad_argument, "strokes", "the shortest stroke must be from 0 to 10000 pixels");
   if (!(options.grazing_angle >= 0 && options.grazing_angle <= std::numbers::pi / 2))
-    throw Error(ErrorCode::bad_argument, "strokes: the grazing angle must be from 0 to pi/2");
+    throw Error(ErrorCode::bad_argument, "strokes", "the grazing angle must be from 0 to pi/2");
 }
 
 /// Which parts of a drawing get strokes.

@@ -69,11 +69,11 @@ class OverallPen {
 
 void validate(const DimensionOptions& options) {
   if (!(options.numbers_per_unit > 0 && std::isfinite(options.numbers_per_unit)))
-    throw Error(ErrorCode::bad_argument, "numbers_per_unit: must be above 0 and finite");
+    throw Error(ErrorCode::bad_argument, "numbers_per_unit", "must be above 0 and finite");
   if (options.decimals < 0 || options.decimals > 6)
-    throw Error(ErrorCode::bad_argument, "decimals: must be from 0 to 6");
+    throw Error(ErrorCode::bad_argument, "decimals", "must be from 0 to 6");
   if (!(options.text_height >= 0.5 && options.text_height <= 100))
-    throw Error(ErrorCode::bad_argument, "text_height: must be from 0.5 to 100 millimetres");
+    throw Error(ErrorCode::bad_argument, "text_height", "must be from 0.5 to 100 millimetres");
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ class FrameDrawing {
 DrawingSpace drawing_space(const glm::dvec2& page) {
   // Written so that NaN fails.
   if (!(page.x >= least_framed_page.x && page.y >= least_framed_page.y))
-    throw Error(ErrorCode::bad_argument, "page: a frame and its title block need 210 x 100 mm or more");
+    throw Error(ErrorCode::bad_argument, "page", "a frame and its title block need 210 x 100 mm or more");
   DrawingSpace space{{filing_margin, frame_margin}, page - frame_margin};
   space.block = space.high - title_block_size;
   return space;

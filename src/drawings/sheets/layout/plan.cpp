@@ -77,15 +77,15 @@ SheetLayout spread(const SheetLayout& layout, const Area& area, double scale) {
 }
 
 [[noreturn]] void refuse_scale(const glm::dvec2& size, const Area& area, double scale, double fitting) {
-  throw Error(ErrorCode::limit_exceeded,
-              "scale: at " + scale_text(scale) + " the drawing takes " + tenths_text(size) + " mm, and the page has " +
+  throw Error(ErrorCode::limit_exceeded, "scale",
+              "at " + scale_text(scale) + " the drawing takes " + tenths_text(size) + " mm, and the page has " +
                   tenths_text(area.size()) + " mm between its margins" +
                   (area.block ? " and beside its title block" : "") + "; " + scale_text(standard_scale(fitting)) +
                   " would fit, or take a larger page" + (area.block ? "" : ", or one that fits the drawing"));
 }
 
 [[noreturn]] void refuse_page(const char* field, const std::string& text) {
-  throw Error(ErrorCode::limit_exceeded, std::string(field) + ": " + text);
+  throw Error(ErrorCode::limit_exceeded, std::string(field), text);
 }
 
 SheetPlan fitted_page(const SheetLayout& layout, double scale, double margin) {

@@ -76,7 +76,7 @@ class MarkPen {
 SectionMarks draw_section_marks(std::span<const CuttingLine> lines, std::span<const ViewName> names,
                                 const SectionMarkOptions& options) {
   if (!(options.text_height >= 0.5 && options.text_height <= 100))
-    throw Error(ErrorCode::bad_argument, "text_height: must be from 0.5 to 100 millimetres");
+    throw Error(ErrorCode::bad_argument, "text_height", "must be from 0.5 to 100 millimetres");
   MarkPen pen(options);
   for (const CuttingLine& line : lines) {
     if (!(glm::distance(line.from, line.to) > 0)) throw Error(ErrorCode::bad_argument, "a cutting line has no length");

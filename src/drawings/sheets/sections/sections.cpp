@@ -20,8 +20,9 @@ constexpr double name_distance = 5, name_height = 5;     // millimetres above a 
 constexpr int first_own_column = 3;                      // behind those of all views
 
 [[noreturn]] void refuse_section(const SectionView& wanted, const std::string& reason) {
-  throw Error(ErrorCode::bad_argument, "sections " + std::string(view_name(wanted.direction)) +
-                                           (wanted.at ? "=" + number_text(*wanted.at) : "") + ": " + reason);
+  throw Error(ErrorCode::bad_argument,
+              "sections " + std::string(view_name(wanted.direction)) + (wanted.at ? "=" + number_text(*wanted.at) : ""),
+              reason);
 }
 
 /// The axis to which a view along one looks from.

@@ -44,10 +44,10 @@ Texture decode(std::span<const std::byte> bytes, const std::string& name, detail
   if (matches(bytes, 0, "RIFF") && matches(bytes, 8, "WEBP")) return detail::decode_webp(bytes, name, part);
   for (const Signature& foreign : foreign_formats)
     if (matches(bytes, foreign.offset, foreign.bytes))
-      throw Error(ErrorCode::unsupported,
-                  name + ": " + foreign.format + " images are not supported, only PNG, JPEG and WebP");
-  throw Error(ErrorCode::file_malformed,
-              name + (bytes.empty() ? ": the image is empty" : ": neither PNG nor JPEG nor WebP"));
+      throw Error(ErrorCode::unsupported, name, "",
+                  std::string(foreign.format) + " images are not supported, only PNG, JPEG and WebP");
+  throw Error(ErrorCode::file_malformed, name, "",
+              bytes.empty() ? "the image is empty" : "neither PNG nor JPEG nor WebP");
 }
 
 /// Runs a decoder of the caller's, whose errors do not know where they come from.
@@ -56,7 +56,7 @@ auto ask_decoder(const std::string& name, Ask ask) {
   try {
     return ask();
   } catch (const Error& error) {
-    throw Error(error.code(), name + ": " + error.what());
+    throw error.within(name);
   }
 }
 
@@ -67,16 +67,17 @@ namespace detail {
 void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height, std::size_t byte_count,
                       double densest) {
   const std::string size = std::to_string(width) + " x " + std::to_string(height);
-  if (width == 0 || height == 0) throw Error(ErrorCode::file_malformed, name + ": an image of " + size + " pixels");
+  if (width == 0 || height == 0) throw Error(ErrorCode::file_malformed, name, "", "an image of " + size + " pixels");
   // Sides first: their product is then far below 64 bits.
   if (width > std::uint64_t(max_image_side) || height > std::uint64_t(max_image_side) ||
       width * height > max_image_pixels)
-    throw Error(ErrorCode::limit_exceeded, name + ": " + size + " pixels, more than " + std::to_string(max_image_side) +
-                                               " on a side or " + std::to_string(max_image_pixels) + " in all");
+    throw Error(ErrorCode::limit_exceeded, name, "",
+                size + " pixels, more than " + std::to_string(max_image_side) + " on a side or " +
+                    std::to_string(max_image_pixels) + " in all");
   // A file of some hundred bytes may name the greatest size there is; memory is asked for only where pixels can follow.
   if (double(width * height) > densest * double(byte_count))
-    throw Error(ErrorCode::file_malformed,
-                name + ": " + std::to_string(byte_count) + " bytes cannot hold " + size + " pixels");
+    throw Error(ErrorCode::file_malformed, name, "",
+                std::to_string(byte_count) + " bytes cannot hold " + size + " pixels");
 }
 
 }  // namespace detail
@@ -107,7 +108,7 @@ Texture decode_texture(std::span<const std::byte> bytes, const std::string& name
   Texture texture = ask_decoder(name, [&] { return decoder->pixels(bytes); });
   if (glm::ivec2(texture.width, texture.height) != size ||
       texture.pixels.size() != std::size_t(size.x) * std::size_t(size.y))
-    throw Error(ErrorCode::bad_argument, name + ": the image decoder gave another image than it told");
+    throw Error(ErrorCode::bad_argument, name, "", "the image decoder gave another image than it told");
   return texture;
 }
 

@@ -96,8 +96,8 @@ void inks_to_rgb(Texture& texture, bool inverted) {
 }
 
 [[noreturn]] void fail(const Reader& reader, const std::string& name) {
-  throw Error(reader.jpeg.arith_code ? ErrorCode::unsupported : ErrorCode::file_malformed,
-              name + ": JPEG: " + (reader.message[0] ? reader.message : "cannot be read"));
+  throw Error(reader.jpeg.arith_code ? ErrorCode::unsupported : ErrorCode::file_malformed, name, "JPEG",
+              (reader.message[0] ? reader.message : "cannot be read"));
 }
 
 }  // namespace

@@ -26,8 +26,8 @@ Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, I
   const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
   WebPBitstreamFeatures features;
   const VP8StatusCode header = WebPGetFeatures(data, bytes.size(), &features);
-  if (header != VP8_STATUS_OK) throw Error(ErrorCode::file_malformed, name + ": WebP: " + reason_of(header));
-  if (features.has_animation) throw Error(ErrorCode::unsupported, name + ": WebP: animations are not supported");
+  if (header != VP8_STATUS_OK) throw Error(ErrorCode::file_malformed, name, "WebP", reason_of(header));
+  if (features.has_animation) throw Error(ErrorCode::unsupported, name, "WebP", "animations are not supported");
   check_image_size(name, std::uint64_t(features.width), std::uint64_t(features.height), bytes.size(), any_density);
 
   Texture texture;
@@ -37,14 +37,14 @@ Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, I
   if (part == ImagePart::size) return texture;
   texture.pixels.resize(std::size_t(texture.width) * std::size_t(texture.height));
   WebPDecoderConfig config;
-  if (!WebPInitDecoderConfig(&config)) throw Error(ErrorCode::unsupported, name + ": WebP: another version of libwebp");
+  if (!WebPInitDecoderConfig(&config)) throw Error(ErrorCode::unsupported, name, "WebP", "another version of libwebp");
   config.output.colorspace = MODE_RGBA;
   config.output.is_external_memory = 1;
   config.output.u.RGBA = {reinterpret_cast<std::uint8_t*>(texture.pixels.data()), texture.width * 4,
                           texture.pixels.size() * sizeof(glm::u8vec4)};
   const VP8StatusCode status = WebPDecode(data, bytes.size(), &config);
   if (status == VP8_STATUS_OUT_OF_MEMORY) throw std::bad_alloc();
-  if (status != VP8_STATUS_OK) throw Error(ErrorCode::file_malformed, name + ": WebP: " + reason_of(status));
+  if (status != VP8_STATUS_OK) throw Error(ErrorCode::file_malformed, name, "WebP", reason_of(status));
   return texture;
 }
 

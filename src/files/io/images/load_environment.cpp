@@ -22,15 +22,16 @@ Buffer<float> take_light(Image& image, const char* name, const std::string& file
   const bool is_grey = channel == nullptr;
   if (is_grey) channel = image.find("Y");
   if (channel == nullptr || channel->is_integer())
-    throw Error(ErrorCode::unsupported,
-                file + ": an environment has channels R, G and B, or Y, not " + detail::channel_list(image));
+    throw Error(ErrorCode::unsupported, file, "",
+                "an environment has channels R, G and B, or Y, not " + detail::channel_list(image));
   return is_grey ? channel->floats() : std::move(channel->floats());
 }
 
 Image environment_of(Image image, const std::string& file) {
   if (image.width != 2 * image.height)
-    throw Error(ErrorCode::unsupported, file + ": an environment is twice as wide as high (equirectangular), not " +
-                                            std::to_string(image.width) + " x " + std::to_string(image.height));
+    throw Error(ErrorCode::unsupported, file, "",
+                "an environment is twice as wide as high (equirectangular), not " + std::to_string(image.width) +
+                    " x " + std::to_string(image.height));
   Image environment{image.width, image.height, {}};
   for (const char* name : {"R", "G", "B"}) {
     environment.channels.push_back({name, take_light(image, name, file)});

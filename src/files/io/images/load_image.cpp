@@ -23,7 +23,7 @@ Image load_image(std::span<const std::byte> bytes, const std::string& name) {
   if (text.starts_with("\x93NUMPY"sv)) return detail::load_npy(bytes, name);
   if (text.starts_with("PF"sv) || text.starts_with("Pf"sv)) return detail::load_pfm(bytes, name);
   if (text.starts_with("#?"sv)) return detail::load_radiance(bytes, name);
-  throw Error(ErrorCode::file_malformed, name + ": neither PNG nor OpenEXR, Radiance, PFM or NPY");
+  throw Error(ErrorCode::file_malformed, name, "", "neither PNG nor OpenEXR, Radiance, PFM or NPY");
 }
 
 }  // namespace frontmost

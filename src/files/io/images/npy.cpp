@@ -19,7 +19,7 @@ constexpr std::size_t prefix_size = 10;  // magic, version, length of the dictio
 constexpr std::size_t alignment = 64;
 
 [[noreturn]] void fail_npy(const std::string& name, const std::string& reason) {
-  throw Error(ErrorCode::file_malformed, name + ": NPY: " + reason);
+  throw Error(ErrorCode::file_malformed, name, "NPY", reason);
 }
 
 std::string shape_of(const Image& image) {
@@ -40,7 +40,7 @@ Dictionary dictionary(std::span<const std::byte> bytes, const std::string& name)
   const std::size_t version = byte(6);
   // Version 3 differs from 2 in that names may be UTF-8; there are no names in what is read here.
   if (version < 1 || version > 3)
-    throw Error(ErrorCode::unsupported, name + ": NPY: version " + std::to_string(version));
+    throw Error(ErrorCode::unsupported, name, "NPY", "version " + std::to_string(version));
   // From version 2 on the length has four bytes.
   const std::size_t start = version == 1 ? prefix_size : prefix_size + 2;
   std::size_t length = byte(8) + (byte(9) << 8);
@@ -94,8 +94,8 @@ void save_npy(const Image& image, OutputFile& file) {
   const bool integers = image.channels[0].is_integer();
   for (const Channel& channel : image.channels)
     if (channel.is_integer() != integers)
-      throw Error(ErrorCode::unsupported,
-                  file.name() + ": NPY holds channels of one type, not a mixture: " + channel_list(image));
+      throw Error(ErrorCode::unsupported, file.name(), "",
+                  "NPY holds channels of one type, not a mixture: " + channel_list(image));
   const std::string header = npy_header(integers ? "'<u4'" : "'<f4'", shape_of(image));
   file.write(std::as_bytes(std::span(header)));
   write_raw(image, {std::size_t(image.width), std::size_t(image.height), image.channels.size(), integers}, file);
@@ -107,9 +107,9 @@ Image load_npy(std::span<const std::byte> bytes, const std::string& name) {
   const std::string_view type = value_of(header.text, "'descr'", name).substr(0, 5);
   const bool floats = type == "'<f4'" || type == "'>f4'", integers = type == "'<u4'" || type == "'>u4'";
   if (!floats && !integers)
-    throw Error(ErrorCode::unsupported, name + ": NPY: only float32 (f4) and uint32 (u4) arrays are read");
+    throw Error(ErrorCode::unsupported, name, "NPY", "only float32 (f4) and uint32 (u4) arrays are read");
   if (value_of(header.text, "'fortran_order'", name).substr(0, 5) != "False")
-    throw Error(ErrorCode::unsupported, name + ": NPY: arrays in Fortran order are not read");
+    throw Error(ErrorCode::unsupported, name, "NPY", "arrays in Fortran order are not read");
   const std::vector<std::size_t> sizes = shape(value_of(header.text, "'shape'", name), name);
   RawLayout layout{sizes[1], sizes[0], sizes.size() == 3 ? sizes[2] : 1, integers};
   layout.big_endian = type[1] == '>';

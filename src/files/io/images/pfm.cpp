@@ -12,7 +12,7 @@ namespace frontmost::detail {
 namespace {
 
 [[noreturn]] void fail_pfm(const std::string& name, const std::string& reason) {
-  throw Error(ErrorCode::file_malformed, name + ": PFM: " + reason);
+  throw Error(ErrorCode::file_malformed, name, "PFM", reason);
 }
 
 /// Takes words off the front of the file; exactly one blank ends each, as pixels may look like blanks.
@@ -53,8 +53,8 @@ void save_pfm(const Image& image, OutputFile& file) {
   bool floats = true;
   for (const Channel& channel : image.channels) floats = floats && !channel.is_integer();
   if (!floats || (channels != 1 && channels != 3))
-    throw Error(ErrorCode::unsupported,
-                file.name() + ": PFM holds one or three channels of floats, not " + channel_list(image));
+    throw Error(ErrorCode::unsupported, file.name(), "",
+                "PFM holds one or three channels of floats, not " + channel_list(image));
   const std::string header = std::string(channels == 1 ? "Pf\n" : "PF\n") + std::to_string(image.width) + " " +
                              std::to_string(image.height) + "\n-1.0\n";
   file.write(std::as_bytes(std::span(header)));

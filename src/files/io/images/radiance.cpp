@@ -18,7 +18,7 @@ namespace {
 
 [[noreturn]] void fail_radiance(const std::string& name, const std::string& reason,
                                 ErrorCode code = ErrorCode::file_malformed) {
-  throw Error(code, name + ": Radiance: " + reason);
+  throw Error(code, name, "Radiance", reason);
 }
 
 /// The beginning of a text of the file, for messages.

@@ -14,7 +14,7 @@ namespace {
 
 ImageFormat format_of(const std::string& path, const SaveOptions& options) {
   if (options.format) return *options.format;
-  if (path == "-") throw Error(ErrorCode::bad_argument, "standard output: the image format must be given");
+  if (path == "-") throw Error(ErrorCode::bad_argument, "standard output", "", "the image format must be given");
   std::string suffix = std::filesystem::path(path).extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -24,21 +24,22 @@ ImageFormat format_of(const std::string& path, const SaveOptions& options) {
   if (suffix == ".npy") return ImageFormat::npy;
   if (suffix == ".jpg" || suffix == ".jpeg") return ImageFormat::jpeg;
   if (suffix == ".webp") return ImageFormat::webp;
-  throw Error(ErrorCode::unsupported,
-              path + ": an image file ends in .png, .exr, .pfm, .npy, .jpg or .webp, not in \"" + suffix + "\"");
+  throw Error(ErrorCode::unsupported, path, "",
+              "an image file ends in .png, .exr, .pfm, .npy, .jpg or .webp, not in \"" + suffix + "\"");
 }
 
 /// \returns it. Precondition: a format that has a quality.
 int checked_quality(const SaveOptions& options, const std::string& name) {
   if (options.quality < 1 || options.quality > 100)
-    throw Error(ErrorCode::bad_argument, name + ": the quality is 1 to 100, not " + std::to_string(options.quality));
+    throw Error(ErrorCode::bad_argument, name, "", "the quality is 1 to 100, not " + std::to_string(options.quality));
   return options.quality;
 }
 
 detail::PictureRows lossy_rows(const Image& image, const char* format, const std::string& name) {
   if (std::optional<detail::PictureRows> rows = detail::picture_rows(image)) return std::move(*rows);
-  throw Error(ErrorCode::unsupported, name + ": " + format + " holds pictures, of R, G, B and A, not " +
-                                          detail::channel_list(image) + "; write EXR, NPY or PNG");
+  throw Error(ErrorCode::unsupported, name, "",
+              std::string(format) + " holds pictures, of R, G, B and A, not " + detail::channel_list(image) +
+                  "; write EXR, NPY or PNG");
 }
 
 template <class Write>
@@ -96,7 +97,7 @@ void save(const Image& image, const std::string& path, const SaveOptions& option
 void save(const Bitmap& bitmap, const std::string& path, const SaveOptions& options, const Execution& execution) {
   const ImageFormat format = format_of(path, options);
   if (format != ImageFormat::png && format != ImageFormat::jpeg && format != ImageFormat::webp)
-    throw Error(ErrorCode::unsupported, path + ": only PNG, JPEG and WebP hold the 8 bits of a bitmap");
+    throw Error(ErrorCode::unsupported, path, "", "only PNG, JPEG and WebP hold the 8 bits of a bitmap");
   validate(bitmap);
   write_file(path, execution, [&](OutputFile& file) {
     if (format == ImageFormat::png) return detail::save_png(bitmap, file, execution);

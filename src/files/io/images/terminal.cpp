@@ -128,10 +128,10 @@ class Writer {
 
 std::string terminal_picture(const Image& image, int columns, int rows, bool true_color) {
   if (columns < 1 || rows < 1 || columns > 10000 || rows > 10000)
-    throw Error(ErrorCode::bad_argument, "terminal picture: columns and rows must be 1 to 10000");
+    throw Error(ErrorCode::bad_argument, "terminal picture", "columns and rows must be 1 to 10000");
   validate(image);
   const std::optional<ColorPlanes> planes = color_planes(image);
-  if (!planes) throw Error(ErrorCode::unsupported, "terminal picture: the image has no colours R, G, B");
+  if (!planes) throw Error(ErrorCode::unsupported, "terminal picture", "the image has no colours R, G, B");
   // Half a character is about as wide as high.
   const double scale = std::min(double(columns) / image.width, 2.0 * rows / image.height);
   const int width = std::clamp(int(std::lround(image.width * scale)), 1, columns);

@@ -208,7 +208,7 @@ void write_glb(const Scene& scene, OutputFile& file) {
   std::string text = document.json.dump();
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const std::size_t size = 12 + 8 + text.size() + (document.buffer.empty() ? 0 : 8 + document.buffer.size());
-  if (size > 0xFFFFFFFF) throw Error(ErrorCode::limit_exceeded, file.name() + ": GLB: more than 4 GiB");
+  if (size > 0xFFFFFFFF) throw Error(ErrorCode::limit_exceeded, file.name(), "GLB", "more than 4 GiB");
   std::string head = "glTF";
   append_bytes(head, std::uint32_t(2));
   append_bytes(head, std::uint32_t(size));

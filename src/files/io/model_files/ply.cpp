@@ -9,7 +9,7 @@ namespace {
 std::string ply_header(const Scene& scene, const Table& of_triangles) {
   std::uint64_t vertices = 0;
   for (const Instance& instance : scene.instances) vertices += scene.meshes[instance.mesh].positions.size();
-  if (vertices >= no_index) throw Error(ErrorCode::limit_exceeded, "PLY: more than 4294967294 vertices");
+  if (vertices >= no_index) throw Error(ErrorCode::limit_exceeded, "PLY", "more than 4294967294 vertices");
   // Floats where they hold what the model is made of, doubles far from zero.
   const std::string real = scene.origin == glm::dvec3(0) ? "float" : "double";
   std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices) + "\n";

@@ -31,15 +31,15 @@ Scene read(ModelFormat format, Bytes bytes, const ModelSource& source) {
     case ModelFormat::threemf: return read_3mf(bytes, source);
     case ModelFormat::scene: return read_scene_file(bytes, source);
   }
-  throw Error(ErrorCode::bad_argument, source.name() + ": not a model format");
+  throw Error(ErrorCode::bad_argument, source.name(), "", "not a model format");
 }
 
 [[noreturn]] void refuse(const ModelSource& source, const std::string& why) {
-  throw Error(ErrorCode::unsupported, source.name() + ": " + why);
+  throw Error(ErrorCode::unsupported, source.name(), "", why);
 }
 
 Scene read_any(Bytes bytes, ModelSource& source, std::optional<ModelFormat> format, const LoadOptions& options) {
-  if (bytes.empty()) throw Error(ErrorCode::file_malformed, source.name() + ": the file is empty");
+  if (bytes.empty()) throw Error(ErrorCode::file_malformed, source.name(), "", "the file is empty");
   if (!format) format = format_of_content(bytes);
   if (!format)
     refuse(source, conversion_by_content(bytes).value_or(
@@ -54,7 +54,7 @@ Scene read_any(Bytes bytes, ModelSource& source, std::optional<ModelFormat> form
     validate(scene);
   } catch (const Error& error) {
     // validate() knows the scene by its short name only.
-    throw Error(error.code(), source.name() + ": " + error.what());
+    throw error.within(source.name());
   }
   // A reader of text has chosen one already.
   if (scene.origin == glm::dvec3(0)) set_origin(scene, fitting_origin(scene));

@@ -51,11 +51,11 @@ std::string ModelSource::without_name(const Error& error) const {
 }
 
 void ModelSource::fail(const std::string& place, const std::string& reason) const {
-  throw Error(ErrorCode::file_malformed, name_ + ": " + place + ": " + reason);
+  throw Error(ErrorCode::file_malformed, name_, place, reason);
 }
 
 void ModelSource::fail_limit(const std::string& place, const std::string& reason) const {
-  throw Error(ErrorCode::limit_exceeded, name_ + ": " + place + ": " + reason);
+  throw Error(ErrorCode::limit_exceeded, name_, place, reason);
 }
 
 void ModelSource::allow_outside(const std::vector<std::string>& folders) {
@@ -64,14 +64,14 @@ void ModelSource::allow_outside(const std::vector<std::string>& folders) {
     std::error_code error;
     allowed_->push_back(fs::canonical(folder, error));
     if (error || !fs::is_directory(allowed_->back(), error))
-      throw Error(ErrorCode::file_unreadable,
-                  folder + ": not a folder; --allow-outside (LoadOptions::allow_outside) takes folders");
+      throw Error(ErrorCode::file_unreadable, folder, "",
+                  "not a folder; --allow-outside (LoadOptions::allow_outside) takes folders");
   }
 }
 
 fs::path ModelSource::path_of(const std::string& reference) const {
   const auto refuse = [&](const std::string& reason) -> void {
-    throw Error(ErrorCode::file_unreadable, name_ + ": " + printable(reference) + ": " + reason);
+    throw Error(ErrorCode::file_unreadable, name_, printable(reference), reason);
   };
   constexpr std::size_t longest = 4096;  // as on Linux; taking a longer one apart costs many times its size
   if (!has_folder()) refuse("files named inside a model are not read when it comes from memory or a stream");

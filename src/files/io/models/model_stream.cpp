@@ -12,7 +12,7 @@ namespace frontmost {
 namespace {
 
 [[noreturn]] void refuse_stream(const ModelSource& source, const std::string& what) {
-  throw Error(ErrorCode::unsupported, source.name() + ": " + what + " cannot be streamed; binary STL and PLY can");
+  throw Error(ErrorCode::unsupported, source.name(), "", what + " cannot be streamed; binary STL and PLY can");
 }
 
 std::unique_ptr<ModelStream> open(ModelFormat format, StreamStart start, const ModelSource& source) {
@@ -28,7 +28,7 @@ std::unique_ptr<ModelStream> open(ModelFormat format, StreamStart start, const M
     case ModelFormat::threemf: refuse_stream(source, "3MF");
     case ModelFormat::scene: refuse_stream(source, "a scene file");
   }
-  throw Error(ErrorCode::bad_argument, source.name() + ": not a model format");
+  throw Error(ErrorCode::bad_argument, source.name(), "", "not a model format");
 }
 
 }  // namespace
@@ -72,18 +72,16 @@ std::unique_ptr<ModelStream> open_model_stream(const std::string& path, const Lo
   constexpr std::size_t enough_to_know = 1024;
   start.extend(enough_to_know);
   const ModelSource source(name, execution);
-  if (start.start.empty()) throw Error(ErrorCode::file_malformed, name + ": the file is empty");
+  if (start.start.empty()) throw Error(ErrorCode::file_malformed, name, "", "the file is empty");
   if (const auto conversion = options.format ? std::nullopt : conversion_by_suffix(path))
-    throw Error(ErrorCode::unsupported, name + ": " + *conversion);
+    throw Error(ErrorCode::unsupported, name, "", *conversion);
   auto format = options.format ? options.format : path == "-" ? std::nullopt : format_of_suffix(path);
   if (!format) format = format_of_content(start.start);
   // The start of a binary STL file is no whole number of triangles, so it does not look like one.
   if (!format && stl_encoding(start.start, start.greatest_size()) == StlEncoding::binary) format = ModelFormat::stl;
   if (!format)
-    throw Error(
-        ErrorCode::unsupported,
-        name + ": " +
-            conversion_by_content(start.start).value_or("not a model that can be streamed (binary STL or PLY)"));
+    throw Error(ErrorCode::unsupported, name, "",
+                conversion_by_content(start.start).value_or("not a model that can be streamed (binary STL or PLY)"));
   std::unique_ptr<ModelStream> stream = open(*format, std::move(start), source);
   stream->introduce(path == "-" ? "stdin" : source.stem(), options.up.value_or(default_up(*format)),
                     {format, std::nullopt, opened->paths(), {}});

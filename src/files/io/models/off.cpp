@@ -97,8 +97,8 @@ class OffReader {
     }
     if (!is_known || !text_.take('F') || !text_.take('F')) text_.fail(word + " where \"OFF\" was expected");
     if (!is_supported || text_.next_is('B'))
-      throw Error(ErrorCode::unsupported,
-                  source_.name() + ": " + text_.place() + ": four-dimensional and binary OFF files are not supported");
+      throw Error(ErrorCode::unsupported, source_.name(), text_.place(),
+                  "four-dimensional and binary OFF files are not supported");
   }
 
   /// Before memory is asked for: the rest of the file must have room for the rows, at two characters a value.

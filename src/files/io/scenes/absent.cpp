@@ -5,8 +5,8 @@
 namespace frontmost {
 
 Scene read_scene_file(Bytes, const ModelSource& source) {
-  throw Error(ErrorCode::unsupported,
-              source.name() + ": this Frontmost was built without scene files (FRONTMOST_SCENE_FILES)");
+  throw Error(ErrorCode::unsupported, source.name(), "",
+              "this Frontmost was built without scene files (FRONTMOST_SCENE_FILES)");
 }
 
 }  // namespace frontmost

@@ -202,7 +202,7 @@ class SceneReader {
       return read();
     } catch (const Error& error) {
       if (error.code() == ErrorCode::cancelled) throw;
-      throw Error(error.code(), source_.name() + ": " + object.place + ".model: " + source_.without_name(error));
+      throw Error(error.code(), source_.name(), object.place + ".model", source_.without_name(error));
     }
   }
 

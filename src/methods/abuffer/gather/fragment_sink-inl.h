@@ -113,7 +113,7 @@ class FragmentSink {
     if (width * height > 1) return false;
     // Number 0 is no fragment.
     if (arrived.count - Arrived::first > kMostOfPixel)
-      throw Error(ErrorCode::limit_exceeded, "abuffer: more than 1,048,575 fragments in one pixel");
+      throw Error(ErrorCode::limit_exceeded, "abuffer", "more than 1,048,575 fragments in one pixel");
     arrived.grow(arrived.count + kMostAtOnce);
     return true;
   }

@@ -30,7 +30,7 @@ std::vector<glm::ivec2> SamplePattern::positions() const {
 
 SamplePattern sample_pattern(const View& view, int grid) {
   if (grid != 0 && grid != 2 && grid != 4 && grid != 8)
-    throw Error(ErrorCode::bad_argument, "abuffer: grid: must be 0, 2, 4 or 8, not " + std::to_string(grid));
+    throw Error(ErrorCode::bad_argument, "abuffer: grid", "must be 0, 2, 4 or 8, not " + std::to_string(grid));
   SamplePattern pattern;
   pattern.count = 0;
   if (grid == 0)

@@ -168,10 +168,10 @@ void CrowdedFrame::make() {
   for (const Cluster& cluster : plan_.set().clusters) triangles += cluster.triangle_count;
   const std::uint64_t most = most_gathered_fragments(view, triangles);
   if (finder.area() > double(most))
-    throw Error(ErrorCode::limit_exceeded, "abuffer: about " + std::to_string(std::uint64_t(finder.area())) +
-                                               " fragments, and the most of " + std::to_string(triangles) +
-                                               " triangles in a picture of " + std::to_string(view.width) + " x " +
-                                               std::to_string(view.height) + " pixels are " + std::to_string(most));
+    throw Error(ErrorCode::limit_exceeded, "abuffer",
+                "about " + std::to_string(std::uint64_t(finder.area())) + " fragments, and the most of " +
+                    std::to_string(triangles) + " triangles in a picture of " + std::to_string(view.width) + " x " +
+                    std::to_string(view.height) + " pixels are " + std::to_string(most));
   thinned_ = hidden.empty() ? &plan_ : &made_.emplace(plan_.without(hidden));
 }
 

@@ -97,10 +97,10 @@ bool orient(ScreenTriangle& t, const FacingRule& facing) {
 FragmentPlan::FragmentPlan(const Surfaces& surfaces, const View& view, const Execution& execution) {
   const IeeeScope ieee;
   const auto tiles_along = [](int pixels) { return (pixels + kTileSize - 1) / kTileSize; };
-  frame_ = std::make_shared<Frame>(Frame{surfaces.clusters(execution),
+  frame_ = std::make_shared<Frame>(Frame{cluster_set(surfaces, execution),
                                          ScreenTransform(view),
                                          view,
-                                         FacingRule(view.culling, surfaces.placed().sides.get()),
+                                         FacingRule(view.culling, placed_scene(surfaces).sides.get()),
                                          tiles_along(view.width),
                                          tiles_along(view.height),
                                          {}});

@@ -90,7 +90,7 @@ bool move_instance(const PlacedScene& placed, std::uint32_t instance, RayTree& t
 }  // namespace
 
 bool follow_instance(const Surfaces& surfaces, std::uint32_t instance, RayTree& tree) {
-  const PlacedScene& placed = surfaces.placed();
+  const PlacedScene& placed = placed_scene(surfaces);
   TreeChange change(tree);
   tree.cutouts = placed.cutouts;
   tree.sides = placed.sides;

@@ -29,8 +29,8 @@ std::size_t byte_count(const RayTree& tree) {
 RayTree make_tree(const Surfaces& surfaces, const Execution& execution) {
   const IeeeScope ieee;
   RayTree tree;
-  tree.cutouts = surfaces.placed().cutouts;
-  tree.sides = surfaces.placed().sides;
+  tree.cutouts = placed_scene(surfaces).cutouts;
+  tree.sides = placed_scene(surfaces).sides;
   report_progress(execution, "index", 0);
   fill_leaves(surfaces, tree, execution);
   tree.copies = take_copies(tree, execution);
@@ -58,13 +58,15 @@ void RayIndex::refit(const Surfaces& surfaces, const Execution& execution) {
 void RayIndex::follow(const Surfaces& surfaces, std::uint32_t instance, const Execution& execution) {
   const IeeeScope ieee;
   if (instance >= surfaces.scene().instances.size())
-    throw Error(ErrorCode::bad_argument, "follow: there is no instance " + std::to_string(instance));
+    throw Error(ErrorCode::bad_argument, "follow", "there is no instance " + std::to_string(instance));
   if (!follow_instance(surfaces, instance, *tree_)) *tree_ = make_tree(surfaces, execution);
 }
 
 std::uint32_t RayIndex::triangle_count() const {
   return tree_->triangle_count + (tree_->copies ? tree_->copies->triangle_count : 0);
 }
+
+const RayTree& ray_tree(const RayIndex& index) { return *index.tree_; }
 
 const Box& RayIndex::bounds() const { return tree_->bounds; }
 

@@ -124,7 +124,7 @@ LeafBox box_of(const RayLeaf& leaf, std::uint32_t number) {
 }
 
 void fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execution) {
-  const ClusterSet& set = surfaces.clusters(execution);
+  const ClusterSet& set = cluster_set(surfaces, execution);
   const std::size_t parts = (set.clusters.size() + kClustersPerPart - 1) / kClustersPerPart;
   std::vector<std::size_t> first(parts + 1, 0);
   parallel_for(execution, set.clusters.size(), kClustersPerPart, [&](std::size_t begin, std::size_t end) {

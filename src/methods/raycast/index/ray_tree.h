@@ -82,4 +82,7 @@ struct RayTree {
   [[nodiscard]] std::size_t stack_size() const { return std::size_t(depth) * (kRayLanes - 1) + 1; }
 };
 
+/// What an index holds.
+[[nodiscard]] const RayTree& ray_tree(const RayIndex& index);
+
 }  // namespace frontmost

@@ -74,9 +74,9 @@ bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execut
   TreeChange change(tree);
   // Copies may be moved apart.
   if (tree.copies) return false;
-  const ClusterSet& set = surfaces.clusters(execution);
+  const ClusterSet& set = cluster_set(surfaces, execution);
   tree.cutouts = set.cutouts;
-  tree.sides = surfaces.placed().sides;
+  tree.sides = placed_scene(surfaces).sides;
   const Buffer<std::uint32_t> places = places_of(tree, surfaces.primitive_count(), execution);
   std::atomic<std::size_t> moved{0};
   parallel_for(execution, set.clusters.size(), kRefitClustersPerPart, [&](std::size_t begin, std::size_t end) {

@@ -31,8 +31,8 @@ RayHit first_of(const RayTree& tree, const Query& query, Want want) {
 
 void check_sizes(std::size_t queries, std::size_t answers) {
   if (queries != answers)
-    throw Error(ErrorCode::bad_argument, "answers: there are " + std::to_string(answers) + " places for " +
-                                             std::to_string(queries) + " queries");
+    throw Error(ErrorCode::bad_argument, "answers",
+                "there are " + std::to_string(answers) + " places for " + std::to_string(queries) + " queries");
 }
 
 /// Calls take(begin, hits) for the answers to consecutive questions. Answers go by number to where they belong, so they
@@ -45,7 +45,7 @@ void ask(const RayIndex& index, std::span<const Question> questions, Want want, 
     std::array<RayHit, kQueriesPerPart> hits;
     const std::size_t count = end - begin;
     for (std::size_t i = 0; i < count; ++i) queries[i] = query_of(questions[begin + i]);
-    walk_batch(index.tree(), {queries.data(), count}, want, {hits.data(), count}, execution.isa);
+    walk_batch(ray_tree(index), {queries.data(), count}, want, {hits.data(), count}, execution.isa);
     take(begin, std::span<const RayHit>(hits.data(), count));
   });
 }
@@ -63,12 +63,12 @@ void ask_closest(const RayIndex& index, std::span<const Question> questions, std
 
 RayHit closest_hit(const RayIndex& index, const Ray& ray) {
   const IeeeScope ieee;
-  return first_of(index.tree(), query_of(ray), Want::closest);
+  return first_of(ray_tree(index), query_of(ray), Want::closest);
 }
 
 RayHit closest_hit(const RayIndex& index, const Segment& segment) {
   const IeeeScope ieee;
-  return first_of(index.tree(), query_of(segment), Want::closest);
+  return first_of(ray_tree(index), query_of(segment), Want::closest);
 }
 
 std::vector<RayHit> all_hits(const RayIndex& index, const Ray& ray) {
@@ -76,8 +76,8 @@ std::vector<RayHit> all_hits(const RayIndex& index, const Ray& ray) {
   std::vector<RayHit> hits;
   const Query query = query_of(ray);
   if (!is_valid(query)) return hits;
-  walk(index.tree(), query, Want::all, hits, Isa::best);
-  if (index.tree().copies) walk(*index.tree().copies, query, Want::all, hits, Isa::best);
+  walk(ray_tree(index), query, Want::all, hits, Isa::best);
+  if (ray_tree(index).copies) walk(*ray_tree(index).copies, query, Want::all, hits, Isa::best);
   std::sort(hits.begin(), hits.end(),
             [](const RayHit& a, const RayHit& b) { return a.t != b.t ? a.t < b.t : a.primitive < b.primitive; });
   return hits;
@@ -85,7 +85,7 @@ std::vector<RayHit> all_hits(const RayIndex& index, const Ray& ray) {
 
 bool is_clear(const RayIndex& index, const Segment& segment) {
   const IeeeScope ieee;
-  return first_of(index.tree(), query_of(segment), Want::any).primitive == no_primitive;
+  return first_of(ray_tree(index), query_of(segment), Want::any).primitive == no_primitive;
 }
 
 void closest_hits(const RayIndex& index, std::span<const Ray> rays, std::span<RayHit> answers,
@@ -110,7 +110,7 @@ void are_lit(const RayIndex& index, std::span<const TrianglePoint> points, const
              std::span<std::uint8_t> answers, const Execution& execution) {
   check_sizes(points.size(), answers.size());
   parallel_for(execution, points.size(), kQueriesPerPart, [&](std::size_t begin, std::size_t end) {
-    find_lit(index.tree(), points.subspan(begin, end - begin), {to_light}, answers.subspan(begin, end - begin),
+    find_lit(ray_tree(index), points.subspan(begin, end - begin), {to_light}, answers.subspan(begin, end - begin),
              execution.isa);
   });
 }

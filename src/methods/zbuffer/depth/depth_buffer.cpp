@@ -41,7 +41,7 @@ DepthBuffer::DepthBuffer(int width, int height, int samples, DepthFormat format)
 }
 
 void DepthBuffer::clear(double depth) {
-  if (!std::isfinite(depth)) throw Error(ErrorCode::bad_argument, "clear: the depth must be a finite number");
+  if (!std::isfinite(depth)) throw Error(ErrorCode::bad_argument, "clear", "the depth must be a finite number");
   const IeeeScope ieee;
   std::fill(stored_.begin(), stored_.end(), stored_depth(format_, depth));
   std::fill(primitives_.begin(), primitives_.end(), no_primitive);
@@ -51,16 +51,16 @@ void DepthBuffer::clear(double depth) {
 void DepthBuffer::draw(const Surfaces& surfaces, const View& view, const DepthDraw& call, const Execution& execution) {
   validate(view);
   if (view.width != width_ || view.height != height_ || view.samples != samples_)
-    throw Error(ErrorCode::bad_argument, "view: width, height and samples must be those of the depth buffer");
+    throw Error(ErrorCode::bad_argument, "view", "width, height and samples must be those of the depth buffer");
   const PrimitiveId end = std::min(call.end, surfaces.primitive_count());
   if (end > call.begin && call.id_offset > no_primitive - end)
-    throw Error(ErrorCode::bad_argument, "id offset: ids would pass 4294967294");
+    throw Error(ErrorCode::bad_argument, "id offset", "ids would pass 4294967294");
   const IeeeScope ieee;
   const DepthRules rules = rules_for(call.state, format_, ScreenTransform(view));
   if (!rules.passes_less && !rules.passes_equal && !rules.passes_greater) return;  // never
   const DepthPlanes planes{stored_.data(), primitives_.data(), keys_.data(), width_, height_, sample_offsets(samples_)};
   const ScreenRays rays(view);
-  const DepthCall target{planes, rules, call.id_offset, surfaces.placed().cutouts.get(), rays};
+  const DepthCall target{planes, rules, call.id_offset, placed_scene(surfaces).cutouts.get(), rays};
   submit(surfaces, view, {call.begin, end}, execution,
          [&](const Tile& tile, const OrderedBatch& batch) { draw_depths(target, tile, batch, execution.isa); });
 }

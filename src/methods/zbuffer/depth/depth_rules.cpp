@@ -54,16 +54,16 @@ double depth_of_stored(DepthFormat format, std::uint32_t stored) {
 namespace zbuffer_detail {
 namespace {
 
-void check(bool is_good, const char* complaint) {
-  if (!is_good) throw Error(ErrorCode::bad_argument, complaint);
+void check(bool is_good, const char* place, const char* complaint) {
+  if (!is_good) throw Error(ErrorCode::bad_argument, place, complaint);
 }
 
 void check_state(const DepthState& state) {
   const auto is_depth = [](double value) { return value >= 0 && value <= 1; };
-  check(is_depth(state.range_near) && is_depth(state.range_far), "depth range: both ends must be 0 to 1");
+  check(is_depth(state.range_near) && is_depth(state.range_far), "depth range", "both ends must be 0 to 1");
   for (const double value : {state.offset.factor, state.offset.units, state.offset.clamp})
-    check(std::abs(value) <= 1e30, "polygon offset: must be within 1e30");
-  check(state.func <= DepthFunc::always, "depth function: there are eight");
+    check(std::abs(value) <= 1e30, "polygon offset", "must be within 1e30");
+  check(state.func <= DepthFunc::always, "depth function", "there are eight");
 }
 
 /// 2^(e - 23) for 2^e <= depth < 2^(e + 1), never less than the smallest float's.

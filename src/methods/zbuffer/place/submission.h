@@ -93,7 +93,7 @@ template <class Draw>
 void submit(const Surfaces& surfaces, const View& view, const PrimitiveRange& range, const Execution& execution,
             const Draw& draw) {
   const ScreenTransform transform(view);
-  const PlacedScene& scene = surfaces.placed();
+  const PlacedScene& scene = placed_scene(surfaces);
   const PlaceTarget target(transform, view, scene.sides.get(), execution.isa);
   const std::vector<MeshRange> ranges = ranges_within(scene, range);
   const std::vector<BatchSource> sources = batch_sources(ranges);

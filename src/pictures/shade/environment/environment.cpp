@@ -8,6 +8,11 @@
 #include "shade/environment/prefiltered.h"
 
 namespace frontmost {
+
+const shading::PrefilteredEnvironment& shading::prefiltered(const Environment& environment) {
+  return *environment.made_;
+}
+
 namespace {
 
 using shading::PrefilteredEnvironment;
@@ -17,7 +22,7 @@ constexpr int kMostWidth = 16384;
 /// \throws Error as the constructor says.
 void check_picture(const Image& picture) {
   validate(picture);
-  const auto fail = [](ErrorCode code, const std::string& reason) { throw Error(code, "environment: " + reason); };
+  const auto fail = [](ErrorCode code, const std::string& reason) { throw Error(code, "environment", reason); };
   const std::string size = std::to_string(picture.width) + " x " + std::to_string(picture.height);
   if (picture.width != 2 * picture.height)
     fail(ErrorCode::bad_argument, "must be twice as wide as high (equirectangular), not " + size);

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "frontmost/image.h"
+#include "frontmost/pictures.h"
 #include "shade/environment/octahedral_map.h"
 
 namespace frontmost::shading {
@@ -33,6 +34,9 @@ struct PrefilteredEnvironment {
   bool is_dark = false;  ///< no light at all; without levels
   Image picture;         ///< equirectangular; empty where it was made by code
 };
+
+/// What an environment holds, for the shading of fragments.
+[[nodiscard]] const PrefilteredEnvironment& prefiltered(const Environment& environment);
 
 /// Makes levels 1 and up, and the moments, of level 0, whose size is a power of two, at least 64. The same bits on
 /// every machine.

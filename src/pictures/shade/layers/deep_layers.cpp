@@ -139,7 +139,7 @@ std::vector<float> shown_parts(std::span<const Fragment> fragments, std::span<co
 DeepImage deep_layers(const Surfaces& surfaces, const View& view, const FragmentPass& pass, const LayerShader& shader,
                       const Execution& execution) {
   const PartMaker maker(view, pass, shader);
-  TileParts<DeepSample> parts(view, kMostSamples, "shade: more than 2^28 deep samples");
+  TileParts<DeepSample> parts(view, kMostSamples, "shade", "more than 2^28 deep samples");
   pass.look([&](const Rectangle& pixels, const PixelLists& lists) { parts.add(maker.make(pixels, lists)); }, execution);
   DeepImage image{view.width, view.height, parts.beginnings(), {}};
   DeepPlanes planes(image.first[view.pixel_count()]);

@@ -64,8 +64,8 @@ void PictureLights::set(const DirectLight* key, std::span<const Light> lights, c
   far.clear();
   near.clear();
   if (lights.size() > kMostLights)
-    throw Error(ErrorCode::limit_exceeded,
-                "shade: " + std::to_string(lights.size()) + " lights are more than " + std::to_string(kMostLights));
+    throw Error(ErrorCode::limit_exceeded, "shade",
+                std::to_string(lights.size()) + " lights are more than " + std::to_string(kMostLights));
   if (key) far.push_back({*key, nullptr});
   for (const Light& light : lights) {
     const glm::vec3 color = color_of(light);

@@ -52,7 +52,7 @@ IrradiancePolynomial polynomial_of(const IrradianceMoments& moments, const glm::
 }  // namespace
 
 void check_light(const LightOptions& options) {
-  const auto refuse = [](const char* what) { throw Error(ErrorCode::bad_argument, std::string("shade: ") + what); };
+  const auto refuse = [](const char* what) { throw Error(ErrorCode::bad_argument, "shade", what); };
   constexpr double most_stops = 32, most_intensity = 1e6;
   if (!std::isfinite(options.environment_angle)) refuse("environment angle: must be finite");
   if (!(std::abs(options.exposure) <= most_stops)) refuse("exposure: must be -32 to 32 stops");
@@ -79,11 +79,11 @@ Lighting lighting_for(const View& view, Axis up, const LightOptions& options, co
   lighting.key.color *= float(key_intensity(options));
   lighting.exposure = float(std::exp2(options.exposure));
   lighting.tone_mapping = options.tone_mapping;
-  if (environment.prefiltered().is_dark) return lighting;
+  if (prefiltered(environment).is_dark) return lighting;
   const glm::dmat3 turn = world_from_environment(view, direction(up), options, environment.turns_with_camera());
-  lighting.around.environment = &environment.prefiltered();
+  lighting.around.environment = &prefiltered(environment);
   lighting.around.world_from_environment = glm::mat3(turn);
-  lighting.around.irradiance = polynomial_of(environment.prefiltered().irradiance, turn);
+  lighting.around.irradiance = polynomial_of(prefiltered(environment).irradiance, turn);
   return lighting;
 }
 

@@ -6,12 +6,12 @@
 namespace frontmost::shading {
 
 void check_ambient_occlusion(const ShadeOptions& options) {
-  if (!options.ambient_occlusion) return;
-  const auto [strength, radius] = *options.ambient_occlusion;
+  if (!options.light.ambient_occlusion) return;
+  const auto [strength, radius] = *options.light.ambient_occlusion;
   if (!(strength >= 0 && strength <= 1))
-    throw Error(ErrorCode::bad_argument, "ambient occlusion: the strength must be from 0 to 1");
+    throw Error(ErrorCode::bad_argument, "ambient occlusion", "the strength must be from 0 to 1");
   if (radius && !(*radius > 0 && std::isfinite(*radius)))
-    throw Error(ErrorCode::bad_argument, "ambient occlusion: the radius must be above 0");
+    throw Error(ErrorCode::bad_argument, "ambient occlusion", "the radius must be above 0");
 }
 
 double default_occlusion_radius(const Surfaces& surfaces) {

@@ -17,7 +17,7 @@ constexpr glm::ivec2 kAtRay[] = {{0, 0}};
 class ScanPicture {
  public:
   explicit ScanPicture(const ScanRequest& request)
-      : request_(request), scan_(request.input.scan), directions_(scan_.camera) {}
+      : request_(request), scan_(*request.input.scan), directions_(scan_.camera) {}
 
   void paint(TileCanvas& canvas, const glm::vec4& background) {
     PreparedScene& scene = request_.scene;
@@ -37,7 +37,7 @@ class ScanPicture {
     const Execution& execution = request_.execution;
     const std::size_t count = scene.surfaces.primitive_count(), pixels = scan_.index(0, scan_.height);
     const std::span<const PrimitiveId> ids(scan_.primitives.data(), scan_.primitives.size());
-    if (request_.options.see_through != SeeThrough::never &&
+    if (request_.options.layers.see_through != SeeThrough::never &&
         (has_see_through(scene.surfaces.scene()) || request_.options.opacity < 1.0f))
       through_ = index_of_all();
     if (wants_normals) {
@@ -98,7 +98,7 @@ class ScanPicture {
   /// One row of tiles to a thread at a time.
   void paint_tiles(const Painting& painting) {
     const bool shows = shows_materials(request_.options.shading);
-    const bool asks_rays = request_.options.shading == Shading::lit && request_.options.shadows == Shadows::rays;
+    const bool asks_rays = request_.options.shading == Shading::lit && request_.options.light.shadows == Shadows::rays;
     const ScanLayer layer{*faces_,
                           directions_,
                           scan_,
@@ -142,17 +142,18 @@ DepthRange depth_range(const RangeScan& scan) {
 
 void check_scan(const ScanRequest& request) {
   check_opacity(request.options);
-  if (request.options.ambient_occlusion || request.options.blend != Blend::linear)
-    throw Error(ErrorCode::unsupported, "shade: scans have neither ambient occlusion nor another blend than linear");
+  if (request.options.light.ambient_occlusion || request.options.pixels.blend != Blend::linear)
+    throw Error(ErrorCode::unsupported, "shade", "scans have neither ambient occlusion nor another blend than linear");
   check_light(request.options.light);
   if (request.options.light.shows_environment)
-    throw Error(ErrorCode::unsupported, "shade: pictures of scans cannot show an environment as background");
-  const RangeScan& scan = request.input.scan;
+    throw Error(ErrorCode::unsupported, "shade", "pictures of scans cannot show an environment as background");
+  if (!request.input.scan) throw Error(ErrorCode::bad_argument, "shade", "no scan is given");
+  const RangeScan& scan = *request.input.scan;
   validate(scan.camera);
   const std::size_t count = scan.index(0, 0, scan.camera.samples);
   if (glm::ivec2(scan.width, scan.height) != grid_of(scan.camera) || scan.primitives.size() != count ||
       scan.ranges.size() != count)
-    throw Error(ErrorCode::bad_argument, "shade: the scan does not have a value for every sample of its camera");
+    throw Error(ErrorCode::bad_argument, "shade", "the scan does not have a value for every sample of its camera");
   check_ids({scan.primitives.data(), count}, request.scene.surfaces.primitive_count(), "shade", request.execution);
 }
 

@@ -27,7 +27,7 @@ void check_light(const Visible& seen_by_light) {
   if (view.width == view.height && view.width >= 4 * ShadowGrid::block && view.width % ShadowGrid::block == 0 &&
       view.samples == 1 && view.projection.orthographic)
     return;
-  throw Error(ErrorCode::bad_argument, std::string(who) + ": must be of a view that key_light_view() gave");
+  throw Error(ErrorCode::bad_argument, std::string(who), "must be of a view that key_light_view() gave");
 }
 
 ShadowPoints points_of(const FragmentBatch& batch) {
@@ -43,8 +43,8 @@ void LightShadows::find(const ShadedPicture& picture, const PictureLights& light
   far_maps_.assign(lights.far.size(), nullptr);
   near_maps_.assign(lights.near.size(), nullptr);
   rays_.reset();
-  if (picture.options.shadows == Shadows::off) return;
-  if (picture.options.shadows == Shadows::rays) return aim_rays(picture, execution);
+  if (picture.options.light.shadows == Shadows::off) return;
+  if (picture.options.light.shadows == Shadows::rays) return aim_rays(picture, execution);
   draw_maps(picture, execution);
 }
 
@@ -127,7 +127,7 @@ const ShadowMap* LightShadows::draw_map(std::size_t number, const std::optional<
   if (!drawn.has_drawn) {
     const Surfaces& surfaces = casters(execution);
     // The first map may be the only one: a ZBuffer would make clusters for it.
-    if (!surfaces.made_clusters()) {
+    if (!made_cluster_set(surfaces)) {
       drawn.planes = zbuffer(surfaces, *light, execution);
     } else {
       drawer_.give_back(std::move(drawn.planes));
@@ -152,12 +152,11 @@ void LightShadows::aim_rays(const ShadedPicture& picture, const Execution& execu
   // A ray takes about a hundred nanoseconds. A picture of 1920 x 1080 pixels of four samples has 2^23 for each light.
   constexpr std::uint64_t kMostRays = std::uint64_t(1) << 27, kMostRaysOfSample = 8;
   const std::uint64_t most = kMostRays + kMostRaysOfSample * view.pixel_count() * picture.samples.size();
-  rays_.emplace(
-      *index, picture.samples, view, execution,
-      RayShadows::Limit{most, "shade: shadows of " + std::to_string(lights_->far.size() + lights_->near.size()) +
-                                  " lights by rays are more than " + std::to_string(most) +
-                                  " rays; ask for shadows by maps, for fewer lights or samples, or for a "
-                                  "smaller picture"});
+  rays_.emplace(*index, picture.samples, view, execution,
+                RayShadows::Limit{most, "shadows of " + std::to_string(lights_->far.size() + lights_->near.size()) +
+                                            " lights by rays are more than " + std::to_string(most) +
+                                            " rays; ask for shadows by maps, for fewer lights or samples, or for a "
+                                            "smaller picture"});
   if (opaque_) rays_->forget_ids();
 }
 

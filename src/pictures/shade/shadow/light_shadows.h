@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the lights of a picture do not reach, found as ShadeOptions::shadows says.
+// What the lights of a picture do not reach, found as LightOptions::shadows says.
 //
 //   maps   of the key light, and of the first sixteen suns and spots of the file: 8 MiB each at most. Points have none.
 //          A map is drawn again only where the light's view is another than in the picture before.
@@ -20,8 +20,8 @@ namespace frontmost::shading {
 
 /// What a view or a scan shows, and what callers may have found already.
 struct ShadedInput {
-  ShadedInput(const ShadeInput& from) : visible(from.visible), seen_by_light(from.seen_by_light), index(from.index) {}
-  ShadedInput(const ScanInput& from) : visible(from.scan), index(from.index) {}
+  ShadedInput(const ShadeInput& from) : visible(from.first()), seen_by_light(from.seen_by_light), index(from.index) {}
+  ShadedInput(const ScanInput& from) : visible(*from.scan), index(from.index) {}
 
   SeenPoints visible;
   const Visible* seen_by_light = nullptr;

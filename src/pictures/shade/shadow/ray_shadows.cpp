@@ -16,7 +16,7 @@ namespace {
 /// Whether light goes through some triangle from behind.
 bool lets_light_through(const View& view, const RayIndex& index) {
   return view.culling == Culling::material &&
-         FacingRule(view.culling, index.tree().sides.get()).culling() != Culling::none;
+         FacingRule(view.culling, ray_tree(index).sides.get()).culling() != Culling::none;
 }
 
 }  // namespace
@@ -28,8 +28,8 @@ RayShadows::RayShadows(const RayIndex& index, std::span<const glm::ivec2> sample
       is_one_way_(lets_light_through(view, index)),
       isa_(execution.isa),
       samples_(samples),
-      rays_(execution, limit.most),
-      crowd_(execution, kMostOfCrowd + kMostOfTriangle * index.triangle_count()),
+      rays_(execution, limit.most, "shade"),
+      crowd_(execution, kMostOfCrowd + kMostOfTriangle * index.triangle_count(), "shade"),
       too_many_(std::move(limit.error)) {}
 
 /// Points that wait to be asked about together, and the fragments that they are of.
@@ -49,7 +49,7 @@ class RayShadows::LightQuestions {
     shadows_.count(count_);
     std::array<std::uint8_t, kAtOnce> is_lit;
     const std::uint64_t decided =
-        raycast_detail::find_lit(shadows_.index_.tree(), {points_.data(), count_}, {to_light_, shadows_.is_one_way_},
+        raycast_detail::find_lit(ray_tree(shadows_.index_), {points_.data(), count_}, {to_light_, shadows_.is_one_way_},
                                  {is_lit.data(), count_}, shadows_.isa_);
     shadows_.count_decided(decided, count_);
     for (std::size_t k = 0; k < count_; ++k) batch_.shadow[fragments_[k]] += is_lit[k];
@@ -89,7 +89,7 @@ class RayShadows::LampQuestions {
     shadows_.count(count_);
     std::array<RayHit, kAtOnce> hits;
     const std::uint64_t steps =
-        raycast_detail::walk_batch(shadows_.index_.tree(), {queries_.data(), count_}, raycast_detail::Want::closest,
+        raycast_detail::walk_batch(ray_tree(shadows_.index_), {queries_.data(), count_}, raycast_detail::Want::closest,
                                    {hits.data(), count_}, shadows_.isa_);
     shadows_.count_decided(steps / kStepsOfTriangle, count_);
     for (std::size_t k = 0; k < count_; ++k)

@@ -68,7 +68,7 @@ class RayShadows {
     const std::uint64_t usual = kUsualOfRay * rays;
     if (triangles <= usual) return;
     crowd_.add(triangles - usual, [this] {
-      return "shade: too many of " + std::to_string(index_.triangle_count()) +
+      return "too many of " + std::to_string(index_.triangle_count()) +
              " triangles lie over each other for shadows by rays; ask for shadows by maps";
     });
   }

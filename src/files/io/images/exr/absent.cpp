@@ -6,7 +6,7 @@ namespace frontmost::detail {
 namespace {
 
 [[noreturn]] void refuse(const std::string& name) {
-  throw Error(ErrorCode::unsupported, name + ": this Frontmost was built without OpenEXR (FRONTMOST_OPENEXR)");
+  throw Error(ErrorCode::unsupported, name, "", "this Frontmost was built without OpenEXR (FRONTMOST_OPENEXR)");
 }
 
 }  // namespace

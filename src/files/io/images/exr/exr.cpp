@@ -75,7 +75,7 @@ Image empty_image(const Imf::Header& header, const std::string& name) {
   const std::size_t count = std::size_t(image.width) * std::size_t(image.height);
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
     if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1)
-      throw Error(ErrorCode::unsupported, name + ": EXR: channel " + channel.name() + " is subsampled");
+      throw Error(ErrorCode::unsupported, name, "EXR", std::string("channel ") + channel.name() + " is subsampled");
     if (channel.channel().type == Imf::UINT)
       image.channels.push_back({channel.name(), Buffer<std::uint32_t>(count, 0u)});
     else
@@ -136,7 +136,7 @@ void fill_in_offsets(RowStrip& head, const std::vector<RowStrip>& strips, int he
 void save_exr(const Image& image, OutputFile& file, const Execution& execution) {
   constexpr int most_channels = 1024;  // as many as load_image() takes
   if (image.channels.size() > most_channels)
-    throw Error(ErrorCode::unsupported, file.name() + ": EXR: more than 1024 channels");
+    throw Error(ErrorCode::unsupported, file.name(), "EXR", "more than 1024 channels");
   constexpr int strip_rows = 4 * chunk_rows;
   auto& planes = const_cast<Image&>(image);  // which are only read
   std::vector<RowStrip> strips((std::size_t(image.height) + strip_rows - 1) / strip_rows);
@@ -169,7 +169,7 @@ Image load_exr(std::span<const std::byte> bytes, const std::string& name) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    throw Error(ErrorCode::file_malformed, name + ": EXR: " + error.what());
+    throw Error(ErrorCode::file_malformed, name, "EXR", error.what());
   }
 }
 

@@ -15,7 +15,7 @@ namespace frontmost::detail {
 namespace {
 
 [[noreturn]] void fail(const std::string& name, const std::string& reason) {
-  throw Error(ErrorCode::file_malformed, name + ": EXR: " + reason);
+  throw Error(ErrorCode::file_malformed, name, "EXR", reason);
 }
 
 /// Reads forward through a header, never past its end.
@@ -94,7 +94,7 @@ void check_attribute(std::string_view type, std::size_t size, const std::string&
       fail(name, "an attribute's size does not fit its type " + std::string(type));
     return;
   }
-  throw Error(ErrorCode::unsupported, name + ": EXR: attributes of type " + std::string(type) + " are not read");
+  throw Error(ErrorCode::unsupported, name, "EXR", "attributes of type " + std::string(type) + " are not read");
 }
 
 Sizes read_sizes(Cursor header, const std::string& name) {
@@ -120,12 +120,11 @@ void check_exr_header(std::span<const std::byte> bytes, const std::string& name)
   const auto version = std::uint32_t(cursor.number());
   constexpr std::uint32_t tiled = 0x200, deep = 0x800, multi_part = 0x1000;
   if (version & (tiled | deep | multi_part))
-    throw Error(ErrorCode::unsupported, name + ": EXR: tiled, deep and multi-part files are not read");
+    throw Error(ErrorCode::unsupported, name, "EXR", "tiled, deep and multi-part files are not read");
   const Sizes sizes = read_sizes(cursor, name);
   constexpr std::uint64_t most_channels = 1024;
   if (sizes.channels < 1 || sizes.channels > most_channels)
-    throw Error(ErrorCode::limit_exceeded,
-                name + ": EXR: " + std::to_string(sizes.channels) + " channels, not 1 to 1024");
+    throw Error(ErrorCode::limit_exceeded, name, "EXR", std::to_string(sizes.channels) + " channels, not 1 to 1024");
   check_image_size(name + ": EXR", sizes.width, sizes.height, bytes.size(), std::numeric_limits<double>::infinity());
   if (sizes.width * sizes.height * sizes.channels * 4 > sizes.most_memory(bytes.size()))
     fail(name, std::to_string(bytes.size()) + " bytes cannot hold " + std::to_string(sizes.width) + " x " +

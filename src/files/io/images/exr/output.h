@@ -46,7 +46,7 @@ void with_named_errors(const std::string& name, Write&& write) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    throw Error(ErrorCode::unsupported, name + ": EXR: " + error.what());
+    throw Error(ErrorCode::unsupported, name, "EXR", error.what());
   }
 }
 

@@ -99,15 +99,16 @@ class JpegWriter {
 
 void save_jpeg(const PictureRows& picture, int quality, OutputFile& file, const Execution& execution) {
   if (std::max(picture.width, picture.height) > most_jpeg_side)
-    throw Error(ErrorCode::limit_exceeded, file.name() + ": JPEG holds at most 65500 pixels on a side, not " +
-                                               std::to_string(std::max(picture.width, picture.height)));
+    throw Error(
+        ErrorCode::limit_exceeded, file.name(), "",
+        "JPEG holds at most 65500 pixels on a side, not " + std::to_string(std::max(picture.width, picture.height)));
   if (picture.with_alpha)
-    throw Error(ErrorCode::unsupported,
-                file.name() + ": JPEG holds no alpha, and parts of the picture are transparent; write PNG or WebP");
+    throw Error(ErrorCode::unsupported, file.name(), "",
+                "JPEG holds no alpha, and parts of the picture are transparent; write PNG or WebP");
   JpegWriter writer;
   const auto check = [&](bool done) {
     if (!done && *writer.message() == '\0') throw std::bad_alloc();
-    if (!done) throw Error(ErrorCode::file_unwritable, file.name() + ": JPEG: " + writer.message());
+    if (!done) throw Error(ErrorCode::file_unwritable, file.name(), "JPEG", writer.message());
   };
   check(writer.begin(picture.width, picture.height, quality));
   Buffer<std::uint8_t> row(picture.row_bytes());

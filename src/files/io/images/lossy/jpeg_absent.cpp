@@ -7,7 +7,7 @@ namespace frontmost::detail {
 namespace {
 
 [[noreturn]] void refuse_jpeg(const std::string& name) {
-  throw Error(ErrorCode::unsupported, name + ": this Frontmost was built without libjpeg (FRONTMOST_JPEG)");
+  throw Error(ErrorCode::unsupported, name, "", "this Frontmost was built without libjpeg (FRONTMOST_JPEG)");
 }
 
 }  // namespace

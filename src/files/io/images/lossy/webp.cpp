@@ -70,18 +70,20 @@ void import_rows(const PictureRows& rows, WebPPicture& picture, const Execution&
 [[noreturn]] void fail_webp(const WebPPicture& picture, const std::string& name) {
   if (picture.error_code == VP8_ENC_ERROR_OUT_OF_MEMORY || picture.error_code == VP8_ENC_ERROR_BITSTREAM_OUT_OF_MEMORY)
     throw std::bad_alloc();
-  throw Error(ErrorCode::limit_exceeded, name + ": WebP: the picture has more detail than the format holds at this " +
-                                             "quality (error " + std::to_string(int(picture.error_code)) + ")");
+  throw Error(ErrorCode::limit_exceeded, name, "WebP",
+              "the picture has more detail than the format holds at this quality (error " +
+                  std::to_string(int(picture.error_code)) + ")");
 }
 
 }  // namespace
 
 void save_webp(const PictureRows& picture, int quality, OutputFile& file, const Execution& execution) {
   if (std::max(picture.width, picture.height) > most_webp_side)
-    throw Error(ErrorCode::limit_exceeded, file.name() + ": WebP holds at most 16383 pixels on a side, not " +
-                                               std::to_string(std::max(picture.width, picture.height)));
+    throw Error(
+        ErrorCode::limit_exceeded, file.name(), "",
+        "WebP holds at most 16383 pixels on a side, not " + std::to_string(std::max(picture.width, picture.height)));
   WebPConfig config;
-  if (!WebPConfigInit(&config)) throw Error(ErrorCode::unsupported, file.name() + ": WebP: another version of libwebp");
+  if (!WebPConfigInit(&config)) throw Error(ErrorCode::unsupported, file.name(), "WebP", "another version of libwebp");
   config.quality = float(quality);
   config.method = 2;
   WebpCalls calls{execution, {}};

@@ -7,8 +7,8 @@ namespace frontmost::detail {
 namespace {
 
 [[noreturn]] void refuse_webp(const std::string& name) {
-  throw Error(ErrorCode::unsupported,
-              name + ": WebP: this Frontmost was built without libwebp (Debian package libwebp-dev, FRONTMOST_WEBP)");
+  throw Error(ErrorCode::unsupported, name, "WebP",
+              "this Frontmost was built without libwebp (Debian package libwebp-dev, FRONTMOST_WEBP)");
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace frontmost::detail {
 namespace {
 
 [[noreturn]] void refuse_png(const std::string& name) {
-  throw Error(ErrorCode::unsupported, name + ": this Frontmost was built without libpng (FRONTMOST_PNG)");
+  throw Error(ErrorCode::unsupported, name, "", "this Frontmost was built without libpng (FRONTMOST_PNG)");
 }
 
 }  // namespace

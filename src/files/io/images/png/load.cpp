@@ -82,7 +82,7 @@ double number(const Texts& texts, const char* key, const std::string& name) {
   text.imbue(std::locale::classic());
   double value = 0;
   if (!(text >> value) || !std::isfinite(value))
-    throw Error(ErrorCode::file_malformed, name + ": PNG: text " + key + " is not a number");
+    throw Error(ErrorCode::file_malformed, name, "PNG", std::string("text ") + key + " is not a number");
   return value;
 }
 
@@ -92,7 +92,7 @@ void load_map(PngReader& reader, const Texts& texts, const std::string& name, Im
   const bool ids = texts.count(png_ids_key) != 0;
   const double scale = ids ? 1 : number(texts, png_scale_key, name);
   const double offset = ids ? 0 : number(texts, png_offset_key, name);
-  if (scale == 0) throw Error(ErrorCode::file_malformed, name + ": PNG: the depth scale is 0");
+  if (scale == 0) throw Error(ErrorCode::file_malformed, name, "PNG", "the depth scale is 0");
   Buffer<std::uint16_t> pixels(pixel_count(image));
   reader.read(PngReader::Pixels::grey16, pixels.data());
   if (ids) {

@@ -48,7 +48,7 @@ bool chunks_fit(std::span<const std::byte> bytes) {
 PngReader::PngReader(std::span<const std::byte> bytes, const std::string& name, Texts texts)
     : rest_(bytes), name_(name), keeps_texts_(texts == Texts::kept) {
   try {
-    if (!chunks_fit(bytes)) throw Error(ErrorCode::file_malformed, name_ + ": PNG: ends too early");
+    if (!chunks_fit(bytes)) throw Error(ErrorCode::file_malformed, name_, "PNG", "ends too early");
     if (!read_header()) fail();
     const std::uint64_t width = png_get_image_width(png_, info_), height = png_get_image_height(png_, info_);
     bits_ = png_get_bit_depth(png_, info_);
@@ -66,7 +66,7 @@ PngReader::PngReader(std::span<const std::byte> bytes, const std::string& name, 
 PngReader::~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
 
 void PngReader::fail() const {
-  throw Error(ErrorCode::file_malformed, name_ + ": PNG: " + (message_[0] ? message_ : "cannot be read"));
+  throw Error(ErrorCode::file_malformed, name_, "PNG", (message_[0] ? message_ : "cannot be read"));
 }
 
 void PngReader::on_error(png_structp png, png_const_charp message) {

@@ -94,12 +94,13 @@ DepthMapping fitted_mapping(const Buffer<float>& depths) {
 /// A fixed scale is the caller's promise of what the numbers mean, so depths beyond it are an error, not clipped.
 DepthMapping fixed_mapping(const Channel& channel, double scale, const std::string& name) {
   if (!(scale > 0) || !std::isfinite(scale))
-    throw Error(ErrorCode::bad_argument, name + ": the depth scale must be a positive number");
+    throw Error(ErrorCode::bad_argument, name, "", "the depth scale must be a positive number");
   const DepthMapping mapping{scale, 0};
   for (const float depth : channel.floats())
     if (std::isfinite(depth) && mapping.stored(depth) > 65535)
-      throw Error(ErrorCode::limit_exceeded, name + ": depth " + digits(double(depth)) + " times scale " +
-                                                 digits(scale) + " is over 65535, the most that a PNG can hold");
+      throw Error(ErrorCode::limit_exceeded, name, "",
+                  "depth " + digits(double(depth)) + " times scale " + digits(scale) +
+                      " is over 65535, the most that a PNG can hold");
   return mapping;
 }
 
@@ -133,8 +134,8 @@ PngContents id_map(const Image& image, const std::string& name) {
   const Channel& channel = image.channels[0];
   for (const std::uint32_t id : channel.integers())
     if (id != no_index && id > 65534)
-      throw Error(ErrorCode::limit_exceeded, name + ": id " + std::to_string(id) +
-                                                 " is over 65534, the most that a PNG can hold; write EXR or NPY");
+      throw Error(ErrorCode::limit_exceeded, name, "",
+                  "id " + std::to_string(id) + " is over 65534, the most that a PNG can hold; write EXR or NPY");
   PngContents contents = grey_map();
   contents.texts = {{png_channel_key, channel.name}, {png_ids_key, "value - 1, 0 is none"}};
   contents.row = [&image](int y, std::uint8_t* row) {
@@ -172,15 +173,15 @@ PngContents contents_of(const Image& image, const SaveOptions& options, const st
   const std::optional<ColorPlanes> planes = color_planes(image);
   if (planes && image.channels.size() == (planes->alpha ? 4u : 3u))
     return options.bits == 8 ? colors(*picture_rows(image)) : deep_colors(*planes);
-  throw Error(ErrorCode::unsupported,
-              name + ": PNG holds R, G, B and A, or N.X, N.Y, N.Z, or one channel, not " + channel_list(image));
+  throw Error(ErrorCode::unsupported, name, "",
+              "PNG holds R, G, B and A, or N.X, N.Y, N.Z, or one channel, not " + channel_list(image));
 }
 
 }  // namespace
 
 void save_png(const Image& image, const SaveOptions& options, OutputFile& file, const Execution& execution) {
   if (options.bits != 8 && options.bits != 16)
-    throw Error(ErrorCode::bad_argument, file.name() + ": PNG has 8 or 16 bits, not " + std::to_string(options.bits));
+    throw Error(ErrorCode::bad_argument, file.name(), "", "PNG has 8 or 16 bits, not " + std::to_string(options.bits));
   PngContents contents = contents_of(image, options, file.name());
   contents.width = image.width;
   contents.height = image.height;

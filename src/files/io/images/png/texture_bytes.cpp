@@ -18,7 +18,8 @@ std::string png_bytes(const Texture& texture) {
     bytes.resize(size);
     if (png_image_write_to_memory(&image, bytes.data(), &size, 0, texture.pixels.data(), 0, nullptr) != 0) return bytes;
   }
-  throw Error(ErrorCode::limit_exceeded, "texture " + texture.name + ": cannot be written as PNG: " + image.message);
+  throw Error(ErrorCode::limit_exceeded, "texture " + texture.name,
+              std::string("cannot be written as PNG: ") + image.message);
 }
 
 }  // namespace frontmost::detail

@@ -25,8 +25,8 @@ Bytes checked_body(Bytes bytes, const ModelSource& source) {
   if (bytes.size() < header_size) source.fail("GLB header", "the file ends within it");
   const std::uint32_t version = little_endian(bytes, 4), length = little_endian(bytes, 8);
   if (version != 2)
-    throw Error(version == 1 ? ErrorCode::unsupported : ErrorCode::file_malformed,
-                source.name() + ": GLB header: version " + std::to_string(version) + " is not supported, only 2");
+    throw Error(version == 1 ? ErrorCode::unsupported : ErrorCode::file_malformed, source.name(), "GLB header",
+                "version " + std::to_string(version) + " is not supported, only 2");
   if (length > bytes.size())
     source.fail("GLB header", "the length is stated as " + std::to_string(length) + " bytes, the file has " +
                                   std::to_string(bytes.size()));

@@ -131,9 +131,9 @@ DracoMesh decode_draco(const JsonValue& json, Bytes compressed) {
   if (!draco::PointCloudDecoder::DecodeHeader(&ahead, &header).ok()) json.fail("the buffer view holds no Draco data");
   // The version that the extension asks for. Older ones are decoded by code that nothing writes for any more.
   if (header.version_major != 2 || header.version_minor != 2)
-    throw Error(ErrorCode::unsupported,
-                json.source().name() + ": " + json.place() + ": version " + std::to_string(header.version_major) + "." +
-                    std::to_string(header.version_minor) + " of Draco's format is not supported, only 2.2");
+    throw Error(ErrorCode::unsupported, json.source().name(), json.place(),
+                "version " + std::to_string(header.version_major) + "." + std::to_string(header.version_minor) +
+                    " of Draco's format is not supported, only 2.2");
   const draco::DecoderOptions options;
   WorkingMemory memory(compressed.size());
   draco::Mesh mesh;

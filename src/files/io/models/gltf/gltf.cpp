@@ -71,8 +71,8 @@ void check_version(const JsonValue& root) {
   // A later 2.x only adds what older readers may pass over, unless minVersion says otherwise.
   const bool fits = version.place() == "asset.version" ? text.starts_with("2.") : text == "2.0";
   if (!fits)
-    throw Error(ErrorCode::unsupported, root.source().name() + ": " + version.place() + ": glTF " + printable(text) +
-                                            " is not supported, only 2.0");
+    throw Error(ErrorCode::unsupported, root.source().name(), version.place(),
+                "glTF " + printable(text) + " is not supported, only 2.0");
 }
 
 std::vector<std::string> unsupported(const JsonValue& root, const char* key) {
@@ -95,8 +95,8 @@ void check_extensions(const JsonValue& root, std::vector<std::string>& warnings)
         absent += (absent.empty() ? "; this Frontmost was built without " : " and ") + std::string(known->part);
     }
     const std::optional<std::string> advice = conversion_of_extensions(required, root.source().name());
-    throw Error(ErrorCode::unsupported, root.source().name() + ": extensionsRequired: " + printable(list) +
-                                            ": not supported" + absent + (advice ? "; " + *advice : ""));
+    throw Error(ErrorCode::unsupported, root.source().name(), "extensionsRequired",
+                printable(list) + ": not supported" + absent + (advice ? "; " + *advice : ""));
   }
   for (const std::string& name : unsupported(root, "extensionsUsed"))
     warnings.push_back("extensionsUsed: " + name + " is not supported and passed over");

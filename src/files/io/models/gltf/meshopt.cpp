@@ -19,8 +19,7 @@ struct MeshoptStream {
 };
 
 [[noreturn]] void fail_unsupported(const JsonValue& json, const std::string& what) {
-  throw Error(ErrorCode::unsupported,
-              json.source().name() + ": " + json.place() + ": " + printable(what) + " is not supported");
+  throw Error(ErrorCode::unsupported, json.source().name(), json.place(), printable(what) + " is not supported");
 }
 
 MeshoptStream read_stream(const JsonValue& json, Bytes compressed, std::uint64_t length) {

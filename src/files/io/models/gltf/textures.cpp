@@ -165,7 +165,7 @@ void TextureTable::check_sizes(Jobs& jobs) const {
     const std::string& place = job.encoded.place;
     try {
       if (job.encoded.bytes.size() > encoded_left)
-        throw Error(ErrorCode::limit_exceeded, place + ": all images together are larger than the file");
+        throw Error(ErrorCode::limit_exceeded, place, "all images together are larger than the file");
       encoded_left -= job.encoded.bytes.size();
       const auto pixel_count = [&](Bytes bytes, const std::string& name) {
         if (!job.encoded.path.empty()) budget.add_file(bytes.size());
@@ -173,7 +173,7 @@ void TextureTable::check_sizes(Jobs& jobs) const {
         return std::uint64_t(size.x) * std::uint64_t(size.y);
       };
       if (!budget.take(job.uses * with_bytes(job.encoded, pixel_count)))
-        throw Error(ErrorCode::limit_exceeded, place + ": too many pixels in all images together");
+        throw Error(ErrorCode::limit_exceeded, place, "too many pixels in all images together");
     } catch (const Error& error) {
       job.problem = root_.source().without_name(error);
     }

@@ -201,7 +201,7 @@ class PlyStream final : public ModelStream {
     return vertices_.element->count * vertices_.element->least_row_size();
   }
   [[noreturn]] void refuse(const std::string& reason) const {
-    throw Error(ErrorCode::unsupported, source_.name() + ": header: " + reason);
+    throw Error(ErrorCode::unsupported, source_.name(), "header", reason);
   }
 
   /// One element of vertices, then one of faces; whatever else is passed over, if its length is known.
@@ -337,7 +337,7 @@ PlyHeader read_header(StreamStart& start, const ModelSource& source) {
 std::unique_ptr<ModelStream> open_ply_stream(StreamStart start, const ModelSource& source) {
   PlyHeader header = read_header(start, source);
   if (header.encoding == PlyEncoding::ascii)
-    throw Error(ErrorCode::unsupported, source.name() + ": text PLY cannot be streamed; binary STL and PLY can");
+    throw Error(ErrorCode::unsupported, source.name(), "", "text PLY cannot be streamed; binary STL and PLY can");
   if (!start.bytes->can_rewind())
     return std::make_unique<PlyStream>(std::move(start), std::move(header), nullptr, source);
   auto file = std::make_unique<const InputFile>(InputFile::open(start.path, source.name()));

@@ -5,7 +5,7 @@
 namespace frontmost {
 
 Scene read_3mf(Bytes, const ModelSource& source) {
-  throw Error(ErrorCode::unsupported, source.name() + ": this Frontmost was built without 3MF (FRONTMOST_3MF)");
+  throw Error(ErrorCode::unsupported, source.name(), "", "this Frontmost was built without 3MF (FRONTMOST_3MF)");
 }
 
 }  // namespace frontmost

@@ -228,9 +228,9 @@ class ModelPartReader : public XmlPart {
       const auto space = spaces_.find(std::string(prefixes.substr(0, size)));
       const std::string name = space == spaces_.end() ? "" : space->second;
       if (size > 0 && std::find(std::begin(supported), std::end(supported), name) == std::end(supported))
-        throw Error(ErrorCode::unsupported, source().name() + ": " + place() + ": requires the extension " +
-                                                printable(name.empty() ? prefixes.substr(0, size) : name) +
-                                                ", which is not supported");
+        throw Error(ErrorCode::unsupported, source().name(), place(),
+                    "requires the extension " + printable(name.empty() ? prefixes.substr(0, size) : name) +
+                        ", which is not supported");
       prefixes.remove_prefix(std::min(size + 1, prefixes.size()));
     }
   }
