@@ -11,7 +11,8 @@
 namespace frontmost::detail {
 
 /// Compresses pieces of one deflate stream (RFC 1951), each by itself. The bytes depend on the piece, on the library
-/// and on what that does on this processor, never on the pieces before. What it needs is kept for the next piece.
+/// and on what that does on this processor, never on the pieces before or on the process. What it needs is kept for the
+/// next piece.
 class StripDeflater {
  public:
   explicit StripDeflater(std::size_t most_bytes);
