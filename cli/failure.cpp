@@ -73,7 +73,8 @@ void start_clock(double seconds) {
 }  // namespace
 
 bool names_culprit(const Error& error) {
-  return !error.file().empty() || std::string_view(error.what()).starts_with("-");
+  const std::string_view what = error.what();
+  return !error.file().empty() || what.starts_with("-") || what.starts_with("standard ");
 }
 
 Error with_culprit(const Error& error, const Settings& settings) {

@@ -55,6 +55,11 @@ class House:
                 self.part_of_room[match[1]] = part
                 rooms[match[1]] = self.named(match[2])
         self.parts, self.rooms = self.closed(parts), self.closed(rooms)
+        # Where every room of a part has a header of its name, the rooms' arrows hold for the headers, too.
+        of_part = {part: {room for room in rooms if self.part_of_room[room] == part} for part in parts}
+        self.room_of_header = {room: room for part, within in of_part.items() if within <= self.part_of_header.keys() for room in within}
+        # Headers that are nothing but others: for users, not for the library.
+        self.gathering = {"frontmost"} | {part for part in parts if len(of_part[part]) > 1 and part not in rooms}
 
     @staticmethod
     def named(words):
@@ -91,24 +96,33 @@ def header_errors(house):
 
 def arrow_errors(path, text, house):
     top = path.parts[0]
-    if top == "src" and len(path.parts) > 3:
+    if top == "src":
+        if len(path.parts) < 4:
+            yield f"{path}: lies in no room"
+            return
         part, room = path.parts[1:3]
         if house.part_of_room.get(room) != part:
             yield f"{path}: docs/design.md has no room {room} in {part}"
             return
     elif top == "include":
-        part, room = house.part_of_header.get(path.stem), None  # frontmost.h is of none
+        part, room = house.part_of_header.get(path.stem), house.room_of_header.get(path.stem)
     else:
         part = room = None
     for number, line in enumerate(text.splitlines(), 1):
         match = re.match(r'\s*#\s*include\s+["<](?:(frontmost)/([a-z_]+)\.h|([a-z]+)/)', line)
         if not match:
             continue
-        if match[1] and part and house.part_of_header.get(match[2], part) not in house.parts[part]:
-            yield f"{path}:{number}: {part} must not include {match[2]}.h"
+        header = match[2]
+        if header and part and path.stem not in house.gathering and header != "version":
+            of_room = house.room_of_header.get(header)
+            if (header in house.gathering or house.part_of_header.get(header) not in house.parts[part]
+                    or room and of_room and not house.may_include(room, of_room)):
+                yield f"{path}:{number}: {room or part} must not include frontmost/{header}.h"
         if match[3] in house.part_of_room:
             if room and not house.may_include(room, match[3]):
                 yield f"{path}:{number}: {room} must not include {match[3]}"
+            if top == "include":
+                yield f"{path}:{number}: a public header must not include {match[3]}'s own headers"
             if top in FACES:
                 yield f"{path}:{number}: {top} sees include/frontmost alone, not {match[3]}'s own headers"
 
@@ -132,7 +146,7 @@ def lost_includes(texts):
     may still be asked for by a file that was written meanwhile. `texts`: path -> text."""
     there = {str(path) for path in texts}
     homes = ("", "include/", "tests/", "bench/", *{f"src/{path.parts[1]}/" for path in texts if path.parts[0] == "src"})
-    ours = {part for path in texts for part in path.parts[:3][:-1]}
+    ours = {folder for path in texts for folder in path.parts[:-1][:3]}
     for path, text in texts.items():
         for number, line in enumerate(text.splitlines(), 1):
             match = re.match(r'\s*#\s*include\s+(?:"([^"]+)"|<(frontmost/[^>]+)>)', line)

@@ -46,7 +46,7 @@ Image draw_layers(const Stage& stage, const AbufferOptions& options, const Execu
   ShadeOptions flat{.shading = Shading::flat, .background = std::nullopt};
   flat.opacity = options.opacity;
   flat.layers.see_through = SeeThrough::always;
-  flat.grid = options.grid;
+  flat.layers.grid = options.grid;
   return shade(stage.surfaces, zbuffer(stage.surfaces, stage.view, execution), flat, execution);
 }
 

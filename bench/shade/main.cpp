@@ -51,8 +51,8 @@ class Pictures {
  public:
   Pictures(const Surfaces& surfaces, Shadows shadows, ShadingRate rate = ShadingRate::each_pixel)
       : surfaces_(surfaces), shader_(surfaces) {
-    options_.shadows = shadows;
-    options_.rate = rate;
+    options_.light.shadows = shadows;
+    options_.pixels.rate = rate;
   }
   void draw(const View& view, Times& visibility, Times& colors) {
     const Execution execution{.threads = 1};

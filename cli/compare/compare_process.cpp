@@ -162,21 +162,21 @@ void send_run(const Sender& sender, const MethodRun& run) {
 [[noreturn]] void be_child(const ComparedMethod& method, const Settings& settings, int file) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   const Sender sender(file);
-  const auto fail = [&](Ending ending, ErrorCode code, const char* what) {
+  const auto fail = [&](Ending ending, const Error& error) {
     sender.send(std::uint64_t(ending));
-    sender.send(std::uint64_t(code));
-    sender.send(std::string_view(what));
+    sender.send(std::uint64_t(error.code()));
+    for (const std::string& text : {error.file(), error.place(), error.reason()}) sender.send(std::string_view(text));
   };
   try {
     send_run(sender, run_here(method, settings));
   } catch (const UsageError& error) {
-    fail(Ending::usage, ErrorCode::bad_argument, error.what());
+    fail(Ending::usage, {ErrorCode::bad_argument, error.what()});
   } catch (const Error& error) {
-    fail(Ending::error, error.code(), error.what());
+    fail(Ending::error, error);
   } catch (const std::bad_alloc&) {
-    fail(Ending::error, ErrorCode::limit_exceeded, "out of memory");
+    fail(Ending::error, {ErrorCode::limit_exceeded, "out of memory"});
   } catch (const std::exception& error) {
-    fail(Ending::error, ErrorCode::unsupported, error.what());
+    fail(Ending::error, {ErrorCode::unsupported, error.what()});
   }
   _exit(exit_done);
 }
@@ -185,9 +185,9 @@ MethodRun receive_run(const Receiver& receiver) {
   const auto ending = Ending(receiver.number());
   if (ending != Ending::done) {
     const auto code = ErrorCode(receiver.number());
-    const std::string what = receiver.text();
-    if (ending == Ending::usage) throw UsageError(what);
-    throw Error(code, what);
+    const std::string file = receiver.text(), place = receiver.text(), reason = receiver.text();
+    if (ending == Ending::usage) throw UsageError(reason);
+    throw Error(code, file, place, reason);
   }
   MethodRun run;
   run.stages.resize(receiver.number());

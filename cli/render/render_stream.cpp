@@ -18,16 +18,15 @@ StreamNeeds needs_of(const Job& job, const SightPlan& plan, const LightOptions& 
 }
 
 void check_one_pass(const Job& job, const StreamNeeds& needs, const Stream& stream) {
-  const std::string sorry = "standard input and pipes can be read only once: ";
+  const auto refuse = [](const char* advice) {
+    throw Error(ErrorCode::unsupported, "standard input and pipes can be read only once", advice);
+  };
   if (stream.can_repeat()) return;
   if (depends_on_model(job.view))
-    throw Error(ErrorCode::unsupported, sorry +
-                                            "say where the camera is (--camera-position with --camera-focal-point, "
-                                            "or --pose), and give --near and --far");
+    refuse(
+        "say where the camera is (--camera-position with --camera-focal-point, or --pose), and give --near and --far");
   // Smooth normals may turn out to need none: look() says.
-  if (needs.key_light)
-    throw Error(ErrorCode::unsupported,
-                sorry + "shadows take another pass; --no-shadows, --shading flat, depth, ids or uv do not");
+  if (needs.key_light) refuse("shadows take another pass; --no-shadows, --shading flat, depth, ids or uv do not");
 }
 
 /// A scene that has these bounds, which is all that is looked at.

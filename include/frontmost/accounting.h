@@ -387,10 +387,6 @@ struct DatasetView {
   const Accounting& accounts;  ///< of both
 };
 
-/// Which objects of a scene have one of these names, or a category of one of these names; by instance.
-/// O(instances * names). \throws Error bad_argument for a name that no object and no category has.
-[[nodiscard]] std::vector<bool> named_objects(const Scene& scene, const std::vector<std::string>& names);
-
 /// Writes the objects of one view after another. docs/command-line.md says what the files hold. BOP's and the masks'
 /// files are written into a hidden folder and moved when all views are there; COCO's text is kept until then.
 class DatasetWriter {
@@ -403,8 +399,8 @@ class DatasetWriter {
 
   /// Views count from 0, in this order; `picture` is COCO's file_name. Views may be of several scenes.
   /// \throws Error file_unwritable; unsupported for BOP of a parallel view, or of an object that is stretched or
-  /// mirrored; bad_argument as named_objects() does, for more samples than one, and for two categories of one number.
-  /// After an error only the destructor may be called.
+  /// mirrored; bad_argument for a name in leave_out that nothing has, for more samples than one, and for two categories
+  /// of one number. After an error only the destructor may be called.
   void add(const DatasetView& view, const std::string& picture, const Execution& execution = {});
 
   /// Moves the files to their places, and removes masks and depths that an earlier writer left in the same folders:

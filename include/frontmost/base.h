@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every room shares: errors, how to run (threads, instruction set, watching long work), boxes, buffers, and names
-// as texts.
+// What every room shares: errors, how to run (threads, instruction set, watching long work), boxes, buffers, names as
+// texts, and folders of files that are all there or not.
 #pragma once
 
 #include <cstddef>
@@ -200,8 +200,8 @@ class StagedFolder {
 
   /// Where the file of this name is to be written.
   [[nodiscard]] std::string path(const std::string& name) const { return (staged_ / name).string(); }
-  /// A message about one of the files, with the name that the file is to have.
-  [[nodiscard]] std::string told(const std::string& message) const;
+  /// The path that a file in here is to have, where it begins with this folder; other texts as they are.
+  [[nodiscard]] std::string told(const std::string& path) const;
   /// Moves the files to their places, in this order; they need no more room there. Those that were there are replaced,
   /// those at the end of links too, and leave their permissions. \throws Error file_unwritable.
   void commit(const std::vector<std::string>& names) const;

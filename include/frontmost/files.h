@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files: models in, images out. The only room that touches the file system.
+// Files: models, images and environments in; images, models and tables out.
 //
 // Formats differ in what they hold and how they break; here they do not. A model of any format becomes a Scene that
 // validate() passes, or an Error that names file, place and reason. A file that is written is there whole, or not at
@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 

@@ -10,9 +10,11 @@
 // which is seen, and they are said to fight.
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "frontmost/image.h"
@@ -118,7 +120,7 @@ struct DepthFights {
 //            |    second |                          second
 //            +-----------+
 //
-// Samples of one picture show where this picture is wrong (find_depth_fights in precision.h); the areas show where a
+// Samples of one picture show where this picture is wrong (find_depth_fights); the areas show where a
 // picture from a little farther left would be. Every sample that is wrong or tied lies in an area.
 
 /// Why a depth buffer may show the wrong one of two faces, the first that holds.

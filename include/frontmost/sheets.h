@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figure: a picture of polygons, for vector files, as Image is one of pixels. draw_figure() makes it, save() writes it.
+// Drawings on paper: figures (pictures of polygons), pages in millimetres and their files, lettering, and whole sheets.
+//
+//   draw_figure() --> Figure ----+
+//   draw_sheet() --> Sheet ------+--> Page --save()--> SVG, PDF, DXF, JSON
+//   paths of one's own ----------+
+//
+// A Figure is for vector files what an Image is for files of pixels.
 //
 // A million polygons are three arrays, each of which names a run of the next:
 //

@@ -309,7 +309,4 @@ struct VisiblePixels {
 /// The same of planes: runs follow each other as pixels do. O(samples).
 [[nodiscard]] VisiblePixels pixels_of(const Visible& visible);
 
-/// Of a view, with nothing in it: every plane has its size, and is undefined. \throws Error as validate(view) does.
-[[nodiscard]] VisiblePixels undefined_pixels(const View& view);
-
 }  // namespace frontmost

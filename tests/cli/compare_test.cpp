@@ -185,7 +185,9 @@ TEST_F(Compare, NothingToSeeIsNoTrouble) {
 }
 
 TEST_F(Compare, RefusesWhatItCannotDo) {
-  expect_failure("compare none.stl", 1, "none.stl");
+  expect_failure("compare none.stl", 1, "frontmost: none.stl: cannot open");
+  expect_failure("compare cube.stl --pose 1,0,0,1e39,0,1,0,0,0,0,1,0 --pose-convention opengl-camera-to-world", 1,
+                 "frontmost: --pose: pose: the eye");
   expect_failure("compare -", 2, "give a file");
   expect_failure("compare cube.stl --runs 0", 2, "--runs");
   expect_failure("compare cube.stl --samples 64", 2, "--samples");

@@ -135,14 +135,17 @@ TEST_F(Messages, OfOutputs) {
                  "a.png: two outputs have this name; only .exr files that are not deep hold several"},
                 {"render cube.stl -o a.png --reference a.png", "a.png: is both the reference and an output"}});
   expect_could_not({{"render cube.stl --format png -o folder", "folder: is a folder"},
-                    {"render cube.stl -o cube.stl/a.png", "cube.stl/a.png: cube.stl is not a folder"}});
+                    {"render cube.stl -o cube.stl/a.png", "cube.stl/a.png: cube.stl is not a folder"},
+                    {"lines builtin:teapot -o a.svg --tessellation-error 0.001 --resolution 8000,8000",
+                     "frontmost: builtin:teapot: teapot: instance 0, mesh 0: so small a tessellation error"}});
 }
 
 TEST_F(Messages, OfStreams) {
   Call piped{.words = {"render", "-", "--stream", "-o", "a.png"}, .input = cube_stl()};
-  EXPECT_THAT(run(piped).err, testing::HasSubstr("standard input and pipes can be read only once: say where the camera "
-                                                 "is (--camera-position with --camera-focal-point, or --pose), and "
-                                                 "give --near and --far"));
+  EXPECT_THAT(run(piped).err,
+              testing::HasSubstr("frontmost: standard input and pipes can be read only once: say where the camera "
+                                 "is (--camera-position with --camera-focal-point, or --pose), and "
+                                 "give --near and --far"));
   piped.words = {
       "render",      "-",      "--stream", "-o",    "a.png", "--camera-position", "5,5,5", "--camera-focal-point",
       "0.5,0.5,0.5", "--near", "1",        "--far", "20",    "--shadows",         "map"};

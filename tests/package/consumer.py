@@ -74,6 +74,28 @@ def check_small(folder):
         sys.exit(f"more than {MOST_BYTES} bytes")
 
 
+ASKS = """cmake_minimum_required(VERSION 3.22)
+project(asks LANGUAGES CXX)
+find_package(frontmost QUIET COMPONENTS methods OPTIONAL_COMPONENTS files nothing)
+if(NOT frontmost_FOUND OR NOT frontmost_methods_FOUND OR frontmost_files_FOUND OR frontmost_nothing_FOUND)
+  message(FATAL_ERROR "${frontmost_FOUND} ${frontmost_methods_FOUND} ${frontmost_files_FOUND} ${frontmost_nothing_FOUND}")
+endif()
+find_package(frontmost COMPONENTS nothing)
+if(frontmost_FOUND OR NOT frontmost_NOT_FOUND_MESSAGE MATCHES "there is no part nothing")
+  message(FATAL_ERROR "${frontmost_FOUND} ${frontmost_NOT_FOUND_MESSAGE}")
+endif()
+"""
+
+
+def check_components(folder, prefix):
+    """Without libpng, which static files need, methods are found all the same; and what is no part is named."""
+    if not list(prefix.rglob("libfrontmost_files.a")):
+        return
+    folder.mkdir()
+    (folder / "CMakeLists.txt").write_text(ASKS)
+    run("cmake", "-S", folder, "-B", folder / "build", f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_DISABLE_FIND_PACKAGE_PNG=ON")
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("build", type=pathlib.Path)
@@ -94,6 +116,7 @@ def main():
         run("cmake", "-S", HERE / "small", "-B", folder / "small", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
             f"-DCMAKE_PREFIX_PATH={prefix}")
         check_small(folder / "small")
+        check_components(folder / "asks", prefix)
 
         modules = next(prefix.rglob("frontmost.pc")).parent
         environment = dict(os.environ, PKG_CONFIG_PATH=str(modules))

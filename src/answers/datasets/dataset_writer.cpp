@@ -10,6 +10,10 @@ namespace frontmost {
 
 using namespace datasets;
 
+namespace {
+
+/// Which objects of a scene have one of these names, or a category of one of these names; by instance.
+/// O(instances * names). \throws Error bad_argument for a name that no object and no category has.
 std::vector<bool> named_objects(const Scene& scene, const std::vector<std::string>& names) {
   std::vector<bool> named(scene.instances.size());
   for (const std::string& name : names) {
@@ -28,6 +32,8 @@ std::vector<bool> named_objects(const Scene& scene, const std::vector<std::strin
   }
   return named;
 }
+
+}  // namespace
 
 struct DatasetWriter::Parts {
   DatasetOptions options;

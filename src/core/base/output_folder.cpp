@@ -44,9 +44,9 @@ StagedFolder::~StagedFolder() {
   fs::remove_all(staged_, ignored);
 }
 
-std::string StagedFolder::told(const std::string& message) const {
+std::string StagedFolder::told(const std::string& path) const {
   const std::string staged = staged_.string();
-  return message.starts_with(staged) ? folder_.string() + message.substr(staged.size()) : message;
+  return path.starts_with(staged) ? folder_.string() + path.substr(staged.size()) : path;
 }
 
 void StagedFolder::commit(const std::vector<std::string>& names) const {

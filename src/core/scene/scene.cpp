@@ -11,12 +11,15 @@
 #include "scene/validate.h"
 
 namespace frontmost {
+
+std::string place_in(const Scene& scene) { return scene.name.empty() ? "" : scene.name + ": "; }
+
 namespace {
 
 [[noreturn]] void fail(const Scene& scene, std::size_t mesh, const std::string& reason) {
   const std::string& name = scene.meshes[mesh].name;
-  throw Error(ErrorCode::file_malformed, scene.name,
-              "mesh " + std::to_string(mesh) + (name.empty() ? "" : " (" + name + ")"), reason);
+  throw Error(ErrorCode::file_malformed,
+              place_in(scene) + "mesh " + std::to_string(mesh) + (name.empty() ? "" : " (" + name + ")"), reason);
 }
 
 void check_corners(const Scene& scene, std::size_t mesh, const std::vector<glm::uvec3>& triangles, std::size_t count,
@@ -76,10 +79,10 @@ void check_use(const Scene& scene, const Material& material, const TextureUse& u
   if (!use.is_set()) return;
   const std::string who = "material " + material.name;
   if (use.texture >= scene.textures.size())
-    throw Error(ErrorCode::file_malformed, scene.name, who,
+    throw Error(ErrorCode::file_malformed, place_in(scene) + who,
                 "texture " + std::to_string(use.texture) + " does not exist");
   if (use.set >= max_texcoord_sets)
-    throw Error(ErrorCode::file_malformed, scene.name, who,
+    throw Error(ErrorCode::file_malformed, place_in(scene) + who,
                 "texture coordinates " + std::to_string(use.set) + ", there are at most " +
                     std::to_string(max_texcoord_sets) + " sets");
 }
@@ -87,7 +90,7 @@ void check_use(const Scene& scene, const Material& material, const TextureUse& u
 void check_instances(const Scene& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const auto refuse = [&](const char* what, std::uint32_t number) {
-      throw Error(ErrorCode::file_malformed, scene.name, "instance " + std::to_string(i),
+      throw Error(ErrorCode::file_malformed, place_in(scene) + "instance " + std::to_string(i),
                   std::string(what) + " " + std::to_string(number) + " does not exist");
     };
     const Instance& instance = scene.instances[i];
@@ -125,8 +128,8 @@ void check_lights(const Scene& scene) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
     if (const char* fault = fault_of(scene.lights[i])) {
       const std::string& name = scene.lights[i].name;
-      throw Error(ErrorCode::file_malformed, scene.name,
-                  "light " + std::to_string(i) + (name.empty() ? "" : " (" + name + ")"), fault);
+      throw Error(ErrorCode::file_malformed,
+                  place_in(scene) + "light " + std::to_string(i) + (name.empty() ? "" : " (" + name + ")"), fault);
     }
 }
 
@@ -163,12 +166,13 @@ void validate_besides_vertices(const Scene& scene) {
   for (const Texture& texture : scene.textures)
     if (texture.width < 0 || texture.height < 0 ||
         texture.pixels.size() != std::size_t(texture.width) * std::size_t(texture.height))
-      throw Error(ErrorCode::file_malformed, scene.name, "texture " + texture.name, "pixels do not match its size");
+      throw Error(ErrorCode::file_malformed, place_in(scene) + "texture " + texture.name,
+                  "pixels do not match its size");
   check_instances(scene);
   check_lights(scene);
   // One id fewer than there are numbers: the greatest stands for nothing seen.
   if (triangle_count(scene) > no_primitive - 1)
-    throw Error(ErrorCode::limit_exceeded, scene.name, "", "more than 4294967294 triangles over all instances");
+    throw Error(ErrorCode::limit_exceeded, scene.name, "more than 4294967294 triangles over all instances");
 }
 
 }  // namespace frontmost

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "scene/validate.h"
 
 namespace frontmost {
 namespace {
@@ -45,9 +46,10 @@ void check_transform(const Scene& scene, std::size_t instance, const glm::dmat4&
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 4; ++row)
       if (!std::isfinite(world_from_mesh[column][row]))
-        throw Error(ErrorCode::bad_argument, scene.name, "",
-                    "instance " + std::to_string(instance) + " (" + scene.instances[instance].name +
-                        "): its transform is not finite");
+        throw Error(
+            ErrorCode::bad_argument,
+            place_in(scene) + "instance " + std::to_string(instance) + " (" + scene.instances[instance].name + ")",
+            "its transform is not finite");
 }
 
 void check_transforms(const Scene& scene) {

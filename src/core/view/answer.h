@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a Visible that comes from outside can be read: the door for all that take one.
+// Whether a Visible that comes from outside can be read: the door for all that take one; and planes to be filled.
 //
 // Callers can put any Visible together with any surfaces: planes of another size than their view, planes that were
 // moved away, ids of surfaces that have gone or were edited since. Behind this door every id is looked up without a
@@ -26,5 +26,9 @@ void check_ids(std::span<const PrimitiveId> ids, std::uint32_t primitive_count, 
 void check_answer(const Visible& visible, std::uint32_t primitive_count, const char* who, const Execution& execution);
 void check_answer(const VisiblePixels& pixels, std::uint32_t primitive_count, const char* who,
                   const Execution& execution);
+
+/// Pixels of a view with nothing in them: every plane has its size, and is undefined. \throws Error as validate(view)
+/// does.
+[[nodiscard]] VisiblePixels undefined_pixels(const View& view);
 
 }  // namespace frontmost

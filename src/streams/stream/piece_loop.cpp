@@ -27,7 +27,7 @@ void refuse_pipe(const std::string& path) {
   std::error_code ignored;
   if (path != "-" && (!std::filesystem::exists(path, ignored) || std::filesystem::is_regular_file(path, ignored)))
     return;
-  throw Error(ErrorCode::unsupported, (path == "-" ? std::string("standard input") : path),
+  throw Error(ErrorCode::unsupported, path == "-" ? "standard input" : path, "",
               "several ranks can read ordinary files alone");
 }
 

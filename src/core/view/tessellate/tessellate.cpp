@@ -15,6 +15,7 @@
 #include "base/parallel.h"
 #include "frontmost/view.h"
 #include "scene/shapes.h"
+#include "scene/validate.h"
 #include "view/tessellate/level.h"
 
 namespace frontmost {
@@ -86,8 +87,9 @@ class Plan {
     const auto over = std::find_if(counts_.begin(), counts_.end(), [](double n) { return !(n <= kMostTriangles); });
     if (over == counts_.end()) return;
     const auto instance = std::size_t(over - counts_.begin());
-    throw Error(ErrorCode::limit_exceeded, scene.name,
-                "instance " + std::to_string(instance) + ", mesh " + std::to_string(scene.instances[instance].mesh),
+    throw Error(ErrorCode::limit_exceeded,
+                place_in(scene) + "instance " + std::to_string(instance) + ", mesh " +
+                    std::to_string(scene.instances[instance].mesh),
                 "so small a tessellation error takes more than 2^26 triangles");
   }
 

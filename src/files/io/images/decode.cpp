@@ -65,18 +65,19 @@ auto ask_decoder(const std::string& name, Ask ask) {
 namespace detail {
 
 void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height, std::size_t byte_count,
-                      double densest) {
+                      double densest, const char* format) {
   const std::string size = std::to_string(width) + " x " + std::to_string(height);
-  if (width == 0 || height == 0) throw Error(ErrorCode::file_malformed, name, "", "an image of " + size + " pixels");
+  if (width == 0 || height == 0)
+    throw Error(ErrorCode::file_malformed, name, format, "an image of " + size + " pixels");
   // Sides first: their product is then far below 64 bits.
   if (width > std::uint64_t(max_image_side) || height > std::uint64_t(max_image_side) ||
       width * height > max_image_pixels)
-    throw Error(ErrorCode::limit_exceeded, name, "",
+    throw Error(ErrorCode::limit_exceeded, name, format,
                 size + " pixels, more than " + std::to_string(max_image_side) + " on a side or " +
                     std::to_string(max_image_pixels) + " in all");
   // A file of some hundred bytes may name the greatest size there is; memory is asked for only where pixels can follow.
   if (double(width * height) > densest * double(byte_count))
-    throw Error(ErrorCode::file_malformed, name, "",
+    throw Error(ErrorCode::file_malformed, name, format,
                 std::to_string(byte_count) + " bytes cannot hold " + size + " pixels");
 }
 

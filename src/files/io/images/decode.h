@@ -46,8 +46,9 @@ enum class ImagePart : std::uint8_t { size, pixels };
 [[nodiscard]] bool has_webp();
 
 /// The part of every decoder between header and pixels. `densest` is the most pixels that one byte of a valid file can
-/// stand for: a header that claims more belongs to a truncated or hostile file, and gets no memory.
+/// stand for: a header that claims more belongs to a truncated or hostile file, and gets no memory. `format` is
+/// the place of an error.
 void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height, std::size_t byte_count,
-                      double densest);
+                      double densest, const char* format = "");
 
 }  // namespace frontmost::detail

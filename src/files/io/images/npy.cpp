@@ -113,7 +113,7 @@ Image load_npy(std::span<const std::byte> bytes, const std::string& name) {
   const std::vector<std::size_t> sizes = shape(value_of(header.text, "'shape'", name), name);
   RawLayout layout{sizes[1], sizes[0], sizes.size() == 3 ? sizes[2] : 1, integers};
   layout.big_endian = type[1] == '>';
-  return read_raw(bytes.subspan(header.end), layout, name + ": NPY");
+  return read_raw(bytes.subspan(header.end), layout, name, "NPY");
 }
 
 }  // namespace frontmost::detail

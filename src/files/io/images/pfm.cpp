@@ -77,7 +77,7 @@ Image load_pfm(std::span<const std::byte> bytes, const std::string& name) {
   if (scale.find_first_of("123456789") == std::string_view::npos) fail_pfm(name, "the scale is not a number");
   layout.big_endian = scale[0] != '-';  // its size is a unit that nobody agrees on, and is left aside
   layout.bottom_row_first = true;
-  return read_raw(header.rest(), layout, name + ": PFM");
+  return read_raw(header.rest(), layout, name, "PFM");
 }
 
 }  // namespace frontmost::detail

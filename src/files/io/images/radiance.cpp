@@ -164,7 +164,7 @@ Image load_radiance(std::span<const std::byte> bytes, const std::string& name) {
   const RadianceSize size = read_radiance_header(rest, name);
   // A row of one colour takes a pixel and what repeats it.
   const double densest = double(std::max<std::size_t>(size.width, 2)) / 8;
-  check_image_size(name + ": Radiance", size.width, size.height, rest.rest().size(), densest);
+  check_image_size(name, size.width, size.height, rest.rest().size(), densest, "Radiance");
   Image image{int(size.width), int(size.height), {}};
   for (const char* channel : {"R", "G", "B"})
     image.channels.push_back({channel, Buffer<float>(size.width * size.height)});

@@ -50,16 +50,16 @@ void write_raw(const Image& image, const RawLayout& layout, OutputFile& file) {
   }
 }
 
-Image read_raw(std::span<const std::byte> bytes, const RawLayout& layout, const std::string& name) {
+Image read_raw(std::span<const std::byte> bytes, const RawLayout& layout, const std::string& name, const char* format) {
   constexpr std::size_t most_channels = 1024;
   if (layout.channels < 1 || layout.channels > most_channels)
-    throw Error(ErrorCode::limit_exceeded, name, "", std::to_string(layout.channels) + " channels, not 1 to 1024");
+    throw Error(ErrorCode::limit_exceeded, name, format, std::to_string(layout.channels) + " channels, not 1 to 1024");
   // No bound on what the bytes may hold: the very number of them is asked for below.
-  check_image_size(name, layout.width, layout.height, bytes.size(), std::numeric_limits<double>::infinity());
+  check_image_size(name, layout.width, layout.height, bytes.size(), std::numeric_limits<double>::infinity(), format);
   const std::size_t expected = layout.height * layout.row_values() * value_size;
   // Longer is as wrong as shorter: a header that was misread would otherwise give a picture shifted by some bytes.
   if (bytes.size() != expected)
-    throw Error(ErrorCode::file_malformed, name, "",
+    throw Error(ErrorCode::file_malformed, name, format,
                 "the header asks for " + std::to_string(expected) + " bytes of numbers, but " +
                     std::to_string(bytes.size()) + " follow");
   Image image{int(layout.width), int(layout.height), {}};

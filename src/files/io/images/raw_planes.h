@@ -31,6 +31,7 @@ void write_raw(const Image& image, const RawLayout& layout, OutputFile& file);
 
 /// \throws Error file_malformed where `bytes` are not exactly what the layout asks for, limit_exceeded.
 /// Channels are named by default_channel_names().
-[[nodiscard]] Image read_raw(std::span<const std::byte> bytes, const RawLayout& layout, const std::string& name);
+[[nodiscard]] Image read_raw(std::span<const std::byte> bytes, const RawLayout& layout, const std::string& name,
+                             const char* format);
 
 }  // namespace frontmost::detail

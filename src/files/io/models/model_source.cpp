@@ -103,7 +103,11 @@ fs::path ModelSource::path_of(const std::string& reference) const {
 InputFile ModelSource::open(const std::string& reference, std::uint64_t max_bytes) const {
   const fs::path found = path_of(reference);
   if (opened_) opened_->add(found);
-  return InputFile::open(found, name_ + ": " + printable(reference), max_bytes);
+  try {
+    return InputFile::open(found, printable(reference), max_bytes);
+  } catch (const Error& error) {
+    throw error.within(name_);
+  }
 }
 
 std::string name_of(std::string_view text) { return std::string(start_of(text, longest_name)); }

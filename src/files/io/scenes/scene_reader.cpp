@@ -202,7 +202,8 @@ class SceneReader {
       return read();
     } catch (const Error& error) {
       if (error.code() == ErrorCode::cancelled) throw;
-      throw Error(error.code(), source_.name(), object.place + ".model", source_.without_name(error));
+      throw(error.file() == source_.name() ? Error(error.code(), error.place(), error.reason()) : error)
+          .within(source_.name(), object.place + ".model");
     }
   }
 

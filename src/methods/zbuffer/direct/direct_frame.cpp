@@ -17,6 +17,7 @@
 
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "view/answer.h"
 #include "zbuffer/place/place_kernel.h"
 #include "zbuffer/record_lists.h"
 

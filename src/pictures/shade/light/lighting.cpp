@@ -52,15 +52,17 @@ IrradiancePolynomial polynomial_of(const IrradianceMoments& moments, const glm::
 }  // namespace
 
 void check_light(const LightOptions& options) {
-  const auto refuse = [](const char* what) { throw Error(ErrorCode::bad_argument, "shade", what); };
+  const auto refuse = [](const char* place, const char* reason) {
+    throw Error(ErrorCode::bad_argument, place, reason);
+  };
   constexpr double most_stops = 32, most_intensity = 1e6;
-  if (!std::isfinite(options.environment_angle)) refuse("environment angle: must be finite");
-  if (!(std::abs(options.exposure) <= most_stops)) refuse("exposure: must be -32 to 32 stops");
+  if (!std::isfinite(options.environment_angle)) refuse("shade: environment angle", "must be finite");
+  if (!(std::abs(options.exposure) <= most_stops)) refuse("shade: exposure", "must be -32 to 32 stops");
   if (options.intensity && !(*options.intensity >= 0 && *options.intensity <= most_intensity))
-    refuse("light intensity: must be 0 to 1000000");
+    refuse("shade: light intensity", "must be 0 to 1000000");
   if (!options.direction) return;
   const double length2 = glm::dot(*options.direction, *options.direction);
-  if (!(length2 >= 1e-200 && length2 <= 1e200)) refuse("light direction: must have a length, 1e-100 to 1e100");
+  if (!(length2 >= 1e-200 && length2 <= 1e200)) refuse("shade: light direction", "must have a length, 1e-100 to 1e100");
 }
 
 glm::vec3 direction_to_key(const View& view, const LightOptions& options) {

@@ -125,7 +125,7 @@ void check_exr_header(std::span<const std::byte> bytes, const std::string& name)
   constexpr std::uint64_t most_channels = 1024;
   if (sizes.channels < 1 || sizes.channels > most_channels)
     throw Error(ErrorCode::limit_exceeded, name, "EXR", std::to_string(sizes.channels) + " channels, not 1 to 1024");
-  check_image_size(name + ": EXR", sizes.width, sizes.height, bytes.size(), std::numeric_limits<double>::infinity());
+  check_image_size(name, sizes.width, sizes.height, bytes.size(), std::numeric_limits<double>::infinity(), "EXR");
   if (sizes.width * sizes.height * sizes.channels * 4 > sizes.most_memory(bytes.size()))
     fail(name, std::to_string(bytes.size()) + " bytes cannot hold " + std::to_string(sizes.width) + " x " +
                    std::to_string(sizes.height) + " pixels of " + std::to_string(sizes.channels) + " channels");
