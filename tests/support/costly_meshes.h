@@ -47,6 +47,18 @@ inline Mesh crossing_strips(int count) {
   return mesh;
 }
 
+/// Very thin triangles of length 2 through one point of a plane, in all directions of it.
+inline Mesh flat_slivers(int count) {
+  Random random(4);
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const float turn = 3.14159f * random.unit();
+    const glm::vec3 along(std::cos(turn), std::sin(turn), 0), aside(-1e-4f * along.y, 1e-4f * along.x, 0);
+    add_triangle(mesh, -along - aside, -along + aside, along);
+  }
+  return mesh;
+}
+
 /// Very thin triangles of length 2 through one point, in all directions of space.
 inline Mesh slivers_through_point(int count) {
   Random random(3);

@@ -137,7 +137,8 @@ void add_polygon(PaintOrder& order, const BspPiece& piece) {
   std::vector<PaintCorner> corners;
   double twice = 0;
   for (const BspPiece::Corner& corner : piece.corners)
-    corners.push_back({glm::dvec3(on_screen(order.view, corner.at), from_eye(order.view, corner.at).z), corner.is_cut});
+    corners.push_back(
+        {glm::dvec3(pixel_of_point(order.view, corner.at), from_eye(order.view, corner.at).z), corner.is_cut});
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const glm::dvec3 &a = corners[i].at, &b = corners[(i + 1) % corners.size()].at;
     twice += a.x * b.y - a.y * b.x;

@@ -53,7 +53,7 @@ double area_of(const View& view, const std::vector<ClipCorner>& polygon) {
 PlainJson polygon_json(const View& view, const View& beside, const std::vector<ClipCorner>& polygon) {
   PlainJson corners = PlainJson::array();
   for (const ClipCorner& corner : polygon)
-    corners.push_back({{"beside", to_json(on_screen(beside, corner.world))},
+    corners.push_back({{"beside", to_json(pixel_of_point(beside, corner.world))},
                        {"screen", to_json(divided(view, corner.clip))},
                        {"clip", to_json(corner.clip)},
                        {"is_new", corner.is_new}});
@@ -92,7 +92,7 @@ PlainJson clipping_lesson(const PlainJson& question) {
           {"area", area_of(view, polygon)},
           {"library", faces.faces.empty() ? 0 : faces.faces.front().pixels},
           {"volume", lines_json(beside, sides_of_volume(view))},
-          {"eye", to_json(on_screen(beside, view.eye()))},
+          {"eye", to_json(pixel_of_point(beside, view.eye()))},
           {"eye_plane", lines_json(beside, {&eye_plane, 1})}};
 }
 

@@ -77,8 +77,8 @@ PlainJson culling_lesson(const PlainJson& question) {
     const Facing facing = facing_of(stage.surfaces, view, id);
     ++(facing.cosine > 0 ? front : facing.cosine < 0 ? back : edge_on);
     if (stage.surfaces.primitive_count() > most_arrows) continue;
-    arrows.push_back({{"from", to_json(on_screen(view, facing.middle))},
-                      {"to", to_json(on_screen(view, facing.middle + facing.normal * length))},
+    arrows.push_back({{"from", to_json(pixel_of_point(view, facing.middle))},
+                      {"to", to_json(pixel_of_point(view, facing.middle + facing.normal * length))},
                       {"cosine", facing.cosine},
                       {"middle", to_json(facing.middle)},
                       {"normal", to_json(facing.normal)}});

@@ -69,7 +69,7 @@ Bitmap lesson_picture(const LessonScene& stage, const Visible& visible);
 /// How far a point of the world is to the right of the eye, above it, and before it.
 glm::dvec3 from_eye(const View& view, const glm::dvec3& world);
 /// Where a point of the world is, in pixels. Precondition: it lies before the eye.
-glm::dvec2 on_screen(const View& view, const glm::dvec3& world);
+glm::dvec2 pixel_of_point(const View& view, const glm::dvec3& world);
 
 using WorldLine = std::array<glm::dvec3, 2>;
 std::array<WorldLine, 12> sides_of(const Box& box);

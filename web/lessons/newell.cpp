@@ -31,7 +31,7 @@ NewellTriangle seen_triangle(const Surfaces& surfaces, const View& view, Primiti
   const std::array<glm::vec3, 3> corners = surfaces.corners(id);
   for (std::size_t i = 0; i < 3; ++i) {
     t.world[i] = glm::dvec3(corners[i]);
-    t.screen[i] = on_screen(view, t.world[i]);
+    t.screen[i] = pixel_of_point(view, t.world[i]);
     const double depth = from_eye(view, t.world[i]).z;
     t.near = std::min(t.near, depth), t.far = std::max(t.far, depth);
     t.low = glm::min(t.low, t.screen[i]), t.high = glm::max(t.high, t.screen[i]);

@@ -128,7 +128,7 @@ PlainJson frustum(const PlainJson& question) {
           {"pixels", place_of(picture.rgba.data(), picture.rgba.size())},
           {"beside", place_of(aside.rgba.data(), aside.rgba.size())},
           {"volume", lines_json(beside, volume)},
-          {"eye", to_json(on_screen(beside, view.eye()))},
+          {"eye", to_json(pixel_of_point(beside, view.eye()))},
           {"sides", {p.left, p.right, p.bottom, p.top}},
           {"matrix", to_json(clip_from_eye(p))}};
 }

@@ -77,7 +77,7 @@ PlainJson walk(const PlainJson& question) {
                       {"pixels", place_of(picture.rgba.data(), picture.rgba.size())},
                       {"beside", place_of(aside.rgba.data(), aside.rgba.size())},
                       {"ray", lines_json(beside, {&line, 1})},
-                      {"eye", to_json(on_screen(beside, view.eye()))},
+                      {"eye", to_json(pixel_of_point(beside, view.eye()))},
                       {"steps", std::move(told)},
                       {"boxes", work.boxes},
                       {"asked", work.triangles},

@@ -85,7 +85,7 @@ class ShadowJudge {
     if (glm::dot(normal, sight) > 0) normal = -normal;
     judged.cosine = glm::dot(normal, to_light_) / std::max(glm::length(normal), 1e-30);
     judged.faces_light = judged.cosine > 1e-6;
-    const glm::dvec2 at = on_screen(map_.view, point);
+    const glm::dvec2 at = pixel_of_point(map_.view, point);
     const int most = map_.view.width - 1;
     judged.texel = {std::clamp(int(at.x), 0, most), std::clamp(int(at.y), 0, most)};
     judged.stored = map_.depths[map_.visible.index(judged.texel.x, judged.texel.y)];

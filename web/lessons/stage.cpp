@@ -218,7 +218,7 @@ glm::dvec3 from_eye(const View& view, const glm::dvec3& world) {
   return {glm::dot(away, view.right()), glm::dot(away, view.up()), glm::dot(away, view.forward())};
 }
 
-glm::dvec2 on_screen(const View& view, const glm::dvec3& world) {
+glm::dvec2 pixel_of_point(const View& view, const glm::dvec3& world) {
   const Projection& p = view.projection;
   const glm::dvec3 at = from_eye(view, world);
   const double scale = p.orthographic ? 1 : std::max(at.z, 1e-9);
@@ -271,7 +271,7 @@ PlainJson lines_json(const View& view, std::span<const WorldLine> lines) {
     const glm::dvec3 border = line[0] + (line[1] - line[0]) * (from / (from - to));
     if (from < 0) line[0] = border;
     if (to < 0) line[1] = border;
-    const glm::dvec2 a = on_screen(view, line[0]), b = on_screen(view, line[1]);
+    const glm::dvec2 a = pixel_of_point(view, line[0]), b = pixel_of_point(view, line[1]);
     json.push_back({a.x, a.y, b.x, b.y});
   }
   return json;

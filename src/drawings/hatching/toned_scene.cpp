@@ -88,8 +88,9 @@ class TonedScene::Hatcher {
 
   /// Counts the work since the last call. \throws Error limit_exceeded, cancelled.
   void tell() {
-    work_.add(seen_.take_work() + (lit_ ? lit_->take_work() : 0),
-              [] { return std::string("too many triangles lie over each other"); });
+    work_.add(seen_.take_work() + (lit_ ? lit_->take_work() : 0), [this] {
+      return "too many of " + std::to_string(scene_.mesh_.triangles.size()) + " triangles lie over each other";
+    });
   }
 
   void hatch(std::uint32_t number, std::vector<HatchPiece>& pieces) {
