@@ -2,7 +2,6 @@
 // By Intel's ISA-L, which takes a quarter of the time of zlib's runs, and less.
 #include <isa-l/crc.h>
 #include <isa-l/igzip_lib.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <new>
@@ -10,6 +9,7 @@
 
 #include "frontmost/base.h"
 #include "io/images/png/strip_deflater.h"
+#include "io/images/png/zlib_piece.h"
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -49,16 +49,6 @@ struct StripDeflater::State {
   isal_zstream stream{};
   z_stream small{};
   Buffer<std::uint8_t> level_memory{level_memory_size}, out;
-
-  std::span<const std::uint8_t> compress_small(std::span<const std::uint8_t> raw, bool last) {
-    ::deflateReset(&small);
-    small.next_in = const_cast<Bytef*>(raw.data());  // zlib does not write there
-    small.avail_in = uInt(raw.size());
-    small.next_out = out.data();
-    small.avail_out = uInt(out.size());
-    ::deflate(&small, last ? Z_FINISH : Z_FULL_FLUSH);  // `out` is as large as the worst case, so one call does it
-    return {out.data(), small.total_out};
-  }
 };
 
 StripDeflater::StripDeflater(std::size_t most_bytes) : state_(std::make_unique<State>()) {
@@ -71,7 +61,7 @@ StripDeflater::StripDeflater(std::size_t most_bytes) : state_(std::make_unique<S
 StripDeflater::~StripDeflater() { ::deflateEnd(&state_->small); }
 
 std::span<const std::uint8_t> StripDeflater::compress(std::span<const std::uint8_t> raw, bool last) {
-  if (raw.size() < small_piece) return state_->compress_small(raw, last);
+  if (raw.size() < small_piece) return deflate_piece(state_->small, raw, last, state_->out);
   isal_zstream& stream = state_->stream;
   ::isal_deflate_stateless_init(&stream);
   stream.level = deflate_level;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // By zlib, for builds without ISA-L.
-#include <zlib.h>
-
 #include <new>
 
 #include "frontmost/base.h"
 #include "io/images/png/strip_deflater.h"
+#include "io/images/png/zlib_piece.h"
 
 namespace frontmost::detail {
 namespace {
@@ -33,14 +32,7 @@ StripDeflater::StripDeflater(std::size_t most_bytes) : state_(std::make_unique<S
 StripDeflater::~StripDeflater() { ::deflateEnd(&state_->stream); }
 
 std::span<const std::uint8_t> StripDeflater::compress(std::span<const std::uint8_t> raw, bool last) {
-  z_stream& stream = state_->stream;
-  ::deflateReset(&stream);
-  stream.next_in = const_cast<Bytef*>(raw.data());  // zlib does not write there
-  stream.avail_in = uInt(raw.size());
-  stream.next_out = state_->out.data();
-  stream.avail_out = uInt(state_->out.size());
-  ::deflate(&stream, last ? Z_FINISH : Z_FULL_FLUSH);  // `out` is as large as the worst case, so one call does it
-  return {state_->out.data(), stream.total_out};
+  return deflate_piece(state_->stream, raw, last, state_->out);
 }
 
 std::uint32_t crc32_of(std::span<const std::uint8_t> bytes) {
