@@ -108,6 +108,29 @@ TEST(SignOfDeterminant, TwiceTheLengthSettlesWhatDoublesLeaveOpen) {
   EXPECT_EQ(sign_of_determinant({glm::dvec3(0)}, {y}, {above}), 0);
 }
 
+TEST(SignOfDeterminant, TwoAlongOneLineAreFoundWithoutExpansions) {
+  int found = 0;
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    Random random(seed);
+    // Corners as meshes have them, which are floats; `s` is one as well, so that the point is rounded, or not.
+    const glm::vec3 o(some_point(random)), way(some_point(random));
+    const float s = seed % 2 ? float(random.within(-2, 2)) : 0.25f * float(random.below(16));
+    const glm::vec3 a = o + way, b = o + s * way;
+    const Leg to_a{glm::dvec3(a), glm::dvec3(o)}, to_b{glm::dvec3(b), glm::dvec3(o)}, to_eye{some_point(random)};
+    const RationalVector normal =
+        cross(RationalVector(to_a.to) - RationalVector(to_a.from), RationalVector(to_b.to) - RationalVector(to_b.from));
+    const bool is_parallel = dot(normal, normal) == 0;
+    ASSERT_EQ(detail::are_parallel(to_a, to_b), is_parallel) << seed;
+    ASSERT_EQ(sign_of_determinant(to_a, to_b, to_eye), exact_sign(to_a, to_b, to_eye)) << seed;
+    found += is_parallel;
+  }
+  EXPECT_GT(found, 100);
+  // A difference that is no double: nothing is said, and the sign is right all the same.
+  const glm::dvec3 far_away(1 + 0x1p-52, 1, 1), near(0x1p-60, 0, 0);
+  EXPECT_FALSE(detail::are_parallel({far_away, near}, {far_away, near}));
+  EXPECT_EQ(sign_of_determinant({far_away, near}, {far_away, near}, {glm::dvec3(0, 1, 0)}), 0);
+}
+
 TEST(CertainSign, IsOpenOnlyWithinTheError) {
   EXPECT_EQ(certain_sign({2, 1}), 1);
   EXPECT_EQ(certain_sign({-2, 1}), -1);

@@ -6,6 +6,7 @@
 //
 //   doubles, with a bound of their error        |value| > error: the sign of the value
 //   pairs of doubles, of twice their length     likewise, with a bound of 2^-92
+//   two of the vectors along one line           0, as of corners of a mesh that lie on one line
 //   expansions                                  certain
 #pragma once
 
@@ -109,6 +110,25 @@ struct DoubleDouble {
   return value > error ? 1 : value < -error ? -1 : 0;
 }
 
+/// Whether two vectors surely lie along one line. Only where their components are doubles without rounding; otherwise
+/// false, as where it is not so.
+[[nodiscard]] inline bool are_parallel(const Leg& a, const Leg& b) {
+  double v[2][3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const DoubleDouble of_a = exact_difference(a.to[axis], a.from[axis]),
+                       of_b = exact_difference(b.to[axis], b.from[axis]);
+    if (of_a.low != 0 || of_b.low != 0) return false;
+    v[0][axis] = of_a.high;
+    v[1][axis] = of_b.high;
+  }
+  const auto is_same_product = [](double p, double q, double r, double s) {
+    const double product = p * q;
+    return product == r * s && std::fma(p, q, -product) == std::fma(r, s, -product);
+  };
+  return is_same_product(v[0][0], v[1][1], v[0][1], v[1][0]) && is_same_product(v[0][1], v[1][2], v[0][2], v[1][1]) &&
+         is_same_product(v[0][2], v[1][0], v[0][0], v[1][2]);
+}
+
 }  // namespace detail
 
 /// The sign of the determinant of three vectors, exactly: doubles decide where their rounding cannot matter.
@@ -117,6 +137,7 @@ struct DoubleDouble {
   const int sign = certain_sign(bounded_dot(normal.value, normal.error, c.to - c.from));
   if (sign != 2) return sign;
   if (const int twice = detail::sign_by_double_doubles(a, b, c)) return twice;
+  if (detail::are_parallel(a, b) || detail::are_parallel(b, c) || detail::are_parallel(c, a)) return 0;
   return dot(cross(difference(a.to, a.from), difference(b.to, b.from)), difference(c.to, c.from)).sign();
 }
 

@@ -34,10 +34,8 @@ class Plane {
 
   /// The side of a point: -1, 0 or 1, exactly.
   [[nodiscard]] int side(const glm::dvec3& x) const {
-    const Bounded height = bounded_dot(normal_.value, normal_.error, x - anchor_);
-    if (height.value > height.error) return 1;
-    if (height.value < -height.error) return -1;
-    return side_by_hand(x);
+    const int sign = certain_sign(bounded_dot(normal_.value, normal_.error, x - anchor_));
+    return sign != 2 ? sign : side_by_hand(x);
   }
   /// How far on the positive side x lies, in the plane's own unit, where x is known to within a distance `error`.
   [[nodiscard]] Bounded height(const glm::dvec3& x, double error) const;
