@@ -6,11 +6,11 @@
 // said.
 #pragma once
 
-#include <frontmost/accounting.h>
 #include <frontmost/base.h>
 #include <frontmost/files.h>
 #include <frontmost/image.h>
 #include <frontmost/pictures.h>
+#include <frontmost/report.h>
 #include <frontmost/sheets.h>
 #include <frontmost/view.h>
 #include <frontmost/zbuffer.h>
@@ -145,7 +145,11 @@ struct PrecisionSettings {
 
 /// What frontmost compare does.
 struct CompareSettings {
-  int runs = 5;
+  std::optional<int> runs;  ///< none: default_runs, and one of a method that takes longer than longest_repeated
+  static constexpr int default_runs = 5;
+  static constexpr double longest_repeated = 2000;  ///< milliseconds
+
+  [[nodiscard]] int most_runs() const { return runs.value_or(default_runs); }
   bool explain = false;
   std::optional<std::string> folder;  ///< of the page and its pictures
 };

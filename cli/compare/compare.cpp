@@ -29,7 +29,8 @@ constexpr Option compare_options[] = {
        if (g.text.empty()) throw UsageError("the folder's name is empty");
        s.compare.folder = g.string();
      }},
-    {"runs", 0, "N", "Run every method N times, for medians; 5 by default.", Group::compare, for_compare,
+    {"runs", 0, "N", "Run every method N times, for medians; by default 5 times, and once where that takes over 2 s.",
+     Group::compare, for_compare,
      [](Settings& s, const Given& g) {
        s.compare.runs = g.integer({1, 1e4});
      }},
@@ -90,7 +91,7 @@ int run_compare(const Settings& settings) {
     all.methods.push_back({std::move(run), std::move(agreement)});
     stop_if_interrupted();
   }
-  all.culling = run_culling(surfaces, all.methods.front().run.answer.visible, settings.compare.runs, execution);
+  all.culling = run_culling(surfaces, all.methods.front().run.answer.visible, settings.compare.most_runs(), execution);
   if (settings.compare.folder) write_page(all, *settings.compare.folder, execution);
   all.files = outputs;
   progress.clear();

@@ -2,7 +2,7 @@
 // What occlusion culling proves of the same view, beside the methods: it answers for objects, not for pixels.
 #pragma once
 
-#include <frontmost/surfaces.h>
+#include <frontmost/scene.h>
 #include <frontmost/view.h>
 
 #include <cstdint>

@@ -3,7 +3,7 @@
 // its own, so that the memory it takes can be told from everybody else's.
 #pragma once
 
-#include <frontmost/surfaces.h>
+#include <frontmost/scene.h>
 #include <frontmost/view.h>
 
 #include <optional>
@@ -73,6 +73,8 @@ struct MethodRun {
   Answer answer;
   std::optional<KeptLists> lists;
 
+  /// How often the method ran.
+  [[nodiscard]] std::size_t runs() const { return stages.empty() ? 0 : stages.back().times.size(); }
   /// Medians; null for a stage that it has not.
   [[nodiscard]] std::optional<double> median_of(std::string_view stage) const;
 };

@@ -189,8 +189,8 @@ std::string page(const Comparisons& all, const StagedFolder& folder) {
   std::string text = html_head(all.settings.model + " by all methods", style);
   text += fmt::format(
       "<header><h1>{}</h1><p class=\"lead\">The same question to every visibility method: what can be seen from here? "
-      "{} triangles, {}, medians of {} runs, each method in a process of its own.</p></header><main>\n",
-      model, grouped(all.surfaces.primitive_count()), grid_of(all.view, "×"), all.settings.compare.runs);
+      "{} triangles, {}, {}, each method in a process of its own.</p></header><main>\n",
+      model, grouped(all.surfaces.primitive_count()), grid_of(all.view, "×"), runs_of(all));
   text += table_of(all);
   text += "<p>" + html_text(culling_text(all)) + "</p>\n";
   text += "<h2>In words</h2><ul>";

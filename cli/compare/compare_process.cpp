@@ -136,10 +136,12 @@ MethodRun run_here(const ComparedMethod& method, const Settings& settings) {
   if (cut) surfaces.emplace(*cut, execution);
   MethodRun run;
   const std::uint64_t before = start_counting_memory();
-  for (int i = 0; i < settings.compare.runs; ++i) {
+  for (int i = 0; i < settings.compare.most_runs(); ++i) {
     run.answer = {};  // as a first run would find it
+    const Stopwatch watch;
     run.answer = method.answer(*surfaces, view, execution, clock);
     if (i == 0) run.peak_bytes = std::max(status_bytes("VmHWM"), before) - before;
+    if (!settings.compare.runs && watch.milliseconds() > CompareSettings::longest_repeated) break;
   }
   if (method.lists) run.lists = method.lists(*surfaces, view, execution);
   run.stages = clock.stages();

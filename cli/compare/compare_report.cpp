@@ -39,6 +39,7 @@ Json method_json(const Comparisons& all, const Compared& compared) {
   Json explained = Json::object();
   for (const Difference cause : explained_causes) explained[std::string(name(cause))] = compared.agreement.count(cause);
   Json json = {{"method", run.method->name},
+               {"runs", run.runs()},
                {"timings_ms", stages_json(run)},
                {"peak_bytes", run.peak_bytes},
                {"primitives", run.answer.primitives},
@@ -90,6 +91,14 @@ std::string grid_of(const View& view, std::string_view times) {
   return text;
 }
 
+std::string runs_of(const Comparisons& all) {
+  const int runs = all.settings.compare.most_runs();
+  std::string text = fmt::format("medians of {} run{}", runs, runs == 1 ? "" : "s");
+  const auto is_short = [&](const Compared& c) { return c.run.runs() < std::size_t(runs); };
+  if (std::any_of(all.methods.begin(), all.methods.end(), is_short)) text += ", fewer of what takes over 2 s";
+  return text;
+}
+
 std::uint64_t covered_samples(const Visible& visible) {
   return std::uint64_t(std::count_if(visible.primitives.begin(), visible.primitives.end(),
                                      [](PrimitiveId id) { return id != no_primitive; }));
@@ -108,9 +117,8 @@ std::string culling_text(const Comparisons& all) {
 }
 
 std::string compare_text(const Comparisons& all) {
-  std::string text =
-      fmt::format("{} triangles, {}, medians of {} run{}\n\n", grouped(all.surfaces.primitive_count()),
-                  grid_of(all.view, "x"), all.settings.compare.runs, all.settings.compare.runs == 1 ? "" : "s");
+  std::string text = fmt::format("{} triangles, {}, {}\n\n", grouped(all.surfaces.primitive_count()),
+                                 grid_of(all.view, "x"), runs_of(all));
   text += row_of(all, "", [](const Compared& c) { return std::string(c.run.method->name); });
   for (const std::string& stage : stage_names(all.methods))
     text += row_of(all, stage + ", ms", [&](const Compared& c) {
@@ -141,10 +149,14 @@ std::string compare_text(const Comparisons& all) {
 }
 
 Json compare_json(const Comparisons& all) {
-  Json json = {{"frontmost", FRONTMOST_VERSION},    {"model", all.settings.model},
-               {"isa", name(all.settings.run.isa)}, {"threads", all.settings.run.threads},
-               {"runs", all.settings.compare.runs}, {"triangles", all.surfaces.primitive_count()},
-               {"width", all.view.width},           {"height", all.view.height},
+  Json json = {{"frontmost", FRONTMOST_VERSION},
+               {"model", all.settings.model},
+               {"isa", name(all.settings.run.isa)},
+               {"threads", all.settings.run.threads},
+               {"runs", all.settings.compare.most_runs()},
+               {"triangles", all.surfaces.primitive_count()},
+               {"width", all.view.width},
+               {"height", all.view.height},
                {"samples", all.view.samples}};
   json["methods"] = Json::array();
   for (const Compared& compared : all.methods) json["methods"].push_back(method_json(all, compared));

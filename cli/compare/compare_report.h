@@ -39,6 +39,8 @@ struct Comparisons {
 [[nodiscard]] std::string_view spots(const View& view);
 /// "1920 x 1080 pixels, 4 samples each".
 [[nodiscard]] std::string grid_of(const View& view, std::string_view times);
+/// "medians of 5 runs".
+[[nodiscard]] std::string runs_of(const Comparisons& all);
 [[nodiscard]] std::uint64_t covered_samples(const Visible& visible);
 
 /// What occlusion culling proved, in a sentence.

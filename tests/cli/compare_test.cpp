@@ -21,6 +21,7 @@ TEST_F(Compare, ReportsEveryMethodAsJson) {
   EXPECT_EQ(report["triangles"], 12);
   EXPECT_EQ(report["width"], 160);
   EXPECT_EQ(report["runs"], 3);
+  for (const json& method : report["methods"]) EXPECT_EQ(method["runs"], 3) << method["method"];
   ASSERT_EQ(report["methods"].size(), 5u);
   EXPECT_EQ(report["methods"][0]["method"], "zbuffer");
   EXPECT_EQ(report["methods"][1]["method"], "raycast");

@@ -2,9 +2,11 @@
 // Right answers are explained, wrong ones are found, whatever the mistake.
 #include <gtest/gtest.h>
 
+#include "frontmost/painter.h"
 #include "frontmost/precision.h"
 #include "frontmost/raycast.h"
 #include "frontmost/zbuffer.h"
+#include "report/sample_square.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 
@@ -120,6 +122,57 @@ TEST(Agreement, CulledTrianglesAreNoExcuseAndNoObstacle) {
   wrong.primitives[at] = right.primitives[at];
   wrong.keys[at] = right.keys[at];
   EXPECT_EQ(unexplained(surfaces, nothing, wrong), 1u);
+}
+
+/// What check_agreement() says of a sample whose ids differ: every triangle is asked, wherever it is.
+Difference asked_of_all(const Surfaces& surfaces, const SampleRays& rays, const std::array<PrimitiveId, 2>& ids,
+                        const SampleSquare& square) {
+  bool all_contain = true;
+  for (const PrimitiveId claim : ids) {
+    std::optional<ViewedTriangle> claimed;
+    if (claim != no_primitive) claimed.emplace(surfaces.corners(claim), rays);
+    const LineMeeting meeting = claimed ? claimed->meeting(square) : LineMeeting::touches;
+    if (meeting == LineMeeting::misses) return Difference::unexplained;
+    all_contain = all_contain && meeting == LineMeeting::contains;
+    for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
+      if (id == claim) continue;
+      const ViewedTriangle triangle(surfaces.corners(id), rays);
+      if (triangle.meeting(square) == LineMeeting::contains &&
+          (!claimed || is_surely_nearer(triangle, *claimed, square)))
+        return Difference::unexplained;
+    }
+  }
+  return all_contain ? Difference::depth : Difference::edge;
+}
+
+/// Orders by centroids give many wrong answers, whose depths are right.
+TEST(Agreement, EveryTriangleIsHeardWhereverItHasSomethingToSay) {
+  std::array<std::uint64_t, 5> found{};
+  for (std::uint64_t seed = 0; seed < seeds(4 * std::size(all_kinds)); ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed + 700);
+    const Scene scene = scene_of(random_mesh(all_kinds[seed % std::size(all_kinds)], 80, seed));
+    const Surfaces surfaces(scene);
+    View view = random_view(random, 90, 70);
+    view.culling = Culling::none;
+    view.samples = 1;
+    const Visible right = zbuffer(surfaces, view);
+    const Visible naive = paint(surfaces, painter(surfaces, view, {.method = PaintMethod::centroid}));
+    const Agreement answer = check_agreement(surfaces, right, naive);
+    const SampleRays rays(view);
+    for (int y = 0; y < view.height; ++y)
+      for (int x = 0; x < view.width; ++x) {
+        const std::size_t at = right.index(x, y);
+        if (right.primitives[at] == naive.primitives[at]) continue;
+        const SampleSquare square(rays, x, y, sample_offsets(1)[0]);
+        ASSERT_EQ(answer.differences[at],
+                  asked_of_all(surfaces, rays, {right.primitives[at], naive.primitives[at]}, square))
+            << x << ", " << y;
+        ++found[std::size_t(answer.differences[at])];
+      }
+  }
+  for (const Difference difference : {Difference::edge, Difference::depth, Difference::unexplained})
+    EXPECT_GT(found[std::size_t(difference)], 20u) << name(difference);
 }
 
 class MistakesInEveryKind : public testing::TestWithParam<Kind> {};

@@ -6,8 +6,9 @@
 //                                                                                    neither: edge or depth
 //                                                                                    one:     unexplained
 //
-// Few samples differ, and all triangles must be asked; so the samples are kept by cells of 16 x 16 pixels, in which a
-// triangle finds those that it may cover.
+// All triangles must be asked; so the samples are kept by cells of 16 x 16 pixels, in which a triangle finds those that
+// it may cover. The two triangles of a contest are asked first. A triangle that misses a cell, or is nowhere in it
+// nearer than the farthest of the claims that are left there, has nothing to say in it.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -25,7 +26,7 @@
 namespace frontmost {
 namespace {
 
-constexpr std::size_t kRowGrain = 8, kTriangleGrain = 8192;
+constexpr std::size_t kRowGrain = 8, kTriangleGrain = 256, kContestGrain = 1024;
 // Samples that differ are found by cells of this many pixels squared.
 constexpr int kCell = 16;
 
@@ -110,6 +111,8 @@ struct Claim {
   PrimitiveId id;
   std::optional<ViewedTriangle> triangle;  ///< none: nothing
   LineMeeting meeting = LineMeeting::contains;
+  /// At most what is_surely_nearer() asks of a triangle that is to be nearer.
+  double nearness = -std::numeric_limits<double>::infinity();
 };
 
 /// A sample where the answers differ. Only `impossible` changes, and only ever to true.
@@ -119,28 +122,47 @@ struct Contest {
   std::array<Claim, 2> claims;
 };
 
+/// For both claims of every contest, whether the scene rules them out.
+using Verdicts = std::vector<std::array<std::atomic<bool>, 2>>;
+
 /// The samples that differ, to be found by their place.
 class ContestMap {
  public:
-  ContestMap(const View& view, const std::vector<Contest>& contests)
-      : view_(view), columns_((view.width + kCell - 1) / kCell), rows_((view.height + kCell - 1) / kCell) {
+  ContestMap(const Question& question, const std::vector<Contest>& contests, const Verdicts& impossible)
+      : question_(question),
+        view_(question.view),
+        columns_((view_.width + kCell - 1) / kCell),
+        rows_((view_.height + kCell - 1) / kCell) {
     starts_.assign(std::size_t(columns_) * std::size_t(rows_) + 1, 0);
     for (const Contest& contest : contests) ++starts_[cell_of(contest) + 1];
     for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
     numbers_.resize(contests.size());
     std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
-    for (std::size_t i = 0; i < contests.size(); ++i) numbers_[next[cell_of(contests[i])]++] = i;
+    farthest_.assign(starts_.size() - 1, std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < contests.size(); ++i) {
+      const std::size_t cell = cell_of(contests[i]);
+      numbers_[next[cell]++] = i;
+      for (std::size_t k = 0; k < 2; ++k)
+        if (!impossible[i][k]) farthest_[cell] = std::min(farthest_[cell], contests[i].claims[k].nearness);
+    }
   }
 
-  /// Visits the contests in the cells that a rectangle of the screen, in pixels, touches.
+  /// Visits the contests in the cells that a rectangle of the screen, in pixels, touches, but for those in which the
+  /// triangle is behind all claims.
   template <class Visit>
-  void in_rect(const glm::dvec2& low, const glm::dvec2& high, const Visit& visit) const {
+  void in_rect(const glm::dvec2& low, const glm::dvec2& high, const ViewedTriangle& triangle,
+               const Visit& visit) const {
     const auto cell = [](double at, int count) { return int(std::clamp(std::floor(at / kCell), 0.0, count - 1.0)); };
     if (high.x < 0 || high.y < 0 || low.x > view_.width || low.y > view_.height) return;
     const int last_x = cell(high.x, columns_), last_y = cell(high.y, rows_);
     for (int y = cell(low.y, rows_); y <= last_y; ++y)
       for (int x = cell(low.x, columns_); x <= last_x; ++x) {
         const std::size_t c = std::size_t(y) * std::size_t(columns_) + std::size_t(x);
+        if (starts_[c] == starts_[c + 1]) continue;
+        const glm::ivec2 first(x * kCell, y * kCell);
+        const SampleSquare cell_square(question_.rays, first, first + (kCell - 1));
+        if (triangle.nearness(cell_square).greatest.high < farthest_[c]) continue;
+        if (triangle.meeting(cell_square) == LineMeeting::misses) continue;
         for (std::size_t i = starts_[c]; i < starts_[c + 1]; ++i) visit(numbers_[i]);
       }
   }
@@ -151,9 +173,11 @@ class ContestMap {
     return pixel / width / kCell * std::size_t(columns_) + pixel % width / kCell;
   }
 
+  const Question& question_;
   const View& view_;
   int columns_, rows_;
   std::vector<std::size_t> starts_, numbers_;
+  std::vector<double> farthest_;  ///< by cell: the least nearness of a claim that is left
 };
 
 /// A rectangle of the screen, in pixels, that holds all of a triangle that may be seen.
@@ -196,16 +220,18 @@ class ScreenRects {
   ClipDistances clip_;
 };
 
-/// For both claims of every contest, whether the scene rules them out.
-using Verdicts = std::vector<std::array<std::atomic<bool>, 2>>;
-
 /// What triangle `id` says about a contest, if it surely is there.
 void testify(const Question& question, PrimitiveId id, const ViewedTriangle& triangle, const Contest& contest,
              std::array<std::atomic<bool>, 2>& impossible) {
+  const auto is_open = [&](std::size_t i) {
+    return contest.claims[i].id != id && !impossible[i].load(std::memory_order_relaxed);
+  };
+  if (!is_open(0) && !is_open(1)) return;
+  const double nearness = triangle.nearness(contest.square).least.high;
   bool is_there = false;
   for (std::size_t i = 0; i < 2; ++i) {
     const Claim& claim = contest.claims[i];
-    if (claim.id == id || impossible[i].load(std::memory_order_relaxed)) continue;
+    if (!is_open(i) || nearness < claim.nearness) continue;
     is_there = is_there || question.meeting(triangle, id, contest.square, contest.sample) == LineMeeting::contains;
     if (!is_there) return;
     if (!claim.triangle || is_surely_nearer(triangle, *claim.triangle, contest.square))
@@ -216,18 +242,21 @@ void testify(const Question& question, PrimitiveId id, const ViewedTriangle& tri
 void hear_all_triangles(const Question& question, const std::vector<Contest>& contests, Verdicts& impossible,
                         const Execution& execution) {
   if (contests.empty()) return;
-  const ContestMap map(question.view, contests);
+  parallel_for(execution, contests.size(), kContestGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (const Claim& claim : contests[i].claims)
+        if (claim.triangle) testify(question, claim.id, *claim.triangle, contests[i], impossible[i]);
+  });
+  const ContestMap map(question, contests, impossible);
   const ScreenRects rects(question.view);
   parallel_for(execution, question.surfaces.primitive_count(), kTriangleGrain, [&](std::size_t begin, std::size_t end) {
     for (auto id = PrimitiveId(begin); id < end; ++id) {
       const std::array<glm::vec3, 3> corners = question.surfaces.corners(id);
       if (!are_finite(corners)) continue;
-      std::optional<ViewedTriangle> triangle;
       const ScreenRect rect = rects.of(corners);
-      map.in_rect(rect.low, rect.high, [&](std::size_t number) {
-        if (!triangle) triangle.emplace(corners, question.rays);
-        testify(question, id, *triangle, contests[number], impossible[number]);
-      });
+      const ViewedTriangle triangle(corners, question.rays);
+      map.in_rect(rect.low, rect.high, triangle,
+                  [&](std::size_t number) { testify(question, id, triangle, contests[number], impossible[number]); });
     }
   });
 }
@@ -237,6 +266,7 @@ Contest contest_at(const Question& question, std::size_t sample, PrimitiveId a, 
   for (Claim& claim : contest.claims) {
     if (claim.id == no_primitive) continue;
     claim.triangle = question.triangle(claim.id);
+    if (claim.triangle) claim.nearness = claim.triangle->nearness(contest.square).greatest.low;
     claim.meeting =
         claim.triangle ? question.meeting(*claim.triangle, claim.id, contest.square, sample) : LineMeeting::misses;
   }

@@ -24,6 +24,11 @@ SampleSquare::SampleSquare(const SampleRays& rays, int x, int y, const glm::ivec
               rays.at(x, y, offset + glm::ivec2(kMargin, -kMargin)), rays.at(x, y, offset + glm::ivec2(kMargin)),
               rays.at(x, y, offset + glm::ivec2(-kMargin, kMargin))} {}
 
+SampleSquare::SampleSquare(const SampleRays& rays, const glm::ivec2& low, const glm::ivec2& high)
+    : corners{rays.at(low.x, low.y, glm::ivec2(-kMargin)), rays.at(high.x + 1, low.y, glm::ivec2(kMargin, -kMargin)),
+              rays.at(high.x + 1, high.y + 1, glm::ivec2(kMargin)),
+              rays.at(low.x, high.y + 1, glm::ivec2(-kMargin, kMargin))} {}
+
 double ViewedTriangle::of_depth(double depth) const {
   const double cut = std::min(std::max(depth, rays_->near()), rays_->far());
   return rays_->is_orthographic() ? -cut : 1 / cut;

@@ -19,6 +19,8 @@ namespace frontmost {
 struct SampleSquare {
   std::array<SampleRay, 4> corners;
   SampleSquare(const SampleRays& rays, int x, int y, const glm::ivec2& offset);
+  /// A rectangle that holds the squares of all samples of pixels from `low` to `high`.
+  SampleSquare(const SampleRays& rays, const glm::ivec2& low, const glm::ivec2& high);
 };
 
 enum class LineMeeting : std::uint8_t { misses, touches, contains };

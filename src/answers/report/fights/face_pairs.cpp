@@ -14,7 +14,7 @@ namespace {
 using namespace zbuffer_detail;
 
 constexpr const char* kPlace = "fighting faces";
-constexpr std::uint64_t kMostLooks = std::uint64_t(1) << 28, kMostPairs = std::uint64_t(1) << 24;
+constexpr std::uint64_t kMostBoxLooks = std::uint64_t(1) << 28, kMostPairs = std::uint64_t(1) << 24;
 
 /// What is looked at and kept, by all threads together.
 struct PairLimits {
@@ -171,7 +171,7 @@ std::vector<FacePair> find_face_pairs(const std::vector<ScreenFace>& faces, cons
                                       const Execution& execution) {
   const FaceCells cells(faces, view);
   std::vector<std::vector<FacePair>> by_row(std::size_t(cells.rows()));
-  PairLimits limits{{execution, kMostLooks, kPlace}, {execution, kMostPairs, kPlace}};
+  PairLimits limits{{execution, kMostBoxLooks, kPlace}, {execution, kMostPairs, kPlace}};
   parallel_for(execution, by_row.size(), 1, [&](std::size_t row, std::size_t) {
     CellScratch scratch;
     for (int column = 0; column < cells.columns(); ++column)
