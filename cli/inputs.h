@@ -3,7 +3,6 @@
 #pragma once
 
 #include <frontmost/scene.h>
-#include <frontmost/surfaces.h>
 
 #include <filesystem>
 #include <map>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Of every object how much is seen, and why not the rest; masks.
-#include <frontmost/accounting.h>
+#include <frontmost/report.h>
 #include <pybind11/stl.h>
 
 #include <shared_mutex>

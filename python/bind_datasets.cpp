@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files of data sets, as frontmost report writes them: COCO, BOP and masks, of one view or of many; categories.
-#include <frontmost/accounting.h>
 #include <frontmost/files.h>
+#include <frontmost/report.h>
 #include <pybind11/stl.h>
 
 #include <set>

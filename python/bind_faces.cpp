@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Visible faces: every triangle of which a part is seen, from one place or from many, as records.
-#include <frontmost/accounting.h>
+#include <frontmost/report.h>
 #include <pybind11/stl.h>
 
 #include <shared_mutex>

@@ -2,7 +2,7 @@
 // Surfaces, and what is visible of them: the z-buffer, rays for a view, planes of depths and ids.
 #include <frontmost/image.h>
 #include <frontmost/raycast.h>
-#include <frontmost/surfaces.h>
+#include <frontmost/scene.h>
 #include <frontmost/zbuffer.h>
 
 #include "python/arrays.h"

@@ -9,7 +9,6 @@
 #include <frontmost/pictures.h>
 #include <frontmost/raycast.h>
 #include <frontmost/scene.h>
-#include <frontmost/surfaces.h>
 #include <frontmost/view.h>
 #include <frontmost/zbuffer.h>
 #include <pybind11/pybind11.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the workbench says of a view: what lies under a pixel, of every object how much is seen and why, and which faces
 // are seen from anywhere.
-#include <frontmost/accounting.h>
+#include <frontmost/report.h>
 
 #include <numeric>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which triangles are seen and how much of each: from one place, and from many around the scene.
-#include <frontmost/accounting.h>
+#include <frontmost/report.h>
 
 #include <cmath>
 #include <numbers>

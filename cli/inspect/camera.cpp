@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost camera: one camera in every convention.
-#include <frontmost/surfaces.h>
+#include <frontmost/scene.h>
 
 #include "cli/command.h"
 #include "cli/console.h"

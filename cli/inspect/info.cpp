@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <frontmost/lines.h>
 #include <frontmost/report.h>
-#include <frontmost/surfaces.h>
+#include <frontmost/scene.h>
 
 #include <algorithm>
 #include <glm/gtc/constants.hpp>

@@ -6,7 +6,7 @@
 // a complaint about one is an error of usage that names the flag.
 #pragma once
 
-#include <frontmost/surfaces.h>
+#include <frontmost/scene.h>
 
 #include <optional>
 #include <string>

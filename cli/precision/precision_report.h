@@ -2,8 +2,8 @@
 // What frontmost precision found out: as text, as JSON, and as an SVG drawing of gaps against distance.
 #pragma once
 
-#include <frontmost/accounting.h>
 #include <frontmost/precision.h>
+#include <frontmost/report.h>
 
 #include <glm/glm.hpp>
 #include <optional>

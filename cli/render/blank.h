@@ -3,9 +3,9 @@
 #pragma once
 
 #include <frontmost/image.h>
+#include <frontmost/scene.h>
 #include <frontmost/sheets.h>
 #include <frontmost/streams.h>
-#include <frontmost/surfaces.h>
 #include <frontmost/view.h>
 
 #include <array>

@@ -13,8 +13,8 @@
 
 #include <frontmost/pictures.h>
 #include <frontmost/raycast.h>
+#include <frontmost/scene.h>
 #include <frontmost/streams.h>
-#include <frontmost/surfaces.h>
 #include <frontmost/view.h>
 #include <frontmost/zbuffer.h>
 

@@ -2,7 +2,7 @@
 // frontmost report: how much of every object is seen, and who hides the rest.
 #include <fmt/format.h>
 #include <frontmost/files.h>
-#include <frontmost/surfaces.h>
+#include <frontmost/scene.h>
 #include <frontmost/zbuffer.h>
 
 #include <algorithm>

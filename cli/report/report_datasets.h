@@ -2,8 +2,8 @@
 // The report as files of data sets: COCO's annotations, a scene folder of BOP, and masks.
 #pragma once
 
-#include <frontmost/accounting.h>
 #include <frontmost/base.h>
+#include <frontmost/report.h>
 
 #include <optional>
 #include <string>

@@ -2,7 +2,7 @@
 // What frontmost report found out, as all of its outputs read it.
 #pragma once
 
-#include <frontmost/accounting.h>
+#include <frontmost/report.h>
 
 #include <string>
 #include <vector>

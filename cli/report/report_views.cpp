@@ -2,7 +2,7 @@
 // Reports of many views in one process: the model is made ready once, and each view's report is printed before the next
 // one is made.
 #include <fmt/format.h>
-#include <frontmost/surfaces.h>
+#include <frontmost/scene.h>
 #include <frontmost/version.h>
 #include <frontmost/zbuffer.h>
 

@@ -2,7 +2,7 @@
 // Whether a model looks as if another axis than the scene's were up.
 #pragma once
 
-#include <frontmost/surfaces.h>
+#include <frontmost/scene.h>
 
 #include <optional>
 #include <string>

@@ -2,7 +2,7 @@
 // From what was said about the camera to a View.
 #pragma once
 
-#include <frontmost/surfaces.h>
+#include <frontmost/scene.h>
 #include <frontmost/view.h>
 
 #include <optional>

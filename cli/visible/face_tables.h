@@ -5,9 +5,9 @@
 //   seen       dark blue where next to nothing of the face is seen, over green to yellow where all of it is
 #pragma once
 
-#include <frontmost/accounting.h>
 #include <frontmost/files.h>
-#include <frontmost/surfaces.h>
+#include <frontmost/report.h>
+#include <frontmost/scene.h>
 
 #include <vector>
 

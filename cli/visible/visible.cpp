@@ -5,8 +5,8 @@
 //   --views FILE \  faces_ever_seen()    of every face that is ever seen in how many views, and its largest share
 //   --sphere N   /
 #include <fmt/format.h>
-#include <frontmost/accounting.h>
 #include <frontmost/files.h>
+#include <frontmost/report.h>
 #include <frontmost/version.h>
 
 #include <algorithm>

@@ -2,6 +2,5 @@
 // What is seen, what hides it, and what a depth buffer cannot tell apart.
 #pragma once
 
-#include "frontmost/accounting.h"  // IWYU pragma: export
-#include "frontmost/precision.h"   // IWYU pragma: export
-#include "frontmost/report.h"      // IWYU pragma: export
+#include "frontmost/precision.h"  // IWYU pragma: export
+#include "frontmost/report.h"     // IWYU pragma: export

@@ -2,7 +2,7 @@
 // All of Frontmost. Each header can be included by itself as well. The shortest way from a file to a picture:
 //
 //   const Scene scene = load("engine.glb");          // files.h: or builtin("teapot"), or meshes of your own
-//   const Surfaces surfaces(scene);                  // surfaces.h: its triangles, each with a number
+//   const Surfaces surfaces(scene);                  // scene.h: its triangles, each with a number
 //   const View view = frame(surfaces, 1920, 1080);   // view.h: a camera and a grid of pixels
 //   const Visible visible = zbuffer(surfaces, view); // zbuffer.h; raycast() and others answer in the same type
 //   save(shade(surfaces, visible), "engine.png");    // pictures.h, files.h: colour is decided last

@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "frontmost/view.h"
 
 namespace frontmost {
@@ -367,12 +367,6 @@ struct Rounds {
 /// domes, cones; but not cylinders, nor whole spheres, which have no axis of their own. Near-linear. \throws Error
 /// limit_exceeded for more than 2^30 triangles.
 [[nodiscard]] Rounds find_rounds(const Surfaces& surfaces, const Execution& execution = {});
-
-/// How much of each round a drawing shows, in pixels: of what is seen, and with `with_hidden` of what is not.
-[[nodiscard]] std::vector<double> drawn_lengths(const Rounds& rounds, const Drawing& drawing, bool with_hidden);
-
-/// Where a point of world space is in a parallel view, in pixels.
-[[nodiscard]] glm::dvec2 on_screen(const View& view, const glm::dvec3& point);
 
 struct CentreLineOptions {
   bool with_hidden = true;  ///< false: what shows no line that is seen has none

@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "frontmost/view.h"
 
 namespace frontmost {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "frontmost/view.h"
 
 namespace frontmost {

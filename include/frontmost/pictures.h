@@ -16,7 +16,7 @@
 
 #include "frontmost/image.h"
 #include "frontmost/raycast.h"
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "frontmost/view.h"
 
 namespace frontmost {

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "frontmost/image.h"
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "frontmost/view.h"
 #include "frontmost/zbuffer.h"
 

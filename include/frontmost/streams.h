@@ -21,7 +21,7 @@
 
 #include "frontmost/files.h"
 #include "frontmost/pictures.h"
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "frontmost/view.h"
 
 namespace frontmost {

@@ -12,7 +12,6 @@
 
 #include "frontmost/base.h"
 #include "frontmost/scene.h"
-#include "frontmost/surfaces.h"
 
 namespace frontmost {
 

@@ -10,7 +10,7 @@
 
 #include <memory>
 
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "frontmost/view.h"
 
 namespace frontmost {

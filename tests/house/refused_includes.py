@@ -9,7 +9,7 @@ import check_house as house
 
 REFUSED = {
     "src/methods/zbuffer/x.cpp": ["frontmost/raycast.h", "frontmost/methods.h", "raycast/x.h", "shade/x.h"],
-    "src/core/base/x.cpp": ["frontmost/surfaces.h", "view/x.h"],
+    "src/core/base/x.cpp": ["frontmost/scene.h", "view/x.h"],
     "src/core/view/x.cpp": ["frontmost/frontmost.h", "frontmost/zbuffer.h"],
     "src/files/io/x.cpp": ["frontmost/zbuffer.h", "pages/x.h"],
     "src/drawings/rounds/x.cpp": ["sheets/x.h", "frontmost/files.h"],
@@ -20,7 +20,7 @@ ALLOWED = {
     "src/methods/zbuffer/x.cpp": ["frontmost/zbuffer.h", "frontmost/view.h", "view/x.h", "zbuffer/x.h"],
     "src/drawings/sheets/x.cpp": ["rounds/x.h", "frontmost/sheets.h", "shade/x.h", "painter/x.h"],
     "include/frontmost/frontmost.h": ["frontmost/core.h"],
-    "include/frontmost/view.h": ["frontmost/surfaces.h"],
+    "include/frontmost/view.h": ["frontmost/scene.h"],
     "cli/x.cpp": ["frontmost/frontmost.h", "cli/view/x.h"],
 }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "frontmost/image.h"
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "frontmost/zbuffer.h"
 #include "support/odd_numbers.h"
 #include "support/test_images.h"

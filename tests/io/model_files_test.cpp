@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "frontmost/files.h"
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "support/scratch_folder.h"
 
 namespace frontmost::test {

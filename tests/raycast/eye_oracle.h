@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/exact_vector.h"
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "frontmost/view.h"
 #include "support/random_scene.h"
 #include "view/screen_transform.h"

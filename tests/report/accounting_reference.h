@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "frontmost/accounting.h"
+#include "frontmost/report.h"
 #include "frontmost/zbuffer.h"
 
 namespace frontmost::test {

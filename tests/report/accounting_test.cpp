@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "frontmost/accounting.h"
-
 #include <gtest/gtest.h>
 
 #include "frontmost/files.h"
+#include "frontmost/report.h"
 #include "frontmost/zbuffer.h"
 #include "occlusion/hidden_scene.h"
 #include "report/accounting_reference.h"

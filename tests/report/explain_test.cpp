@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frontmost/accounting.h"
 #include "frontmost/files.h"
+#include "frontmost/report.h"
 #include "frontmost/zbuffer.h"
 #include "occlusion/hidden_scene.h"
 #include "report/accounting_reference.h"

@@ -12,9 +12,9 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "frontmost/accounting.h"
 #include "frontmost/files.h"
 #include "frontmost/precision.h"
+#include "frontmost/report.h"
 #include "support/models.h"
 #include "support/random_scene.h"
 

@@ -6,9 +6,9 @@
 #include <map>
 
 #include "frontmost/abuffer.h"
-#include "frontmost/accounting.h"
 #include "frontmost/precision.h"
 #include "frontmost/raycast.h"
+#include "frontmost/report.h"
 #include "frontmost/zbuffer.h"
 #include "support/effort.h"
 #include "support/random_scene.h"

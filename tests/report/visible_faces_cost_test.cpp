@@ -2,7 +2,7 @@
 // Visible faces of meshes that are made to take long: the right areas after few steps, or an error after some.
 #include <gtest/gtest.h>
 
-#include "frontmost/accounting.h"
+#include "frontmost/report.h"
 #include "report/faces/cells.h"
 #include "support/costly_meshes.h"
 #include "support/refusal.h"

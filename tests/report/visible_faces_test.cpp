@@ -5,7 +5,7 @@
 
 #include <glm/gtc/constants.hpp>
 
-#include "frontmost/accounting.h"
+#include "frontmost/report.h"
 #include "support/effort.h"
 #include "support/face_oracle.h"
 #include "support/meshes.h"

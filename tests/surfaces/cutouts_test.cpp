@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "support/cutout_scene.h"
 #include "surfaces/cluster_set.h"
 

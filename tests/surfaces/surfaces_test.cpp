@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "frontmost/surfaces.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstring>
 #include <limits>
 
+#include "frontmost/scene.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 #include "surfaces/cluster_set.h"

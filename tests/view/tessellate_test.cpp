@@ -7,7 +7,7 @@
 #include <map>
 #include <tuple>
 
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "frontmost/view.h"
 #include "scene/bezier_patch.h"
 #include "scene/shapes.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clipping: a triangle against the planes of the viewing volume, one after the other, before anything is divided by w.
-#include <frontmost/accounting.h>
+#include <frontmost/report.h>
 #include <frontmost/zbuffer.h>
 
 #include "web/camera.h"

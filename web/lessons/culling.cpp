@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Why anything is hidden: triangles that turn away, lie outside of the view, or behind others.
-#include <frontmost/accounting.h>
+#include <frontmost/report.h>
 #include <frontmost/zbuffer.h>
 
 #include "web/lessons/lessons.h"

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <frontmost/image.h>
-#include <frontmost/surfaces.h>
+#include <frontmost/scene.h>
 #include <frontmost/view.h>
 
 #include <array>

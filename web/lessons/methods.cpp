@@ -2,11 +2,11 @@
 // All methods on one view: how long each takes here, how much its answer holds, and at how many pixels it differs from
 // the z-buffer's.
 #include <frontmost/abuffer.h>
-#include <frontmost/accounting.h>
 #include <frontmost/lines.h>
 #include <frontmost/occlusion.h>
 #include <frontmost/painter.h>
 #include <frontmost/raycast.h>
+#include <frontmost/report.h>
 #include <frontmost/zbuffer.h>
 
 #include <algorithm>

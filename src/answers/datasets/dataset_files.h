@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "frontmost/accounting.h"
 #include "frontmost/base.h"
 #include "frontmost/files.h"
+#include "frontmost/report.h"
 
 namespace frontmost::datasets {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "frontmost/image.h"
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "frontmost/view.h"
 #include "view/answer.h"
 

@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "surfaces/cones.h"
 #include "surfaces/holders.h"
 #include "surfaces/placed_scene.h"

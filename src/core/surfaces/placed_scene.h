@@ -16,7 +16,7 @@
 #include <span>
 #include <vector>
 
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "surfaces/cutouts.h"
 #include "surfaces/material_sides.h"
 

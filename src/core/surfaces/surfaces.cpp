@@ -4,11 +4,10 @@
 // Most of what a method needs is made here once and only read afterwards. Clusters are the exception: they pay from the
 // third picture on, and who asks for a third cannot be known; so they are made then, under a lock, behind an interface
 // that is constant.
-#include "frontmost/surfaces.h"
-
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "frontmost/scene.h"
 #include "scene/validate.h"
 #include "surfaces/cluster_set.h"
 

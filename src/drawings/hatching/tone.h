@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "lines/hiding/occluder.h"
 #include "lines/mesh/corner_table.h"
 

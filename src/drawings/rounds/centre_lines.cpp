@@ -10,6 +10,8 @@
 //
 // A piece is joined with the one before it on the same line if the gap is one over which a drafter would draw on. Axes
 // are joined before they are made longer, so that their gaps are those of the bores themselves.
+#include "rounds/centre_lines.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -140,13 +142,6 @@ class CentreLiner {
 
 }  // namespace
 
-glm::dvec2 on_screen(const View& view, const glm::dvec3& point) {
-  const glm::dvec3 offset = point - view.eye();
-  const Projection& p = view.projection;
-  return {(glm::dot(offset, view.right()) - p.left) / (p.right - p.left) * view.width,
-          (p.top - glm::dot(offset, view.up())) / (p.top - p.bottom) * view.height};
-}
-
 std::vector<double> drawn_lengths(const Rounds& all, const Drawing& drawing, bool with_hidden) {
   std::vector<std::pair<PrimitiveId, std::uint32_t>> owners;
   for (std::uint32_t r = 0; r < all.rounds.size(); ++r)
@@ -176,6 +171,13 @@ std::vector<double> drawn_lengths(const Rounds& all, const Drawing& drawing, boo
     }
   }
   return lengths;
+}
+
+glm::dvec2 on_screen(const View& view, const glm::dvec3& point) {
+  const glm::dvec3 offset = point - view.eye();
+  const Projection& p = view.projection;
+  return {(glm::dot(offset, view.right()) - p.left) / (p.right - p.left) * view.width,
+          (p.top - glm::dot(offset, view.up())) / (p.top - p.bottom) * view.height};
 }
 
 std::vector<CentreLine> centre_lines_of(const Rounds& rounds, const Drawing& drawing, const Strokes& strokes,

@@ -9,13 +9,12 @@
 // frame. Rejected: drawing each object alone by zbuffer() (13 s for a city of 10,000 objects at 1080p); lists of all
 // fragments of every sample (1.4 s and 1.7 GiB).
 
-#include "frontmost/accounting.h"
-
 #include <algorithm>
 #include <memory>
 
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "frontmost/report.h"
 #include "report/accounting/band_hiders.h"
 #include "report/accounting/object_mask.h"
 #include "view/answer.h"

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "frontmost/accounting.h"
+#include "frontmost/report.h"
 #include "report/accounting/object_mask.h"
 
 namespace frontmost::accounting_detail {

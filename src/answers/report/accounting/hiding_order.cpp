@@ -5,7 +5,7 @@
 //                                                        0        1           2
 #include <algorithm>
 
-#include "frontmost/accounting.h"
+#include "frontmost/report.h"
 
 namespace frontmost {
 namespace {

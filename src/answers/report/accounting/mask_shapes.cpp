@@ -6,7 +6,7 @@
 //    row 2      ##  ##       where a run parts or two come together, polygons end and others begin
 #include <algorithm>
 
-#include "frontmost/accounting.h"
+#include "frontmost/report.h"
 
 namespace frontmost {
 namespace {

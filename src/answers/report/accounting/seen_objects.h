@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "frontmost/accounting.h"
-#include "frontmost/surfaces.h"
+#include "frontmost/report.h"
+#include "frontmost/scene.h"
 #include "frontmost/view.h"
 #include "zbuffer/tile/tile.h"
 

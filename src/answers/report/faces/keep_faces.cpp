@@ -2,7 +2,7 @@
 // A scene of some of another's triangles: every object has a mesh of its own, of what is kept of it alone.
 #include <algorithm>
 
-#include "frontmost/accounting.h"
+#include "frontmost/report.h"
 
 namespace frontmost {
 namespace {

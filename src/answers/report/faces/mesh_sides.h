@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 
 namespace frontmost::faces_detail {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "frontmost/accounting.h"
+#include "frontmost/report.h"
 #include "report/faces/cells.h"
 
 namespace frontmost {

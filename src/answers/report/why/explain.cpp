@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "frontmost/accounting.h"
+#include "frontmost/report.h"
 #include "frontmost/zbuffer.h"
 #include "report/why/lone_object.h"
 #include "report/why/probes.h"

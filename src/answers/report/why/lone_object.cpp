@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frontmost/accounting.h"
+#include "frontmost/report.h"
 #include "report/accounting/object_mask.h"
 
 namespace frontmost::why_detail {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "frontmost/accounting.h"
+#include "frontmost/report.h"
 #include "report/why/frustum.h"
 #include "surfaces/placed_scene.h"
 

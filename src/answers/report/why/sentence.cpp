@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "base/decimal.h"
-#include "frontmost/accounting.h"
+#include "frontmost/report.h"
 
 namespace frontmost {
 namespace {

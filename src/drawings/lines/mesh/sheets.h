@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 
 namespace frontmost::lines_detail {
 

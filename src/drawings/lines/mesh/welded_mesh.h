@@ -8,7 +8,7 @@
 //       A--M--B      ->    A--M--B         and surfaces go on across it.
 #pragma once
 
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 
 namespace frontmost::lines_detail {
 

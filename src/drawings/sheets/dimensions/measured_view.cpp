@@ -9,6 +9,8 @@
 #include <numbers>
 #include <span>
 
+#include "rounds/centre_lines.h"
+
 namespace frontmost::detail {
 namespace {
 

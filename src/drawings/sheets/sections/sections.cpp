@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rounds/centre_lines.h"
 #include "sheets/page_marks.h"
 
 namespace frontmost::detail {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "frontmost/surfaces.h"
+#include "frontmost/scene.h"
 #include "frontmost/view.h"
 #include "shade/batch.h"
 #include "shade/bit_set.h"
