@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Topology of a mesh by sorting and joining, in parallel.
 //
-//   positions --same bits--> one number for each point (weld)
+//   positions --equal--> one number for each point
 //   half-edges --sorted by their two points--> groups: one is a boundary, two are joined, more are not manifold
 //   joined triangles --union-find--> shells; joined corners --union-find--> pieces
 //
@@ -9,11 +9,11 @@
 // first. The genus follows from Euler's formula where the mesh is closed and every edge has two triangles.
 #include "report/mesh_topology.h"
 
-#include <atomic>
 #include <cmath>
-#include <cstring>
 
 #include "base/orientation.h"
+#include "geometry/disjoint_sets.h"
+#include "geometry/places.h"
 #include "report/group.h"
 
 namespace frontmost {
@@ -29,56 +29,6 @@ struct Count {
     value += other.value;
     return *this;
   }
-};
-
-// For each vertex the first one at the same position.
-std::vector<std::uint32_t> weld(const std::vector<glm::vec3>& positions, const Execution& execution) {
-  std::vector<std::uint32_t> first(positions.size());
-  // By bits, so that equal positions are one vertex and NaN is equal to itself.
-  const auto produce = [&](std::size_t i, Keyed& item) {
-    const glm::vec3 p = positions[i] + 0.0f;  // makes -0 to +0
-    std::uint32_t bits[3];
-    std::memcpy(bits, &p, sizeof bits);
-    item = Keyed(bits[0], bits[1], bits[2], std::uint32_t(i));
-    return true;
-  };
-  (void)for_each_group<Count>(execution, positions.size(), produce, [&](std::span<const Keyed> same, Count&) {
-    for (const Keyed& item : same) first[item.carried()] = same.front().carried();
-  });
-  return first;
-}
-
-// Sets of numbers that can be joined from several threads. The least number of a set stands for it, so the outcome
-// does not depend on the order of joining.
-class VertexSets {
- public:
-  explicit VertexSets(std::size_t count) : parents_(count) {
-    for (std::size_t i = 0; i < count; ++i) parents_[i].store(std::uint32_t(i), std::memory_order_relaxed);
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    for (;;) {
-      a = find(a), b = find(b);
-      if (a == b) return;
-      if (a > b) std::swap(a, b);
-      std::uint32_t expected = b;  // still the root of its set?
-      if (parents_[b].compare_exchange_weak(expected, a, std::memory_order_relaxed)) return;
-    }
-  }
-  [[nodiscard]] bool is_root(std::uint32_t i) const { return parents_[i].load(std::memory_order_relaxed) == i; }
-
- private:
-  std::uint32_t find(std::uint32_t i) {
-    for (;;) {
-      std::uint32_t parent = parents_[i].load(std::memory_order_relaxed);
-      if (parent == i) return i;
-      // Halves the path. Another thread may have done more; then nothing is written.
-      const std::uint32_t above = parents_[parent].load(std::memory_order_relaxed);
-      parents_[i].compare_exchange_weak(parent, above, std::memory_order_relaxed);
-      i = above;
-    }
-  }
-
-  std::vector<std::atomic<std::uint32_t>> parents_;
 };
 
 struct EdgeCounts {
@@ -101,7 +51,7 @@ class MeshTopology {
         kinds_(mesh.triangles.size()),
         triangle_sets_(mesh.triangles.size()),
         corner_sets_(mesh.positions.size()) {
-    const std::vector<std::uint32_t> first = weld(mesh.positions, execution);
+    const Buffer<std::uint32_t> first = first_at_place(mesh.positions, execution);
     parallel_for(execution, corners_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         const glm::uvec3& c = mesh.triangles[t];
@@ -129,7 +79,7 @@ class MeshTopology {
     odd.non_manifold_edges = edges.non_manifold;
     odd.inconsistent_edges = edges.inconsistent;
     for (std::uint32_t t = 0; t < kinds_.size(); ++t)
-      topology.shells += has_edges(kinds_[t]) && triangle_sets_.is_root(t);
+      topology.shells += has_edges(kinds_[t]) && triangle_sets_.is_least(t);
     topology.closed = surface > 0 && edges.boundary == 0;
     if (topology.closed && edges.non_manifold == 0 && edges.inconsistent == 0) {
       // Euler: sum over shells of 2 - 2 genus = vertices - edges + triangles.
@@ -216,7 +166,7 @@ class MeshTopology {
         if (used[corner]) continue;
         used[corner] = true;
         topology.points.push_back(mesh_.positions[corner]);
-        topology.pieces += corner_sets_.is_root(corner);
+        topology.pieces += corner_sets_.is_least(corner);
       }
     }
   }
@@ -225,7 +175,7 @@ class MeshTopology {
   const Execution& execution_;
   std::vector<glm::uvec3> corners_;
   std::vector<Kind> kinds_;
-  VertexSets triangle_sets_, corner_sets_;
+  DisjointSets triangle_sets_, corner_sets_;
   std::vector<std::uint32_t> twins_;
 };
 

@@ -63,7 +63,7 @@ CornerNormals::CornerNormals(const SeenMesh& seen, const Surfaces& surfaces, dou
       normals_(mesh_.triangles.size()),
       surfaces_(surfaces),
       cosine_(float(std::cos(crease_angle))),
-      corners_(mesh_, execution) {
+      corners_(corner_table(mesh_, execution)) {
   for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) normals_[i] = normal_of(mesh_, i);
 }
 
@@ -73,7 +73,7 @@ glm::dvec3 CornerNormals::unit_normal(std::uint32_t triangle) const { return uni
 /// are cut.
 glm::dvec3 CornerNormals::at(std::uint32_t triangle, int corner, const glm::dvec3& own) const {
   const std::uint32_t vertex = mesh_.triangles[triangle][corner];
-  const std::span<const Corner> around = corners_.at(vertex);
+  const std::span<const Corner> around = corners_[vertex];
   if (around.size() > most_at_vertex) return own;
   const std::uint32_t instance = surfaces_.source(mesh_.ids[triangle]).instance;
   glm::dvec3 sum(0);

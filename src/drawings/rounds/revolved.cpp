@@ -42,7 +42,7 @@ class Regions {
     for (std::size_t i = 0; i < region.size(); ++i)
       for (int k = 0; k < 3; ++k) {
         if (!mesh_.is_smooth(region[i], k)) continue;
-        const std::uint32_t next = mesh_.across[region[i]][k];
+        const std::uint32_t next = mesh_.across(region[i], k);
         if (is_taken_[next]) continue;
         is_taken_[next] = true;
         region.push_back(next);

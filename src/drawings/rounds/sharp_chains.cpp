@@ -26,7 +26,7 @@ std::vector<SharpEdge> sharp_edges(const SmoothMesh& mesh, const Execution& exec
     std::vector<SharpEdge>& list = lists[begin / kSharpPerPart];
     for (auto t = std::uint32_t(begin); t < end; ++t)
       for (int k = 0; k < 3; ++k) {
-        const std::uint32_t other = mesh.across[t][k];
+        const std::uint32_t other = mesh.across(t, k);
         if ((other != no_index && other < t) || mesh.is_smooth(t, k)) continue;
         const glm::uvec3& corners = mesh.mesh.triangles[t];
         list.push_back({corners[k], corners[(k + 1) % 3], t, other});

@@ -8,6 +8,7 @@
 
 #include <vector>
 
+#include "geometry/edge_neighbours.h"
 #include "lines/mesh/seen_mesh.h"
 
 namespace frontmost::lines_detail {
@@ -20,21 +21,23 @@ inline constexpr double kWidestCosine = 0.93963;
 struct SmoothMesh {
   WeldedMesh mesh;
   Buffer<glm::dvec3> normals;  ///< of unit length; zero where rounding leaves no direction
-  /// By triangle and side, the first from corner 0 to corner 1: the only other triangle there, wound alike. Otherwise
-  /// no_index.
-  Buffer<glm::uvec3> across;
+  EdgeNeighbours neighbours;
   double noise = 0;  ///< by how much corners may be off their places: what six digits leave open
 
   [[nodiscard]] glm::dvec3 corner(std::uint32_t triangle, int k) const {
     return mesh.positions[mesh.triangles[triangle][k]];
   }
+  /// The only other triangle at a side, if it is wound alike; otherwise no_index.
+  [[nodiscard]] std::uint32_t across(std::uint32_t triangle, int side) const {
+    return neighbours.across(triangle, std::size_t(side));
+  }
   [[nodiscard]] bool is_smooth(std::uint32_t triangle, int side) const {
-    const std::uint32_t other = across[triangle][side];
+    const std::uint32_t other = across(triangle, side);
     return other != no_index && glm::dot(normals[triangle], normals[other]) >= kWidestCosine;
   }
 };
 
-/// O(triangles log triangles at a vertex). \throws Error limit_exceeded as CornerTable does.
+/// O(triangles log triangles at a vertex). \throws Error limit_exceeded for more than EdgeNeighbours::most_triangles.
 [[nodiscard]] SmoothMesh smooth_mesh(const Surfaces& surfaces, const Execution& execution);
 
 /// An edge and the triangles at it; `right` may be no_index.

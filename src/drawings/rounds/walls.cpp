@@ -39,7 +39,7 @@ class Seeds {
   explicit Seeds(const SmoothMesh& mesh) : mesh_(mesh) {}
 
   [[nodiscard]] bool is_one(const Seed& seed) const {
-    const std::uint32_t other = mesh_.across[seed.triangle][seed.side];
+    const std::uint32_t other = mesh_.across(seed.triangle, seed.side);
     if (other == no_index || other < seed.triangle || !mesh_.is_smooth(seed.triangle, seed.side)) return false;
     if (glm::dot(mesh_.normals[seed.triangle], mesh_.normals[other]) > kFlat) return false;
     const glm::dvec3 side = mesh_.corner(seed.triangle, (seed.side + 1) % 3) - mesh_.corner(seed.triangle, seed.side);
@@ -54,7 +54,7 @@ class Seeds {
     const glm::dvec3 axis = side / length;
     bool has_one = false;
     for (int k = 0; k < 3; ++k) {
-      const std::uint32_t next = mesh_.across[triangle][k];
+      const std::uint32_t next = mesh_.across(triangle, k);
       if (next == before || !mesh_.is_smooth(triangle, k)) continue;
       if (std::abs(lean(next, axis)) <= kUpright)
         has_one = true;
@@ -72,11 +72,11 @@ class Seeds {
     const auto is_twice = [&](std::uint32_t t) { return std::abs(lean(t, axis) / first - 2) < 0.4; };
     for (int k = 0; k < 3; ++k) {
       if (!mesh_.is_smooth(triangle, k)) continue;
-      const std::uint32_t next = mesh_.across[triangle][k];
+      const std::uint32_t next = mesh_.across(triangle, k);
       if (is_twice(next)) return true;
       // The next ring may begin behind the other half of the triangle's quad.
       for (int j = 0; j < 3; ++j)
-        if (mesh_.is_smooth(next, j) && is_twice(mesh_.across[next][j])) return true;
+        if (mesh_.is_smooth(next, j) && is_twice(mesh_.across(next, j))) return true;
     }
     return false;
   }
@@ -102,7 +102,7 @@ class WallGrower {
 
   /// None where the seed's surface is no cylinder, or already part of one. What was looked at is not looked at again.
   [[nodiscard]] std::optional<FoundWall> grow(const Seed& seed) {
-    const std::uint32_t other = mesh_.across[seed.triangle][seed.side];
+    const std::uint32_t other = mesh_.across(seed.triangle, seed.side);
     if (is_used_[seed.triangle] || is_used_[other] || !start(seed, other)) return std::nullopt;
     return grown(true);
   }
@@ -168,7 +168,7 @@ class WallGrower {
 
   void reach(std::uint32_t triangle, int side) {
     if (!mesh_.is_smooth(triangle, side)) return;
-    const std::uint32_t next = mesh_.across[triangle][side];
+    const std::uint32_t next = mesh_.across(triangle, side);
     if (!is_used_[next] && holds(next)) take(next);
   }
 

@@ -2,78 +2,20 @@
 #include "occlusion/occluder_mesh.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 #include <numeric>
 #include <span>
 
+#include "geometry/disjoint_sets.h"
+#include "geometry/edge_neighbours.h"
+#include "geometry/places.h"
+
 namespace frontmost::occlusion_detail {
 namespace {
-
-std::uint64_t mixed(std::uint64_t h) {
-  h *= 0x9E3779B97F4A7C15u;
-  return h ^ h >> 29;
-}
-
-/// Numbers things that are equal alike, by open addressing.
-class FirstAlike {
- public:
-  explicit FirstAlike(std::size_t count) : slots_(std::bit_ceil(2 * count + 2), no_index) {}
-
-  /// The first number entered that is_same(number), or `number` itself.
-  template <class IsSame>
-  std::uint32_t enter(std::uint64_t hash, std::uint32_t number, const IsSame& is_same) {
-    const std::size_t mask = slots_.size() - 1;
-    for (std::size_t i = hash & mask;; i = (i + 1) & mask) {
-      if (slots_[i] == no_index) return slots_[i] = number;
-      if (is_same(slots_[i])) return slots_[i];
-    }
-  }
-
- private:
-  std::vector<std::uint32_t> slots_;
-};
-
-std::uint64_t hash_of(const glm::vec3& p) {
-  std::uint32_t bits[3];
-  std::memcpy(bits, &p, sizeof bits);
-  return mixed(mixed(mixed(bits[0]) ^ bits[1]) ^ bits[2]);
-}
-
-/// By vertex, the first that lies at the same place.
-std::vector<std::uint32_t> first_at_place(const std::vector<glm::vec3>& positions) {
-  std::vector<std::uint32_t> first(positions.size());
-  FirstAlike places(positions.size());
-  for (std::uint32_t v = 0; v < positions.size(); ++v) {
-    const glm::vec3 p = positions[v] + 0.0f;  // -0 is 0
-    first[v] = places.enter(hash_of(p), v, [&](std::uint32_t other) { return positions[other] == p; });
-  }
-  return first;
-}
 
 /// What has holes is told by Cutouts.
 bool is_see_through(const Scene& scene, std::uint32_t material) {
   return material < scene.materials.size() && scene.materials[material].is_see_through();
 }
-
-/// By vertex, the lowest that hangs together with it.
-class HangingTogether {
- public:
-  explicit HangingTogether(std::size_t count) : above_(count) { std::iota(above_.begin(), above_.end(), 0u); }
-
-  std::uint32_t lowest(std::uint32_t v) {
-    while (above_[v] != v) v = above_[v] = above_[above_[v]];
-    return v;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = lowest(a);
-    b = lowest(b);
-    above_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> above_;
-};
 
 /// A triangle that is seen, by its vertices' first ones.
 struct WeldedTriangle {
@@ -88,7 +30,7 @@ struct WeldedTriangle {
 std::vector<WeldedTriangle> seen_triangles(const PlacedScene& placed, std::uint32_t instance) {
   const Scene& scene = *placed.scene;
   const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
-  const std::vector<std::uint32_t> first = first_at_place(mesh.positions);
+  const Buffer<std::uint32_t> first = first_at_place(mesh.positions, {.threads = 1});
   std::vector<WeldedTriangle> seen;
   seen.reserve(mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -105,7 +47,7 @@ std::vector<WeldedTriangle> seen_triangles(const PlacedScene& placed, std::uint3
 
 /// Numbers the parts in the order of their first triangles. \returns how many there are.
 std::uint32_t tell_parts_apart(std::size_t vertex_count, std::vector<WeldedTriangle>& triangles) {
-  HangingTogether together(vertex_count);
+  DisjointSets together(vertex_count);
   for (const WeldedTriangle& t : triangles) {
     together.join(t.corners.x, t.corners.y);
     together.join(t.corners.y, t.corners.z);
@@ -113,7 +55,7 @@ std::uint32_t tell_parts_apart(std::size_t vertex_count, std::vector<WeldedTrian
   std::vector<std::uint32_t> part(vertex_count, no_index);
   std::uint32_t count = 0;
   for (WeldedTriangle& t : triangles) {
-    std::uint32_t& own = part[together.lowest(t.corners.x)];
+    std::uint32_t& own = part[together.least_of(t.corners.x)];
     if (own == no_index) own = count++;
     t.part = own;
   }
@@ -234,31 +176,12 @@ class PartWriter {
   std::vector<std::uint32_t> number_;  ///< by vertex, the last that it was written as
 };
 
-/// Joins triangles at the edges that exactly two have, once in each direction.
-std::vector<glm::uvec3> neighbours_of(const std::vector<glm::uvec3>& triangles) {
-  std::vector<glm::uvec3> neighbours(triangles.size(), glm::uvec3(no_index));
-  std::vector<std::uint8_t> uses(3 * triangles.size(), 0);  // of an edge, by the first triangle side that has it
-  const auto start = [&](std::uint32_t side) { return triangles[side / 3][int(side % 3)]; };
-  const auto end = [&](std::uint32_t side) { return triangles[side / 3][int((side + 1) % 3 == 0 ? 0 : side % 3 + 1)]; };
-  const auto beyond = [&](std::uint32_t side) -> std::uint32_t& { return neighbours[side / 3][int(side % 3)]; };
-  FirstAlike edges(uses.size());
-  std::vector<std::uint32_t> second(uses.size(), no_index);
-  for (std::uint32_t side = 0; side < uses.size(); ++side) {
-    const std::uint32_t a = start(side), b = end(side);
-    const std::uint64_t key = std::uint64_t(std::min(a, b)) << 32 | std::max(a, b);
-    const std::uint32_t first = edges.enter(mixed(mixed(key)), side, [&](std::uint32_t other) {
-      return (start(other) == a && end(other) == b) || (start(other) == b && end(other) == a);
-    });
-    const std::uint8_t use = uses[first] = std::uint8_t(std::min(uses[first] + 1, 3));
-    if (use == 2) {
-      second[first] = side;
-      if (start(first) != b) continue;
-      beyond(first) = side / 3;
-      beyond(side) = first / 3;
-    } else if (use == 3) {
-      beyond(first) = beyond(second[first]) = no_index;
-    }
-  }
+/// By triangle and side, the only other triangle there, if it is wound alike.
+std::vector<glm::uvec3> neighbours_of(const OccluderMesh& mesh) {
+  const EdgeNeighbours edges(mesh.triangles, mesh.positions.size(), {.threads = 1});
+  std::vector<glm::uvec3> neighbours(mesh.triangles.size());
+  for (std::size_t t = 0; t < neighbours.size(); ++t)
+    neighbours[t] = {edges.across(t, 0), edges.across(t, 1), edges.across(t, 2)};
   return neighbours;
 }
 
@@ -276,7 +199,7 @@ OccluderMesh occluder_mesh(const PlacedScene& placed, std::uint32_t instance, Ob
   std::vector<std::vector<std::uint32_t>> touching_parts;
   if (unit == ObjectUnit::clusters) touching_parts = touching(mesh.positions.size(), seen, out.parts.size());
   PartWriter(mesh.positions, seen, out).write(touching_parts);
-  out.neighbours = neighbours_of(out.triangles);
+  out.neighbours = neighbours_of(out);
   for (OccluderPart& part : out.parts)
     for (std::uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t)
       for (int side = 0; side < 3; ++side) part.is_closed = part.is_closed && out.neighbours[t][side] != no_index;

@@ -274,7 +274,7 @@ ViewedFaces joined(const std::vector<FacePart>& parts, Buffer<ScreenPoint> verti
 }
 
 /// Sets ViewedFaces::ending for [begin, end).
-void find_endings(const PlacedScene& placed, const std::vector<MeshSides>& sides,
+void find_endings(const PlacedScene& placed, const std::vector<EdgeNeighbours>& sides,
                   const std::vector<std::int8_t>& facing, std::size_t begin, std::size_t end, ViewedFaces& all) {
   const auto& first = placed.first_primitives;
   std::size_t instance = 0;
@@ -282,7 +282,7 @@ void find_endings(const PlacedScene& placed, const std::vector<MeshSides>& sides
     const PrimitiveId id = all.faces[i].id;
     if (i == begin) instance = std::size_t(std::upper_bound(first.begin(), first.end(), id) - first.begin()) - 1;
     while (first[instance + 1] <= id) ++instance;
-    const MeshSides& mesh = sides[placed.scene->instances[instance].mesh];
+    const EdgeNeighbours& mesh = sides[placed.scene->instances[instance].mesh];
     const int own = facing[id];
     int ending = 0;
     for (int side = 0; side < 3; ++side) {
@@ -297,7 +297,7 @@ void find_endings(const PlacedScene& placed, const std::vector<MeshSides>& sides
 
 }  // namespace
 
-ViewedFaces viewed_faces(const Surfaces& surfaces, const View& view, const std::vector<MeshSides>& sides,
+ViewedFaces viewed_faces(const Surfaces& surfaces, const View& view, const std::vector<EdgeNeighbours>& sides,
                          const Execution& execution) {
   constexpr std::size_t kRangesAtOnce = 16, kFacesAtOnce = 8192;
   const PlacedScene& placed = placed_scene(surfaces);

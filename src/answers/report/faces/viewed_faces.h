@@ -46,7 +46,7 @@ struct ViewedFaces {
 
 /// What is within the picture, at least in part, between near and far, is wider than kNarrow, and is not left out by
 /// View::culling. `sides`: by mesh.
-[[nodiscard]] ViewedFaces viewed_faces(const Surfaces& surfaces, const View& view, const std::vector<MeshSides>& sides,
-                                       const Execution& execution);
+[[nodiscard]] ViewedFaces viewed_faces(const Surfaces& surfaces, const View& view,
+                                       const std::vector<EdgeNeighbours>& sides, const Execution& execution);
 
 }  // namespace frontmost::faces_detail

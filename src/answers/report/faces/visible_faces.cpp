@@ -11,7 +11,6 @@ namespace frontmost {
 namespace {
 
 using faces_detail::Areas;
-using faces_detail::MeshSides;
 using faces_detail::SeenPart;
 
 /// Fifteen times what the most crowded of 237 models takes, and 64 more for each face.
@@ -20,8 +19,8 @@ std::uint64_t most_steps_of(const faces_detail::ViewedFaces& screen) {
 }
 
 /// By id, ascending.
-std::vector<VisibleFace> find_faces(const Surfaces& surfaces, const View& view, const std::vector<MeshSides>& sides,
-                                    const Execution& execution) {
+std::vector<VisibleFace> find_faces(const Surfaces& surfaces, const View& view,
+                                    const std::vector<EdgeNeighbours>& sides, const Execution& execution) {
   constexpr std::size_t kFacesAtOnce = 4096;
   const faces_detail::ViewedFaces screen = faces_detail::viewed_faces(surfaces, view, sides, execution);
   const faces_detail::FacesOfView faces{surfaces, screen, faces_detail::AreaRule(view), most_steps_of(screen)};
@@ -65,7 +64,7 @@ std::vector<SeenFace> faces_ever_seen(const Surfaces& surfaces, std::span<const 
                                       const Execution& execution) {
   const IeeeScope ieee;
   for (const View& view : views) validate(view);
-  const std::vector<MeshSides> sides = faces_detail::sides_of_meshes(surfaces.scene(), execution);
+  const std::vector<EdgeNeighbours> sides = faces_detail::sides_of_meshes(surfaces.scene(), execution);
   std::vector<SeenFace> best(surfaces.primitive_count());
   for (std::uint32_t number = 0; number < views.size(); ++number)
     for (const VisibleFace& face : find_faces(surfaces, views[number], sides, execution)) {

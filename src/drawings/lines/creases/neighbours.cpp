@@ -25,7 +25,7 @@ TurnedTriangle Neighbours::beyond(const TurnedTriangle& triangle, std::uint32_t 
   const WeldedMesh& mesh = seen_.mesh;
   const std::uint32_t own = third_of(corners(triangle.number), a, b);
   std::uint32_t found = no_index, opposite = no_index;
-  for (const Corner& corner : table_.at(a)) {
+  for (const Corner& corner : table_[a]) {
     const std::uint32_t next = corner.next(mesh), last = corner.last(mesh);
     if (next != b && last != b) continue;
     const std::uint32_t third = next == b ? last : next;
@@ -41,7 +41,7 @@ TurnedTriangle Neighbours::beyond(const TurnedTriangle& triangle, std::uint32_t 
 
 Fan Neighbours::fan(std::uint32_t vertex) const {
   Fan fan;
-  const std::span<const Corner> corners = table_.at(vertex);
+  const std::span<const Corner> corners = table_[vertex];
   if (corners.size() > Fan::most) return fan;
   for (const Corner& corner : corners)
     fan.entries_[fan.count_++] = {corner.triangle(), corner.next(seen_.mesh), corner.last(seen_.mesh)};

@@ -8,8 +8,7 @@
 //             /  |  .
 #pragma once
 
-#include <span>
-
+#include "geometry/buckets.h"
 #include "lines/mesh/seen_mesh.h"
 
 namespace frontmost::lines_detail {
@@ -34,21 +33,11 @@ class Corner {
   std::uint32_t number_;
 };
 
-/// The corners of all triangles, those at one vertex together.
-class CornerTable {
- public:
-  /// O(triangles). \throws Error limit_exceeded for more than Corner::most_triangles.
-  CornerTable(const WeldedMesh& mesh, const Execution& execution);
+/// By vertex, the corners of all triangles that have it, in the order of these triangles.
+using CornerTable = Buckets<Corner>;
 
-  /// In the order of their triangles.
-  [[nodiscard]] std::span<const Corner> at(std::size_t vertex) const {
-    return {corners_.data() + first_[vertex], first_[vertex + 1] - first_[vertex]};
-  }
-
- private:
-  Buffer<std::uint32_t> first_;  ///< by vertex
-  Buffer<Corner> corners_;
-};
+/// O(triangles). \throws Error limit_exceeded for more than Corner::most_triangles.
+[[nodiscard]] CornerTable corner_table(const WeldedMesh& mesh, const Execution& execution);
 
 /// The triangles at a vertex, as they lie to each other.
 struct Star {

@@ -214,7 +214,7 @@ void add_features(std::span<const Side> sides, std::uint32_t v, const Classifier
 
 Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options,
                        const Execution& execution) {
-  const CornerTable table(seen.mesh, execution);
+  const CornerTable table = corner_table(seen.mesh, execution);
   const Classifier classifier(seen, surfaces, options);
   const StarsKernel find_stars = stars_kernel(execution.isa);
   const std::size_t vertices = seen.mesh.positions.size();
@@ -232,9 +232,9 @@ Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const Lin
       const Star& star = stars[i - begin];
       is_spread[v] = star.is_spread;
       if (star.is_paired) {
-        add_features(v, table.at(v), star.asked, classifier, found.edges);
+        add_features(v, table[v], star.asked, classifier, found.edges);
       } else {
-        find_sides(seen.mesh, v, table.at(v), sides);
+        find_sides(seen.mesh, v, table[v], sides);
         add_features(sides, v, classifier, found);
       }
     }

@@ -15,6 +15,7 @@
 
 #include "base/exact_vector.h"
 #include "base/parallel.h"
+#include "geometry/disjoint_sets.h"
 #include "lines/lists.h"
 #include "lines/mesh/welded_mesh.h"
 
@@ -114,20 +115,13 @@ Seams::Seams(const WeldedMesh& mesh, const std::vector<std::uint32_t>& fillers, 
 
 /// By filler, the number of its line. Fillers with a side in common are on one: they have two points in common.
 std::vector<std::uint32_t> Seams::number_lines(std::size_t fillers) {
-  std::vector<std::uint32_t> parent(fillers);
-  for (std::uint32_t i = 0; i < fillers; ++i) parent[i] = i;
-  const auto root_of = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  DisjointSets lines(fillers);
   for (std::size_t s = 1; s < sides_.size(); ++s) {
-    if (sides_[s - 1] < sides_[s]) continue;
-    const std::uint32_t a = root_of(sides_[s - 1].seam), b = root_of(sides_[s].seam);
-    parent[std::max(a, b)] = std::min(a, b);
+    if (!(sides_[s - 1] < sides_[s])) lines.join(sides_[s - 1].seam, sides_[s].seam);
   }
   std::vector<std::uint32_t> numbers(fillers);
   std::uint32_t count = 0;
-  for (std::uint32_t i = 0; i < fillers; ++i) numbers[i] = root_of(i) == i ? count++ : numbers[root_of(i)];
+  for (std::uint32_t i = 0; i < fillers; ++i) numbers[i] = lines.is_least(i) ? count++ : numbers[lines.least_of(i)];
   axes_.assign(count, 0);
   is_open_.assign(count, true);
   return numbers;

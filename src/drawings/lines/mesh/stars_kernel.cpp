@@ -90,7 +90,7 @@ void Stars(const SeenMesh& seen, const CornerTable& table, float plain_cosine, s
   for (std::size_t v = begin; v < end; ++v) {
     Star& star = stars[v - begin];
     star = {false, false, 0};
-    const std::span<const Corner> at = table.at(v);
+    const std::span<const Corner> at = table[v];
     if (at.size() > Star::most) continue;
     StarCorners corners(seen, at);
     if (!corners.Pair()) continue;

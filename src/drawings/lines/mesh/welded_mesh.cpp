@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Equal places are found by a table that all threads fill at once. A place belongs to the lowest vertex that lies
-// there: whoever comes first, the lowest stays, by compare and exchange. So numbers do not depend on threads.
-//
 //    vertices of all instances --places--> first at each place --counted in parts--> numbers of places
 //    triangles of all instances --------------- by these numbers --------------> triangles, without those that collapse
 //
@@ -9,13 +6,11 @@
 #include "lines/mesh/welded_mesh.h"
 
 #include <algorithm>
-#include <atomic>
-#include <bit>
-#include <cstring>
 #include <string>
 #include <vector>
 
 #include "base/parallel.h"
+#include "geometry/places.h"
 #include "lines/mesh/corner_table.h"
 #include "surfaces/cluster_set.h"
 
@@ -57,47 +52,6 @@ std::vector<std::size_t> counted(std::size_t count, const IsKept& is_kept, const
   return before;
 }
 
-/// By open addressing, which of the vertices at one place comes first.
-class PlaceTable {
- public:
-  /// Precondition: fewer than 2^31 places.
-  explicit PlaceTable(const Buffer<glm::vec3>& places)
-      : places_(places), slots_(std::bit_ceil(2 * places.size() + 2)) {}
-
-  /// \returns the slot of the vertex's place; the lowest vertex stays in it, whoever comes first. For many threads.
-  std::uint32_t enter(std::uint32_t vertex) {
-    const glm::vec3& p = places_[vertex];
-    const std::size_t mask = slots_.size() - 1;
-    for (std::size_t i = hash(p) & mask;; i = (i + 1) & mask) {
-      std::uint32_t held = slots_[i].load(std::memory_order_relaxed);
-      if (held == 0 && slots_[i].compare_exchange_strong(held, vertex + 1, std::memory_order_relaxed))
-        return std::uint32_t(i);
-      if (places_[held - 1] != p) continue;
-      while (vertex + 1 < held && !slots_[i].compare_exchange_weak(held, vertex + 1, std::memory_order_relaxed)) {
-      }
-      return std::uint32_t(i);
-    }
-  }
-  [[nodiscard]] std::uint32_t lowest_in(std::uint32_t slot) const {
-    return slots_[slot].load(std::memory_order_relaxed) - 1;
-  }
-
- private:
-  static std::size_t hash(const glm::vec3& p) {
-    std::uint64_t h = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      std::uint32_t bits;
-      std::memcpy(&bits, &p[axis], sizeof bits);
-      h = (h ^ bits) * 0x9E3779B97F4A7C15u;
-      h ^= h >> 29;
-    }
-    return std::size_t(h);
-  }
-
-  const Buffer<glm::vec3>& places_;
-  std::vector<std::atomic<std::uint32_t>> slots_;  ///< 0: free; else a vertex + 1
-};
-
 Buffer<glm::vec3> places_of(const Scene& scene, const Execution& execution) {
   const std::vector<std::size_t> firsts = firsts_of(scene, [](const Mesh& mesh) { return mesh.positions.size(); });
   if (firsts.back() >= std::size_t(1) << 31)
@@ -113,27 +67,12 @@ Buffer<glm::vec3> places_of(const Scene& scene, const Execution& execution) {
   return places;
 }
 
-/// By vertex of all instances, the first at its place; no_index where it is not finite.
-Buffer<std::uint32_t> first_at_place(const Buffer<glm::vec3>& places, const Execution& execution) {
-  PlaceTable table(places);
-  Buffer<std::uint32_t> first(places.size());
-  parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v)
-      first[v] = is_finite(places[v]) ? table.enter(std::uint32_t(v)) : no_index;
-  });
-  parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v)
-      if (first[v] != no_index) first[v] = table.lowest_in(first[v]);
-  });
-  return first;
-}
-
 /// By vertex of all instances, the number of its place; fills `positions`.
 Buffer<std::uint32_t> number_places(const Scene& scene, Positions& positions, const Execution& execution) {
   const Buffer<glm::vec3> places = places_of(scene, execution);
-  const Buffer<std::uint32_t> first = first_at_place(places, execution);
+  const Buffer<std::uint32_t> first = first_at_place({places.data(), places.size()}, execution);
   Buffer<std::uint32_t> numbers(places.size());
-  const auto is_first = [&](std::size_t v) { return first[v] == v; };
+  const auto is_first = [&](std::size_t v) { return first[v] == v && is_finite(places[v]); };
   const std::vector<std::size_t> before = counted(places.size(), is_first, execution);
   Buffer<glm::vec3> kept(before.back());
   parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
@@ -146,7 +85,7 @@ Buffer<std::uint32_t> number_places(const Scene& scene, Positions& positions, co
   });
   parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
-      if (!is_first(v)) numbers[v] = first[v] == no_index ? no_index : numbers[first[v]];
+      if (!is_first(v)) numbers[v] = first[v] == v ? no_index : numbers[first[v]];
   });
   positions = Positions(std::move(kept));
   return numbers;

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// The triangles that share the edges of others.
+//
+//      c-------d         Edge b-c belongs to two triangles, a b c and d c b: each is the neighbour of the other there.
+//     / \     /          They are wound alike, because they run along the edge in opposite directions. Edge a-b belongs
+//    /   \   /           to one triangle, which has no neighbour there. Where three and more triangles share an edge,
+//   a-----b              none of them has a neighbour.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "frontmost/base.h"
+
+namespace frontmost {
+
+/// Side k of a triangle leads from its vertex k to the next.
+class EdgeNeighbours {
+ public:
+  /// A side and two flags share 32 bits.
+  static constexpr std::size_t most_triangles = std::size_t(1) << 29;
+
+  EdgeNeighbours() = default;
+  /// Triangles by their welded vertices; one with the same vertex twice has no neighbours, and is none. Precondition:
+  /// at most most_triangles, vertices below vertex_count. O(triangles * log triangles at a vertex), in parallel.
+  EdgeNeighbours(std::span<const glm::uvec3> triangles, std::size_t vertex_count, const Execution& execution);
+
+  /// The only other triangle with this side; no_index where there is none, or several.
+  [[nodiscard]] std::uint32_t beyond(std::size_t triangle, std::size_t side) const {
+    const std::uint32_t found = beyond_[3 * triangle + side];
+    return found == no_index ? no_index : found >> 1;
+  }
+  /// Whether that triangle runs along the side in the other direction. Precondition: there is one.
+  [[nodiscard]] bool is_wound_alike(std::size_t triangle, std::size_t side) const {
+    return (beyond_[3 * triangle + side] & 1) != 0;
+  }
+  /// beyond() where that triangle is wound alike; otherwise no_index.
+  [[nodiscard]] std::uint32_t across(std::size_t triangle, std::size_t side) const {
+    const std::uint32_t found = beyond_[3 * triangle + side];
+    return found != no_index && (found & 1) != 0 ? found >> 1 : no_index;
+  }
+
+ private:
+  Buffer<std::uint32_t> beyond_;  ///< by triangle and side: number * 2 + whether it is wound alike
+};
+
+}  // namespace frontmost

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Places, edges, sets and buckets against what is obviously right: all pairs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "geometry/buckets.h"
+#include "geometry/disjoint_sets.h"
+#include "geometry/edge_neighbours.h"
+#include "geometry/places.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+constexpr float kInfinite = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
+
+/// Positions of which many are equal; zeros of both signs and numbers that are not finite among them.
+std::vector<glm::vec3> some_positions(std::uint64_t seed, int count) {
+  Random random(seed);
+  std::vector<glm::vec3> positions;
+  const float values[] = {0.0f, -0.0f, 1.0f, 1e-40f, -3.5f, kInfinite, kNan};
+  const auto some = [&] { return values[random.below(random.below(8) == 0 ? 7 : 5)]; };
+  for (int i = 0; i < count; ++i) {
+    const float x = some(), y = some(), z = some();
+    positions.emplace_back(x, y, z);
+  }
+  return positions;
+}
+
+TEST(Places, TheFirstOfEqualOnesIsFoundAsByAllPairs) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const std::vector<glm::vec3> positions = some_positions(seed, 300);
+    const Buffer<std::uint32_t> first = first_at_place(positions, {.threads = int(seed % 3) + 1});
+    ASSERT_EQ(first.size(), positions.size());
+    for (std::uint32_t v = 0; v < positions.size(); ++v) {
+      std::uint32_t expected = 0;
+      const auto is_same = [&](std::uint32_t other) { return other == v || positions[other] == positions[v]; };
+      while (!is_finite(positions[v]) ? expected != v : !is_same(expected)) ++expected;
+      ASSERT_EQ(first[v], expected) << "seed " << seed << ", vertex " << v;
+    }
+  }
+  EXPECT_TRUE(first_at_place({}, {}).empty());
+}
+
+TEST(Places, ThreadsFindTheSameAndManyThatAreNotFiniteTakeNoTime) {
+  std::vector<glm::vec3> positions(400000, glm::vec3(kNan));  // each of which would be compared with all others
+  for (std::size_t i = 0; i < positions.size(); i += 2)
+    positions[i] = {float(i % 977), float(i % 613), -float(i % 2003)};
+  const Buffer<std::uint32_t> one = first_at_place(positions, {.threads = 1});
+  const Buffer<std::uint32_t> four = first_at_place(positions, {.threads = 4});
+  EXPECT_TRUE(std::equal(one.begin(), one.end(), four.begin(), four.end()));
+  EXPECT_EQ(one[399999], 399999u);
+}
+
+/// Beyond each side, by all pairs of sides.
+std::uint32_t beyond_by_all_pairs(const std::vector<glm::uvec3>& triangles, std::size_t t, int k, bool& is_alike) {
+  const auto is_whole = [](const glm::uvec3& c) { return c.x != c.y && c.y != c.z && c.z != c.x; };
+  if (!is_whole(triangles[t])) return no_index;
+  const std::uint32_t a = triangles[t][k], b = triangles[t][(k + 1) % 3];
+  std::uint32_t found = no_index;
+  int count = 0;
+  for (std::uint32_t other = 0; other < triangles.size(); ++other) {
+    if (other == t || !is_whole(triangles[other])) continue;
+    for (int j = 0; j < 3; ++j) {
+      const std::uint32_t p = triangles[other][j], q = triangles[other][(j + 1) % 3];
+      if (!((p == a && q == b) || (p == b && q == a))) continue;
+      found = other;
+      is_alike = p == b;
+      ++count;
+    }
+  }
+  return count == 1 ? found : no_index;
+}
+
+TEST(EdgeNeighbours, AreThoseFoundByAllPairs) {
+  int alike = 0, turned = 0, none = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Random random(seed);
+    const int vertices = seed % 3 == 0 ? 5 : 40;  // of which one has many triangles
+    std::vector<glm::uvec3> triangles;
+    for (int i = 0; i < 60; ++i) {
+      const auto a = std::uint32_t(random.below(vertices)), b = std::uint32_t(random.below(vertices)),
+                 c = seed % 2 ? std::uint32_t(random.below(vertices)) : 0;
+      triangles.emplace_back(a, b, c);
+    }
+    const EdgeNeighbours neighbours(triangles, std::size_t(vertices), {.threads = int(seed % 2) + 1});
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      for (int k = 0; k < 3; ++k) {
+        bool is_alike = false;
+        const std::uint32_t expected = beyond_by_all_pairs(triangles, t, k, is_alike);
+        const auto side = std::size_t(k);
+        ASSERT_EQ(neighbours.beyond(t, side), expected) << "seed " << seed;
+        ASSERT_EQ(neighbours.across(t, side), expected != no_index && is_alike ? expected : no_index);
+        if (expected == no_index) {
+          ++none;
+          continue;
+        }
+        ASSERT_EQ(neighbours.is_wound_alike(t, side), is_alike);
+        ++(is_alike ? alike : turned);
+      }
+  }
+  EXPECT_GT(alike, 200);
+  EXPECT_GT(turned, 200);
+  EXPECT_GT(none, 200);
+}
+
+TEST(DisjointSets, TheLeastNumberStandsForASetWhateverTheOrderAndTheThreads) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    for (int i = 0; i < 300; ++i) {
+      const auto a = std::uint32_t(random.below(500)), b = std::uint32_t(random.below(500));
+      pairs.emplace_back(a, b);
+    }
+    std::vector<std::uint32_t> expected(500);
+    for (std::uint32_t i = 0; i < 500; ++i) expected[i] = i;
+    for (bool changes = true; changes;) {
+      changes = false;
+      for (const auto& [a, b] : pairs) {
+        const std::uint32_t least = std::min(expected[a], expected[b]);
+        changes = changes || expected[a] != least || expected[b] != least;
+        expected[a] = expected[b] = least;
+      }
+    }
+    DisjointSets sets(500);
+    parallel_for({.threads = 4}, pairs.size(), 1,
+                 [&](std::size_t i, std::size_t) { sets.join(pairs[i].first, pairs[i].second); });
+    for (std::uint32_t i = 0; i < 500; ++i) {
+      ASSERT_EQ(sets.least_of(i), expected[i]) << "seed " << seed;
+      ASSERT_EQ(sets.is_least(i), expected[i] == i);
+    }
+  }
+}
+
+TEST(Buckets, HoldTheirItemsInTheOrderOfTheirSourcesForAllThreads) {
+  const std::size_t sources = 100000, count = 777;
+  const auto bucket_of = [](std::size_t source, std::size_t i) { return (source * 7919 + i * 31) % 777; };
+  std::vector<std::vector<std::uint64_t>> expected(count);
+  for (std::size_t s = 0; s < sources; ++s)
+    for (std::size_t i = 0; i < s % 3; ++i) expected[bucket_of(s, i)].push_back(4 * s + i);
+  for (const int threads : {1, 2, 5}) {
+    const auto list = [&](std::size_t s, const auto& add) {
+      for (std::size_t i = 0; i < s % 3; ++i) add(bucket_of(s, i), std::uint64_t(4 * s + i));
+    };
+    const Buckets<std::uint64_t> buckets(count, sources, list, {.threads = threads});
+    ASSERT_EQ(buckets.count(), count);
+    for (std::size_t b = 0; b < count; ++b)
+      ASSERT_TRUE(std::equal(buckets[b].begin(), buckets[b].end(), expected[b].begin(), expected[b].end())) << b;
+  }
+  EXPECT_EQ(Buckets<int>().count(), 0u);
+  EXPECT_EQ(Buckets<int>(3, 0, [](std::size_t, const auto&) {}, {})[2].size(), 0u);
+}
+
+}  // namespace
+}  // namespace frontmost::test
