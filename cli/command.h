@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sub-commands, and what help says of them.
+// The sub-commands, and their texts for help.
 //
 //   words --parse_command_line()--> Settings --run_...()--> exit status
 //              |                                                 |
 //              options' tables                                   the library, and files
 //
-// The table of commands and the tables of options are all there is: the parser, --help, the manual page, completion and
-// batch files are read from them, so that none can say something else than the others.
+// The parser, --help, the manual page, completion and batch files all read the table of commands and the tables of
+// options, so they cannot contradict each other.
 #pragma once
 
 #include <span>
@@ -19,15 +19,15 @@ namespace frontmost::cli {
 
 struct Command {
   std::string_view name;
-  unsigned bit;               ///< the options it takes; 0: none
+  unsigned bit;               ///< bit in Option::commands; 0: no options
   std::string_view argument;  ///< as usage lines show it; "..." at its end: several may be given; in [ ]: it may be
                               ///< left out; after a blank a second one, an object of the model
   std::string_view summary;
   std::string_view details;
-  std::string_view examples;  ///< one a line: command, two blanks or more, what it does
+  std::string_view examples;  ///< one a line: command, two blanks or more, its effect
   int (*run)(const Settings&);
 
-  /// The argument's name alone.
+  /// The argument's name without further signs.
   [[nodiscard]] std::string_view argument_name() const { return argument.substr(0, argument.find_first_of(". ")); }
   [[nodiscard]] bool is_argument_needed() const { return !argument.empty() && argument.front() != '['; }
   [[nodiscard]] bool takes_several() const { return argument.ends_with("..."); }
@@ -35,7 +35,7 @@ struct Command {
 };
 
 [[nodiscard]] std::span<const Command> commands();
-/// Null where no command has that name.
+/// Null if no command has that name.
 [[nodiscard]] const Command* find_command(std::string_view name);
 
 int run_render(const Settings& settings);
@@ -54,14 +54,15 @@ int run_batch_merge(const Settings& settings);
 /// \throws UsageError
 [[nodiscard]] Settings parse_command_line(const Command& command, std::span<const char* const> words);
 
-/// What follows the command's name on a line of usage: "MODEL... [options]", the argument between `before` and `after`.
+/// The rest of a usage line behind the command's name, as in "MODEL... [options]". The argument stands between `before`
+/// and `after`.
 [[nodiscard]] std::string usage_of(const Command& command, std::string_view before = "", std::string_view after = "");
 
-/// Texts made from the tables.
+/// Texts generated from the tables.
 [[nodiscard]] std::string help_overview();
 [[nodiscard]] std::string help_for(const Command& command);
 [[nodiscard]] std::string man_page();
-/// For bash, zsh or fish. \throws UsageError on another.
+/// A script for bash, zsh or fish. \throws UsageError for other shells.
 [[nodiscard]] std::string completion_script(std::string_view shell);
 
 }  // namespace frontmost::cli

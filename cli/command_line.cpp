@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Splitting the command line. The only file that sees CLI11, which takes seconds to compile; what the words mean is
-// in the option tables.
+// Splits the command line. Only this file includes CLI11, which takes seconds to compile. The option tables give the
+// words their meaning.
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
@@ -15,7 +15,7 @@
 namespace frontmost::cli {
 namespace {
 
-/// An option of the command and the texts it was given.
+/// An option of the command, and the texts given for it.
 struct GivenOption {
   const Option* option;
   std::vector<std::string> texts;
@@ -29,7 +29,7 @@ void declare(CLI::App& app, GivenOption& found) {
   if (option.is_switch()) {
     app.add_flag(names, found.is_set)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   } else {
-    // One value a time, taken whatever it looks like: -1,2,3 is a vector, and - is a file.
+    // One value at a time, whatever it looks like: -1,2,3 is a vector, and - is a file.
     app.add_option(names, found.texts)->expected(1)->take_all()->allow_extra_args(false);
   }
 }
@@ -55,10 +55,10 @@ std::vector<std::string_view> known_flags(const Command& command) {
                                                : fmt::format("; did you mean --{}?", nearest)));
 }
 
-/// What no option takes: more models, where the command takes several.
+/// Words that belong to no option: further models, if the command takes several.
 void take_leftovers(const Command& command, const std::vector<std::string>& words, Settings& settings) {
   for (const std::string& word : words) {
-    if (word == "--") continue;  // it has done its work
+    if (word == "--") continue;  // its work is done
     if (word.size() > 1 && word[0] == '-') complain_of_unknown(command, word);
     if (command.argument.empty()) throw UsageError(fmt::format("'{}' is one word too many", word));
     if (command.takes_object())
@@ -69,7 +69,7 @@ void take_leftovers(const Command& command, const std::vector<std::string>& word
   }
 }
 
-/// "--hidden needs a value: none, dashed or thin"
+/// Message for an option without value, as in "--hidden needs a value: none, dashed or thin".
 std::string value_needed(const Option& option) {
   std::vector<std::string_view> words = split(option.choices(), '|');
   if (option.choices().empty()) return fmt::format("--{} needs a value", option.name);
@@ -78,7 +78,7 @@ std::string value_needed(const Option& option) {
   return fmt::format("--{} needs a value: {} or {}", option.name, fmt::join(words, ", "), last);
 }
 
-/// "--output --hash" forgot a file name; a file of that name can still be written as ./--hash.
+/// "--output --hash" lacks a file name. A file of that name can still be written as ./--hash.
 void refuse_flag_as_value(const Command& command, const GivenOption& found) {
   for (const std::string& text : found.texts) {
     if (text.substr(0, 2) != "--") continue;

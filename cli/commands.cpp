@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of commands: the name, which options it takes, and the texts that help and manual page show.
+// The table of commands: name, options, and the texts for help and manual page.
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/option.h"

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shell completion scripts, from the tables. Values: words for choices, files for files, nothing for numbers.
+// Shell completion scripts, generated from the tables. Values complete to choices or to files; numbers do not complete.
 //
-// Each shell has its own way to say that; what they share is made once: names of commands, spellings of options, and
-// words in quotes.
+// Each shell has its own syntax. Command names, spellings of options and quoted words are made once for all.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,7 +29,7 @@ std::string spelled(const Option& option) {
   return option.letter ? fmt::format("-{} --{}", option.letter, option.name) : fmt::format("--{}", option.name);
 }
 
-/// Inside single quotes of a shell.
+/// Escapes text for single quotes of a shell.
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -41,7 +40,7 @@ std::string bash_script() {
   std::string values, flags;
   for_each_option([&](const Option& option) {
     if (option.is_switch()) return;
-    // With the command: --format means one thing to render and another to precision.
+    // The pattern includes the command, because --format has different values for render and precision.
     std::string pattern;
     for (const Command& command : commands()) {
       if (!(option.commands & command.bit)) continue;

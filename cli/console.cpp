@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A failed write to standard output is an error like that of any file: a full disk behind a redirection must not end in
-// success. Standard error has nowhere to complain to.
+// A failed write to standard output is an error, as for any file: a full disk behind a redirection must not end in
+// success. Failed writes to standard error are ignored, because there is nowhere to report them.
 #include "cli/console.h"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@
 namespace frontmost::cli {
 namespace {
 
-// Work that ends sooner than this needs no announcement; a line more often than this only flickers.
+// Work shorter than `patience` shows no progress; a line updated more often than each `interval` only flickers.
 constexpr std::chrono::milliseconds patience{500}, interval{50};
 constexpr std::string_view clear_line = "\r\033[K";
 
@@ -28,13 +28,13 @@ void print(std::string_view text) {
   errno = 0;
   const bool whole = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
   if (whole && std::fflush(stdout) == 0) return;
-  const int code = errno;  // before strings are made: that may change it
+  const int code = errno;  // before strings are made, which may change errno
   throw Error(ErrorCode::file_unwritable, "standard output", "",
               "could not be written: " + std::generic_category().message(code));
 }
 
 void complain(std::string_view text) {
-  // One write, so that lines of several processes do not mix.
+  // A single write keeps lines of several processes apart.
   const std::string line = "frontmost: " + printable_text(text) + "\n";
   (void)std::fwrite(line.data(), 1, line.size(), stderr);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Standard output and error: results on the one, everything about them on the other, and there the progress of long
-// work on one line of a terminal.
+// Standard output for results, and standard error for messages. Standard error also shows the progress of long work, on
+// one line of a terminal.
 #pragma once
 
 #include <frontmost/base.h>
@@ -14,23 +14,22 @@
 
 namespace frontmost::cli {
 
-/// Writes to standard output. \throws Error file_unwritable when that fails.
+/// Writes to standard output. \throws Error file_unwritable.
 void print(std::string_view text);
-/// One line on standard error, "frontmost: ...", as printable_text() writes it.
+/// Writes one line "frontmost: ..." to standard error, escaped as printable_text() does.
 void complain(std::string_view text);
 
-/// Columns and rows of the terminal that standard output is; none when it is not a terminal.
+/// Columns and rows of the terminal at standard output; empty if it is no terminal.
 [[nodiscard]] std::optional<glm::ivec2> output_terminal();
 [[nodiscard]] bool error_is_terminal();
 
-/// With a comma before every three digits: 1,234,567.
+/// The number with a comma before every three digits: 1,234,567.
 [[nodiscard]] std::string grouped(std::uint64_t number);
 
-/// A name from a file, for a terminal: as printable_text() writes it, or "(no name)".
+/// A name from a file for a terminal: escaped as printable_text() does, or "(no name)".
 [[nodiscard]] std::string printable_name(std::string_view name);
 
-/// Progress of long work. Shows nothing for the first half second, and nothing at all where standard error is not a
-/// terminal.
+/// Progress of long work. Shows nothing in the first half second, and nothing at all if standard error is no terminal.
 class Progress {
  public:
   explicit Progress(bool quiet);
@@ -38,11 +37,11 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// For Execution; valid as long as this lives. Its `cancelled` is Ctrl-C and --timeout.
+  /// For Execution; valid during this object's lifetime. Its `cancelled` reports Ctrl-C and --timeout.
   [[nodiscard]] const Watch* watch() const { return &watch_; }
-  /// What goes in front of the stage, such as "view 3 of 20: ".
+  /// Sets the text before the stage, such as "view 3 of 20: ".
   void set_prefix(std::string prefix);
-  /// Takes the line away, before something else is printed.
+  /// Removes the line. Call before something else is printed.
   void clear();
 
  private:

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The handlers may run at any instruction, so they only store to lock-free atomics, write() and _exit().
+// Signal handlers may run at any instruction, so they only store to lock-free atomics and call write() and _exit().
 //
-// Leaving at once is safe because only saving makes files: a reader stuck on a slow pipe, or a kernel in the middle of
-// a huge picture, has nothing to clean up, and no library call needs to be fast in noticing.
+// Leaving at once is safe, because only saving makes files. A reader stuck on a slow pipe, or a kernel in the middle of
+// a huge picture, has nothing to clean up, so no library call has to react quickly.
 //
-//   signal --while nothing is written--> a line on the terminal, and _exit()
-//          --while a WritingFiles lives--> noted: the library is asked to stop, and takes the unfinished file away
-//          --a second time--> now
+//   signal --while no file is written--> a line on the terminal, and _exit()
+//          --while a WritingFiles lives--> noted: the library is asked to stop, and removes the unfinished file
+//          --a second time--> _exit() at once
 #include "cli/failure.h"
 
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ namespace {
 std::atomic<bool> writing{false}, line_shown{false}, waiting{false};
 std::atomic<int> caught{0};
 
-/// Prepared beforehand: formatting is not allowed in a handler.
+/// Text formatted beforehand, because handlers must not format.
 struct PreparedLine {
   char text[128] = "";
   std::size_t length = 0;
@@ -38,7 +38,7 @@ int status_of(int signal) { return signal == SIGALRM ? exit_could_not : exit_int
 
 void put(const char* text, std::size_t length) {
   const ssize_t written = write(STDERR_FILENO, text, length);
-  (void)written;  // nothing can be done about it here
+  (void)written;  // errors cannot be handled here
 }
 
 void say(int signal) {
@@ -48,7 +48,7 @@ void say(int signal) {
 }
 
 void on_signal(int signal) {
-  // A second Ctrl-C means now.
+  // A second signal ends the program at once.
   const bool again = caught.exchange(signal) != 0;
   if (writing && !again) return;
   say(signal);
@@ -91,13 +91,13 @@ void catch_interruptions(std::optional<double> timeout_seconds) {
   sigemptyset(&action.sa_mask);
   action.sa_flags = SA_RESTART;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    // What a parent such as nohup ignores stays ignored.
+    // A signal that a parent such as nohup ignores stays ignored.
     struct sigaction before {};
     sigaction(signal, nullptr, &before);
     if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
   }
-  // A reader of our output that goes away is a failed write, with a message, not a silent death; so is a file that
-  // grows beyond what `ulimit -f` allows.
+  // A reader of the output that goes away causes a failed write with a message instead of a silent death. So does a
+  // file that grows beyond the limit of `ulimit -f`.
   for (const int signal : {SIGPIPE, SIGXFSZ}) ::signal(signal, SIG_IGN);
   if (timeout_seconds) {
     sigaction(SIGALRM, &action, nullptr);

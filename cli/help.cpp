@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Help on the terminal, from the tables of commands and options.
+// Help on the terminal, generated from the tables of commands and options.
 //
 //     -o, --output FILE               The picture: .png, .exr, .pfm or .npy, or its polygons: ...
 //         --depth FILE                Distance along the viewing axis, in scene units.
 //   ^                                 ^
-//   one column for names              one for texts, which are broken at blanks
+//   one column for names              one for texts, which are wrapped at blanks
 #include <fmt/format.h>
 
 #include "cli/command.h"
@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t line_width = 100;
 constexpr std::size_t help_column = 36;
 
-/// Breaks text at blanks into lines that start at a column; the first line continues where the caller stands.
+/// Wraps text at blanks into lines that start at a column. The first line continues at the caller's position.
 std::string wrapped(std::string_view text, std::size_t column) {
   std::string result;
   std::size_t used = column;
@@ -36,7 +36,7 @@ std::string option_line(const Option& option) {
   std::string left =
       option.letter ? fmt::format("  -{}, --{}", option.letter, option.name) : fmt::format("      --{}", option.name);
   if (!option.is_switch()) left += fmt::format(" {}", option.value);
-  // A long list of words gets its own line.
+  // A long list of words gets a line of its own.
   if (left.size() + 2 > help_column) {
     left += '\n' + std::string(help_column, ' ');
   } else {

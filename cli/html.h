@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages: one HTML file each, with everything in it, so that it can be mailed or kept.
+// HTML pages of one file each, with everything embedded, so that they can be mailed or archived.
 #pragma once
 
 #include <string>
@@ -7,14 +7,15 @@
 
 namespace frontmost::cli {
 
-/// As the text of an element or of a quoted attribute; of any bytes, as printable_text() writes them.
+/// Escapes any bytes for the text of an element or a quoted attribute. Unprintable bytes become as printable_text()
+/// writes them.
 [[nodiscard]] std::string html_text(std::string_view text);
-/// The PNG file at a path, as the value of src. Precondition: it is there.
+/// The PNG file at `path` as a value of src. Precondition: the file exists.
 [[nodiscard]] std::string data_uri(const std::string& path);
 
-/// From the doctype to the body's tag. `style` is added to what all pages look like, light and dark.
+/// The page from the doctype to the body's start tag. `style` is added to the common style, for light and dark.
 [[nodiscard]] std::string html_head(std::string_view title, std::string_view style);
-/// What made the page, and the end.
+/// A line that names the program, and the end of the page.
 [[nodiscard]] std::string html_foot();
 
 }  // namespace frontmost::cli

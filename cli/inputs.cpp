@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files are compared by device and number, not by name: an output that is a link to the model, or the model by another
-// path, would replace it as well. What a model uses is known only when it has been read, and is compared then.
+// Files are compared by device and inode, not by name: an output that links to the model would replace it as well. The
+// files that a model uses are known after it was read, and are compared then.
 #include "cli/inputs.h"
 
 #include <fmt/format.h>

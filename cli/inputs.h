@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run reads: the model, and the other files, none of which an output may replace.
+// Input files of a run: the model and others. No output may replace an input.
 #pragma once
 
 #include <frontmost/scene.h>
@@ -15,40 +15,40 @@
 
 namespace frontmost::cli {
 
-/// Files are told by what they are on the disk, so that links of either kind lead to the same one.
+/// Files are identified by device and inode, so that links of either kind lead to the same file.
 class InputFiles {
  public:
-  /// `is` says what an output of the same name would be: "is the model itself". What is no ordinary file, or is not
-  /// there, cannot be replaced.
+  /// Adds a file. `is` describes an output of the same name: "is the model itself". A file that is missing or not
+  /// ordinary cannot be replaced and is ignored.
   void add(const std::filesystem::path& path, const std::string& is);
-  /// \throws UsageError naming the first output that is one of them.
+  /// \throws UsageError naming the first output that equals one of the files.
   void refuse_outputs(const std::vector<std::string>& outputs) const;
 
  private:
-  std::map<std::pair<std::uint64_t, std::uint64_t>, std::string> files_;  // by device and number there
+  std::map<std::pair<std::uint64_t, std::uint64_t>, std::string> files_;  // by device and inode
 };
 
-/// Whether the environment is read from a file, and not made by code.
+/// Whether the environment is a file, not a built-in one.
 [[nodiscard]] bool is_environment_file(const LightSettings& light);
-/// All that the settings name. \throws UsageError where standard input would be read for two of them.
+/// All files that the settings name. \throws UsageError if two of them are standard input.
 [[nodiscard]] InputFiles input_files(const Settings& settings);
 
-/// What a model turned out to use, known when it has been read: its material libraries, buffers and textures.
-/// \throws UsageError when one of them is an output.
+/// Checks files that a model uses, known after it was read: material libraries, buffers and textures. \throws
+/// UsageError if an output would replace one of them.
 void refuse_outputs_beside(const std::vector<std::filesystem::path>& used, const std::vector<std::string>& outputs);
 
-/// How the library is to run: with the threads and instructions that were asked for, and told of interruptions.
+/// Execution with the requested threads and instruction set, which reports interruptions.
 [[nodiscard]] Execution execution_for(const RunSettings& settings, const Progress& progress);
-/// Loads, and prints the reader's warnings to standard error unless quiet: a few, then how many more.
-/// \throws UsageError when a file that a model uses, such as a texture, is one of `outputs`.
+/// Loads the model and prints the reader's warnings to standard error unless quiet: a few, then the number of others.
+/// \throws UsageError if one of `outputs` would replace a file that the model uses, such as a texture.
 [[nodiscard]] Scene load_model(const Settings& settings, const Execution& execution, Progress& progress,
                                const std::vector<std::string>& outputs = {});
-/// The same of warnings alone.
+/// Prints warnings to standard error unless quiet: a few, then the number of others.
 void show_warnings(const std::vector<std::string>& warnings, const RunSettings& run, Progress& progress);
-/// The same of objects that reach out of the picture, and of a model that lies on its back: framing_warning(),
-/// up_warning().
+/// Prints framing_warning() and up_warning(): objects reach out of the picture, or the model lies on its back.
 void show_framing_warning(const Settings& settings, const Surfaces& surfaces, Progress& progress);
-/// The scene with its curved meshes cut for `view`, where --tessellation-error says how finely; none otherwise.
+/// The scene with its curved meshes cut into triangles for `view`, as --tessellation-error says; empty without that
+/// option.
 [[nodiscard]] std::optional<Scene> tessellated(const Scene& scene, const ViewSettings& settings, const View& view);
 
 }  // namespace frontmost::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON as text: indented, but a list of numbers stays on one line, so that a matrix is four lines and not sixteen.
+// JSON as indented text. A list of numbers stays on one line, so that a matrix takes four lines and not sixteen.
 #include "cli/json.h"
 
 #include <frontmost/base.h>
@@ -13,7 +13,7 @@
 namespace frontmost::cli {
 namespace {
 
-/// Texts are the only values that may hold what is no UTF-8, and keys are all this program's own.
+/// Only string values may hold invalid UTF-8; keys are this program's own.
 std::string scalar(const Json& json) {
   if (json.is_string()) return Json(utf8_text(json.get_ref<const std::string&>())).dump();
   return json.dump();
@@ -39,7 +39,7 @@ void append(const Json& json, std::size_t indent, std::string& text) {
   }
 }
 
-constexpr std::string_view list_indent = "    ";  // of an element: that of the object and that of the list
+constexpr std::string_view list_indent = "    ";  // of an element: one level for the object, one for the list
 
 /// dump() without the line break at its end.
 std::string text_of(const Json& json) {
@@ -63,7 +63,7 @@ std::string dump(const Json& json) {
 
 JsonListPrinter::JsonListPrinter(const Json& before, const std::string& list) {
   text_ = text_of(before);
-  text_.resize(text_.rfind('\n'));  // the brace that closes it comes at the end
+  text_.resize(text_.rfind('\n'));  // the closing brace follows at the end
   text_ += ",\n  " + text_of(list) + ": [";
 }
 
@@ -78,7 +78,7 @@ void JsonListPrinter::add(const Json& element) {
 }
 
 void JsonListPrinter::append(const Json& element) {
-  // Line breaks within texts are escaped: those that there are begin lines.
+  // Line breaks within strings are escaped, so each line break in the text starts a line.
   const std::string text = text_of(element);
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());

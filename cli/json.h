@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON as reports print it: vectors and matrices, the text of all of it, and long lists that are printed while they are
-// made.
+// JSON for reports: vectors and matrices, dump(), and long lists that are printed while they are made.
 #pragma once
 
 #include <frontmost/base.h>
@@ -12,7 +11,7 @@
 
 namespace frontmost::cli {
 
-/// Keys stay in the order in which they were set, which is the order to read them in.
+/// JSON whose keys keep the order in which they were set.
 using Json = nlohmann::ordered_json;
 
 template <int n, class T>
@@ -22,7 +21,7 @@ template <int n, class T>
   return result;
 }
 
-/// Four rows of four, as matrices are written on paper.
+/// A matrix as four rows of four, as written on paper.
 [[nodiscard]] inline Json to_json(const glm::dmat4& matrix) {
   Json rows = Json::array();
   for (int row = 0; row < 4; ++row) {
@@ -33,24 +32,24 @@ template <int n, class T>
   return rows;
 }
 
-/// JSON has no infinity; an infinite far plane is null.
+/// The value, or null if it is infinite, since JSON has no infinity (an infinite far plane).
 [[nodiscard]] inline Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-/// The least, the median and the greatest of the times that something took. Precondition: not empty.
+/// The least, median and greatest of several times. Precondition: not empty.
 [[nodiscard]] Json times_json(const std::vector<double>& times);
 
-/// \returns the text with a line break at the end. Texts are as utf8_text() writes them.
+/// \returns the text with a line break at the end. Strings are converted by utf8_text().
 [[nodiscard]] std::string dump(const Json& json);
 
-/// Prints an object that holds a long list, an element at a time: the text that dump() makes of the whole, without ever
-/// holding it.
+/// Prints an object with a long list, one element at a time. The text equals dump() of the whole, which is never in
+/// memory.
 class JsonListPrinter {
  public:
-  /// `before` are the members before the list, at least one.
+  /// `before` holds the members before the list, at least one.
   JsonListPrinter(const Json& before, const std::string& list);
-  /// What was added is printed when enough has come together.
+  /// Adds an element. The text is printed in large pieces.
   void add(const Json& element);
-  /// `after` are the members behind the list, at least one. Prints what is left.
+  /// `after` holds the members behind the list, at least one. Prints the rest.
   void finish(const Json& after);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost: the command-line program. Picks the command, and turns what is thrown into a line and an exit status.
+// frontmost: the command-line program. Selects the command, and turns exceptions into a message and an exit status.
 #include <fmt/format.h>
 #include <frontmost/version.h>
 
@@ -41,7 +41,7 @@ bool asks_for_help(const Arguments& words) {
 
 int run_command(const Command& command, Settings settings) {
   if (!command.bit) return command.run(settings);
-  // Before the first file is read: it may be a pipe that nobody writes to.
+  // Signals are caught before the first file is read, which may be a pipe that nobody writes to.
   catch_interruptions(settings.run.timeout);
   try {
     read_pose_file(settings.view);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The manual page frontmost(1) in man's macros, from the tables.
+// The manual page frontmost(1) in man's macros, generated from the tables.
 #include <fmt/format.h>
 #include <frontmost/version.h>
 
@@ -9,7 +9,7 @@
 namespace frontmost::cli {
 namespace {
 
-/// Text as it is: backslashes, hyphens and leading dots mean something to man.
+/// Escapes plain text: backslashes, hyphens and leading dots have a meaning for man.
 std::string plain(std::string_view text) {
   std::string result;
   for (const char c : text) {

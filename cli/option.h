@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One table of options: the parser, --help, the man page, shell completion and batch files are all read from it.
+// The tables of options. The parser, --help, the manual page, shell completion and batch files all read them.
 #pragma once
 
 #include <span>
@@ -62,30 +62,30 @@ enum CommandBit : unsigned {
                     for_lines | for_report | for_visible | for_explain
 };
 
-/// The text given for an option, and the words it may be.
+/// The text given for an option, and its allowed words.
 struct Given {
   std::string_view text, choices;
 
   [[nodiscard]] double number(const NumberLimits& range = any_number) const { return parse_number(text, range); }
   [[nodiscard]] int integer(const NumberLimits& range) const { return parse_integer(text, range); }
-  /// The order of the words in the table is the order of the enumerators.
+  /// Precondition: the words in the table are in the order of the enumerators.
   template <class Enum>
   [[nodiscard]] Enum choice() const {
     return static_cast<Enum>(parse_choice(text, choices));
   }
   [[nodiscard]] std::string string() const { return std::string(text); }
-  /// \throws UsageError on an empty one
+  /// \throws UsageError if the text is empty.
   [[nodiscard]] std::string file_name() const;
 };
 
 struct Option {
   std::string_view name;   ///< without dashes; also the key in a batch file
   char letter;             ///< "-o"; 0: none
-  std::string_view value;  ///< what follows: "FILE", "X,Y,Z", or "a|b|c" for one of these; empty: a switch
+  std::string_view value;  ///< the value: "FILE", "X,Y,Z", or "a|b|c" for one of these; empty: a switch
   std::string_view help;
   Group group;
   unsigned commands;
-  void (*apply)(Settings&, const Given&);  ///< throws UsageError on a value that cannot be meant
+  void (*apply)(Settings&, const Given&);  ///< throws UsageError for invalid values
 
   [[nodiscard]] bool is_switch() const { return value.empty(); }
   [[nodiscard]] bool is_file() const { return value.find("FILE") != std::string_view::npos; }
@@ -94,8 +94,8 @@ struct Option {
   }
 };
 
-/// The tables, in the order of the help; each stands with the command that it is of, or in a file of its own where
-/// several share it.
+/// The tables in the order of the help. Each is in the file of its command, or in a file of its own if several commands
+/// share it.
 [[nodiscard]] std::span<const Option> view_option_table();
 [[nodiscard]] std::span<const Option> depth_option_table();
 [[nodiscard]] std::span<const Option> precision_option_table();
@@ -109,7 +109,7 @@ struct Option {
 [[nodiscard]] std::span<const Option> batch_merge_option_table();
 [[nodiscard]] std::span<const Option> run_option_table();
 
-/// Calls visit(option) for every option, in the order of the help.
+/// Calls visit(option) for each option, in the order of the help.
 template <class Visit>
 void for_each_option(const Visit& visit) {
   for (const auto table :
@@ -120,9 +120,9 @@ void for_each_option(const Visit& visit) {
   }
 }
 
-/// Applies one option, and notes in the settings that it was said. \throws UsageError as Option::apply does.
+/// Applies one option and notes in the settings that it was given. \throws UsageError as Option::apply does.
 void apply_as_given(const Option& option, std::string_view text, Settings& settings);
-/// The same with the option's name in front of any complaint.
+/// Applies one option as above; errors begin with the option's name.
 void apply(const Option& option, std::string_view text, Settings& settings);
 
 }  // namespace frontmost::cli

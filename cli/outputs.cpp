@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names of files, checked as far as they can be before anything is drawn: a run of an hour must not end in "no such
-// folder". Suffixes say the format, --format what they do not say; two kinds in one file are channels of an OpenEXR
+// File names, checked as far as possible before anything is drawn: a run of an hour must not end in "no such folder".
+// Suffixes give the format; --format serves names without one. Two kinds in one file become channels of an OpenEXR
 // file.
 #include "cli/outputs.h"
 
@@ -24,7 +24,7 @@ constexpr std::string_view kind_names[] = {"picture", "deep",          "depth", 
 constexpr std::string_view format_names[] = {"png", "exr", "pfm", "npy", "jpg", "webp"};
 constexpr std::string_view given_formats = "png, exr, pfm, npy, jpg or webp";
 
-/// In small letters, without its dot; of the two of JPEG the shorter one.
+/// The suffix in lower case without its dot; "jpeg" becomes "jpg".
 std::string suffix_of(const std::string& path) {
   std::string suffix = fs::path(path).extension().string();
   for (char& c : suffix) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
@@ -71,14 +71,14 @@ void add(std::vector<FileToWrite>& files, const FileToWrite& added) {
   same->kinds.push_back(kind);
 }
 
-/// The same text for every spelling of a path.
+/// A canonical path, which is equal for all spellings of a path.
 std::string canonical(const std::string& path) {
   std::error_code ignored;
   const fs::path result = fs::weakly_canonical(fs::absolute(path, ignored), ignored);
   return result.empty() ? path : result.string();
 }
 
-/// Whether it makes a file of every layer. Others with {layer} in their names are refused by fill_template().
+/// Whether the request makes a file for each layer. fill_template() refuses {layer} in other names.
 bool is_of_layers(const OutputRequest& request) {
   if (request.path.find("{layer}") == std::string::npos) return false;
   if (request.kind == OutputKind::deep || request.kind == OutputKind::window_depth)
@@ -96,7 +96,7 @@ void check_writable(const std::string& path) {
   if (fs::is_directory(status)) refuse("is a folder");
   if (fs::exists(status)) {
     if (access(path.c_str(), W_OK) != 0) refuse("is not writable");
-    // A device or a pipe is written as it is; a file is replaced, which its folder must allow.
+    // A device or a pipe is written directly. A file is replaced, which its folder must permit.
     if (!fs::is_regular_file(status)) return;
   }
   fs::path folder = fs::path(path).parent_path();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options that say how to run; none changes any result.
+// Options that control the run; none changes any result.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace frontmost::cli {
 namespace {
 
 Isa isa_from(const Given& given) {
-  // The words leave out Isa::best, which is the default.
+  // The words omit Isa::best, which is the default.
   const Isa isa = Isa(parse_choice(given.text, given.choices) + int(Isa::scalar));
   const std::span<const Isa> available = available_isas();
   if (std::find(available.begin(), available.end(), isa) != available.end()) return isa;
@@ -80,7 +80,7 @@ std::string Given::file_name() const {
 
 void apply_as_given(const Option& option, std::string_view text, Settings& settings) {
   option.apply(settings, {text, option.choices()});
-  // Of how to run, the method alone may change what comes out; a hash is told beside it.
+  // Options of the run do not change results, except for the method. --hash only adds a report.
   if ((option.group == Group::run && option.name != "method") || option.name == "hash") return;
   RunningHash hash;
   hash.add(settings.said);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the user asked for, as said: filled from flags or from a batch file, resolved later.
+// The user's settings as given, by flags or by a batch file, to be resolved later.
 //
-// Nothing here is checked against anything else, or against a model. A value that was not given is none, so that code
-// which resolves it later can tell "not said" from the default, and a view of a batch can take what the command line
-// said.
+// Values are not checked against each other or against a model. A value that was not given is empty. So later code can
+// tell it from the default, and a view of a batch can inherit the command line's value.
 #pragma once
 
 #include <frontmost/base.h>
@@ -22,7 +21,7 @@
 
 namespace frontmost::cli {
 
-/// A depth buffer beside the exact default.
+/// State of a depth buffer that replaces the exact default.
 struct DepthSettings {
   bool is_used = false;
   DepthFormat format = DepthFormat::d24;
@@ -33,7 +32,7 @@ struct DepthSettings {
   PolygonOffset offset;
 };
 
-/// What the pixels' rays look like; all but pinholes are cast.
+/// The shape of the pixels' rays; all cameras but pinholes are ray cast.
 enum class CameraModel : std::uint8_t { pinhole, panorama, fisheye };
 
 /// The camera and the pixel grid.
@@ -50,13 +49,13 @@ struct ViewSettings {
   std::optional<std::array<double, 4>> intrinsics;  ///< fx, fy, cx, cy
   PixelRule pixel_rule = PixelRule::centre_at_integer;
   std::optional<glm::dmat4> pose;
-  std::optional<std::string> pose_file;  ///< where it comes from; `pose` is set by read_pose_file()
+  std::optional<std::string> pose_file;  ///< path of the pose's file; read_pose_file() sets `pose`
   std::optional<PoseConvention> pose_convention;
-  std::optional<FramedObjects> framed;  ///< which are fitted into the picture; the subject, where it is not given
+  std::optional<FramedObjects> framed;  ///< objects to fit into the picture; by default the subject
   std::optional<double> near, far;
   std::optional<glm::ivec2> resolution;
   Culling culling = Culling::none;
-  std::optional<int> samples;                ///< 1 to 16, or 64 of the A-buffer
+  std::optional<int> samples;                ///< 1 to 16, or 64 for the A-buffer
   std::optional<double> tessellation_error;  ///< pixels
   DepthSettings depth;
 };
@@ -81,11 +80,11 @@ struct OutputRequest {
 /// The light of lit pictures.
 struct LightSettings {
   std::optional<std::string> environment;  ///< a file, "studio", "sky" or "none"
-  /// All but the environment, which is made when the picture is drawn.
+  /// All options but the environment, which is made when the picture is drawn.
   LightOptions options;
 };
 
-/// What to write and how it looks.
+/// Outputs and their look.
 struct OutputSettings {
   std::vector<OutputRequest> files;
   std::optional<ImageFormat> format;
@@ -105,126 +104,125 @@ struct OutputSettings {
   std::optional<double> occlusion_radius;
   Blend blend = Blend::linear;
   LightSettings light;
-  bool visible_only = true;             ///< of figures
-  std::size_t most_polygons = 2000000;  ///< likewise
-  double color_tolerance = 6;           ///< likewise, in steps of 8 bits
-  bool merges_neighbours = false;       ///< likewise
-  std::optional<int> layers;            ///< how many of the nearest go to files with {layer} in their names
+  bool visible_only = true;             ///< for figures
+  std::size_t most_polygons = 2000000;  ///< for figures
+  double color_tolerance = 6;           ///< for figures, in steps of 8 bits
+  bool merges_neighbours = false;       ///< for figures
+  std::optional<int> layers;            ///< number of nearest layers for files with {layer} in their names
 };
 
-/// How visibility is found.
+/// The method that determines visibility.
 enum class Method : std::uint8_t { zbuffer, raycast, abuffer };
 
-/// Every `count`-th view, the first of them number - 1.
+/// Every `count`-th view; the first one is number - 1.
 struct Shard {
   int number = 1, count = 1;
 
   [[nodiscard]] bool contains(std::size_t view) const { return view % std::size_t(count) == std::size_t(number - 1); }
 };
 
-/// How to run.
+/// Options of the run.
 struct RunSettings {
-  std::optional<Method> method;  ///< none: the z-buffer, and the A-buffer for pictures that need it
+  std::optional<Method> method;  ///< empty: the z-buffer, or the A-buffer for pictures that need it
   int threads = 0;
   Isa isa = Isa::best;
   int repeat = 1;
   std::optional<double> timeout;
   bool json = false, quiet = false, stream = false;
-  bool mpi = false;  ///< streams together with other ranks
+  bool mpi = false;  ///< whether to stream together with other ranks
   std::optional<std::string> batch;
-  std::optional<Shard> shard;  ///< of the batch
+  std::optional<Shard> shard;  ///< part of the batch
 };
 
-/// What frontmost precision is to work out.
+/// Settings of frontmost precision.
 struct PrecisionSettings {
-  std::optional<DepthFormat> format;  ///< none: those in use
+  std::optional<DepthFormat> format;  ///< empty: common formats
   bool infinite = false;
-  std::optional<glm::dvec2> wanted;  ///< a gap, and the distance at which it is to be resolved
+  std::optional<glm::dvec2> wanted;  ///< a gap, and the distance at which it must be resolved
   std::optional<std::string> plot, heat_map;
 };
 
-/// What frontmost compare does.
+/// Settings of frontmost compare.
 struct CompareSettings {
-  std::optional<int> runs;  ///< none: default_runs, and one of a method that takes longer than longest_repeated
+  std::optional<int> runs;  ///< empty: default_runs, but 1 for a method slower than longest_repeated
   static constexpr int default_runs = 5;
   static constexpr double longest_repeated = 2000;  ///< milliseconds
 
   [[nodiscard]] int most_runs() const { return runs.value_or(default_runs); }
   bool explain = false;
-  std::optional<std::string> folder;  ///< of the page and its pictures
+  std::optional<std::string> folder;  ///< for the page and its pictures
 };
 
-/// What frontmost sight looks along.
+/// Settings of frontmost sight.
 struct SightSettings {
   std::optional<glm::dvec3> from, to;
   std::optional<std::string> pairs;
 };
 
-/// What frontmost lidar scans with.
+/// Settings of frontmost lidar.
 struct LidarSettings {
   std::optional<glm::dvec3> from, forward;
   std::optional<int> rings, steps;
   std::optional<glm::dvec2> elevations;       ///< lowest and highest, degrees
-  std::vector<double> ring_elevations;        ///< degrees; empty: rings are spread
+  std::vector<double> ring_elevations;        ///< degrees; empty: evenly spread
   std::optional<glm::dvec2> azimuths, range;  ///< degrees; least and greatest
   std::optional<std::string> directions;
   bool robot_axes = false;
   std::vector<std::string> outputs;
 };
 
-/// What frontmost lines draws, and on what.
+/// Settings of frontmost lines.
 struct DrawingSettings {
-  /// What a title block says (ISO 7200); none: not given.
+  /// Texts of a title block (ISO 7200); empty: not given.
   struct TitleTexts {
     std::optional<std::string> title, number, author, date, owner;
   };
 
-  SheetOptions sheet;  ///< all that the library is told as it was said
+  SheetOptions sheet;  ///< options that are passed to the library unchanged
   std::optional<ProjectionMethod> projection;
   std::optional<double> hatch_angle;  ///< radians
-  std::optional<glm::dvec3> light;    ///< towards it: to the right, upwards and to the viewer
+  std::optional<glm::dvec3> light;    ///< direction to the light: right, up, towards the viewer
   std::optional<bool> casts_shadows;
   bool frame = false;
   TitleTexts texts;
-  int number = 1, count = 1;  ///< of the sheet, where several models are given
+  int number = 1, count = 1;  ///< of the sheet, if there are several models
   std::optional<PageFormat> format;
   std::vector<std::string> outputs;
-  std::vector<std::string> books;  ///< of `outputs`, the files that hold the sheets of several models as pages
+  std::vector<std::string> books;  ///< files with the sheets of several models as pages
 
   [[nodiscard]] bool is_sheet() const { return !sheet.views.empty() || !sheet.sections.empty(); }
-  /// A title block needs a frame.
+  /// Whether there is a frame, which a title block needs, too.
   [[nodiscard]] bool has_frame() const {
     return frame || texts.title || texts.number || texts.author || texts.date || texts.owner;
   }
 };
 
-/// What frontmost report counts, and where it goes.
+/// Settings of frontmost report.
 struct ReportSettings {
-  double canvas = 3;                ///< as AccountingOptions::canvas
-  bool all_hiders = false;          ///< likewise
+  double canvas = 3;                ///< AccountingOptions::canvas
+  bool all_hiders = false;          ///< AccountingOptions::all_hiders
   std::optional<std::string> page;  ///< HTML
   std::optional<std::string> coco;  ///< JSON
   bool coco_polygons = false;
   std::optional<std::string> masks;       ///< a folder
-  std::optional<std::string> categories;  ///< a file that says which object has which
+  std::optional<std::string> categories;  ///< a file that assigns categories to objects
   std::optional<std::string> bop;         ///< a folder
   std::optional<BopVisible> bop_visible;
-  std::vector<std::string> leave_out;  ///< names of objects or categories that these three leave out
-  std::optional<std::string> why;      ///< the name or number of the objects of which alone something is said
+  std::vector<std::string> leave_out;  ///< objects or categories that --coco, --masks and --bop omit
+  std::optional<std::string> why;      ///< name or number of the objects to report; others are omitted
   std::optional<std::string> views;    ///< a batch file
 };
 
-/// What frontmost visible looks from, and where its lists go.
+/// Settings of frontmost visible.
 struct VisibleSettings {
   std::optional<std::string> views;        ///< a batch file
-  std::optional<int> sphere;               ///< how many views from all around
-  std::vector<std::string> outputs, kept;  ///< lists and coloured models; models of what is seen alone
+  std::optional<int> sphere;               ///< number of views from all around
+  std::vector<std::string> outputs, kept;  ///< lists and coloured models; models of visible faces
 };
 
 struct Settings {
   std::string model;
-  std::vector<std::string>
-      more_models;  ///< of `render`: drawn together with the first; of `lines`: sheets of their own
+  std::vector<std::string> more_models;  ///< `render` draws them with the first; `lines` gives each a sheet
   LoadOptions load;
   ViewSettings view;
   PrecisionSettings precision;
@@ -236,8 +234,8 @@ struct Settings {
   VisibleSettings visible;
   OutputSettings output;
   RunSettings run;
-  std::optional<std::string> merge_folder;  ///< of `batch-merge`
-  std::uint64_t said = 0;                   ///< a hash of all options that may change a result, as they were given
+  std::optional<std::string> merge_folder;  ///< for `batch-merge`
+  std::uint64_t said = 0;                   ///< hash of all given options that may change a result
 };
 
 }  // namespace frontmost::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long things take: in all, and the steps of a drawing, as draw_sheet() and draw_view() tell them to a watch.
+// Times: of a whole run, and of the steps of a drawing, which draw_sheet() and draw_view() report to a watch.
 #pragma once
 
 #include <frontmost/base.h>
@@ -12,14 +12,14 @@
 
 namespace frontmost::cli {
 
-/// The middle one of them, or the mean of the two in the middle. Precondition: not empty.
+/// The median: the middle value, or the mean of the two middle values. Precondition: not empty.
 [[nodiscard]] inline double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t middle = values.size() / 2;
   return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) * 0.5;
 }
 
-/// Milliseconds since it was made.
+/// Milliseconds since its construction.
 class Stopwatch {
  public:
   [[nodiscard]] double milliseconds() const {
@@ -32,11 +32,11 @@ class Stopwatch {
 
 class StepTimes {
  public:
-  /// `execution` must stay as long as this, with its watch.
+  /// `execution` and its watch must outlive this object.
   explicit StepTimes(const Execution& execution) : given_(execution) {
     if (execution.watch) watch_ = *execution.watch;
     watch_.progress = [this, show = watch_.progress](std::string_view stage, double fraction) {
-      // The thread that draws tells these alone; other stages are told by several at a time.
+      // Only the drawing thread reports these stages; several threads may report others at once.
       for (const std::string_view step : {"views", "rounds", "layout", "tones", "page"})
         if (step == stage) begin(step);
       if (show) show(stage, fraction);
@@ -45,15 +45,15 @@ class StepTimes {
   StepTimes(const StepTimes&) = delete;
   StepTimes& operator=(const StepTimes&) = delete;
 
-  /// What is to be timed runs with this.
+  /// Execution for the work to be timed.
   [[nodiscard]] Execution execution() const { return {given_.threads, given_.isa, &watch_}; }
-  /// Ends the last step, and begins one of that name.
+  /// Ends the current step and begins the one called `step`.
   void begin(std::string_view step) {
     milliseconds_[step_] += stopwatch_.milliseconds();
     step_ = step;
     stopwatch_ = {};
   }
-  /// By the names of the steps that have ended.
+  /// Milliseconds of the finished steps, by name.
   [[nodiscard]] const std::map<std::string, double>& milliseconds() const { return milliseconds_; }
 
  private:

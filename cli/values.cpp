@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From text to values, by std::from_chars: no locale, no trailing garbage, no hexadecimal surprises.
+// Converts text to values by std::from_chars: independent of the locale, with errors for trailing text and hexadecimal.
 #include "cli/values.h"
 
 #include <fmt/format.h>
@@ -16,12 +16,13 @@
 namespace frontmost::cli {
 namespace {
 
-// from_chars takes no leading '+', which users do write: "+1,0,0".
+// Removes a leading '+', which from_chars refuses, but users write: "+1,0,0".
 std::string_view without_plus(std::string_view text) {
   return text.size() > 1 && text[0] == '+' && text[1] != '-' ? text.substr(1) : text;
 }
 
-/// What from_chars() leaves alone: a number that rounds to infinity, or to nothing. The text is whole.
+/// A number that from_chars() refuses because it rounds to infinity or to zero. Precondition: the whole text is a
+/// number.
 double beyond_doubles(std::string_view text) { return std::strtod(std::string(text).c_str(), nullptr); }
 
 std::optional<double> to_double(std::string_view text) {
@@ -69,7 +70,7 @@ std::optional<glm::vec3> hex_color(std::string_view text) {
   return color;
 }
 
-/// Insertions, deletions, replacements and swaps of neighbours that turn one word into the other.
+/// The number of insertions, deletions, replacements and swaps of neighbours that turn one word into the other.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before, row(b.size() + 1), above;
   std::iota(row.begin(), row.end(), 0u);
@@ -101,7 +102,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 double parse_number(std::string_view text, const NumberLimits& range) {
   const std::optional<double> value = to_double(trimmed(text));
   if (!value) throw UsageError(fmt::format("{} is not a number", quoted(text)));
-  // Written so that NaN fails.
+  // The comparison fails for NaN.
   if (!(*value >= range.low && *value <= range.high)) {
     const std::string shown = shortened(text);
     if (range.low == any_number.low) throw UsageError(fmt::format("{} is not a usable number", shown));
@@ -142,7 +143,7 @@ glm::dvec3 parse_direction(std::string_view text) {
 
 int parse_choice(std::string_view text, std::string_view choices) {
   const std::vector<std::string_view> words = split(choices, '|');
-  // Some words are names in capitals elsewhere (LESS, D24), and nobody should have to remember which.
+  // Case is ignored, because some words are capitals elsewhere (LESS, D24).
   const auto same = [&](std::string_view word) {
     return std::equal(word.begin(), word.end(), text.begin(), text.end(),
                       [](char a, char b) { return lower(a) == lower(b); });
@@ -213,9 +214,9 @@ std::string quoted(std::string_view text) { return "'" + shortened(text) + "'"; 
 
 std::string_view nearest_word(std::string_view word, std::span<const std::string_view> candidates) {
   constexpr std::size_t longest = 64;
-  if (word.size() > longest) return {};  // no word is that long, and the distance takes the product of both lengths
+  if (word.size() > longest) return {};  // no choice is that long, and the time is the product of both lengths
   std::string_view best;
-  // A third of the letters wrong is still a typing mistake; more is another word.
+  // A third of the letters may be wrong; beyond that, another word is meant.
   std::size_t best_distance = std::max<std::size_t>(word.size() / 3, 1) + 1;
   for (const std::string_view candidate : candidates) {
     const std::size_t distance = edit_distance(word, candidate);

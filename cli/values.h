@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From text to values, the same for flags and batch files: whole text, finite, in range, in any locale.
+// Converts text to values, for flags and batch files alike. All of the text must be valid, finite and in range, in any
+// locale.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -19,31 +20,31 @@ struct NumberLimits {
 };
 inline constexpr NumberLimits any_number{-1e30, 1e30};
 
-/// Every function throws UsageError saying what is wrong with the text and what would be right; the caller puts the
-/// flag's name in front.
+/// All functions throw UsageError with what is wrong and what would be right; the caller prepends the flag's name.
 [[nodiscard]] double parse_number(std::string_view text, const NumberLimits& range = any_number);
 [[nodiscard]] int parse_integer(std::string_view text, const NumberLimits& range);
 /// Exactly `count` numbers, or between `count` and `most`, separated by commas.
 [[nodiscard]] std::vector<double> parse_numbers(std::string_view text, std::size_t count,
                                                 const NumberLimits& range = any_number);
 [[nodiscard]] glm::dvec3 parse_vector(std::string_view text);
-/// As parse_vector, or an axis such as "x", "+Z" or "-y"; not zero.
+/// A vector, or an axis such as "x", "+Z" or "-y". The result is not zero.
 [[nodiscard]] glm::dvec3 parse_direction(std::string_view text);
-/// The place of `text` among `choices`, which are separated by '|'.
+/// The index of `text` among `choices`, which are separated by '|'.
 [[nodiscard]] int parse_choice(std::string_view text, std::string_view choices);
 /// A colour as sRGB 0 to 1: "#rgb", "#rrggbb", "r,g,b" from 0 to 1, or one of a few names.
 [[nodiscard]] glm::vec3 parse_color(std::string_view text);
-/// 16 numbers (or 12: the last row is 0 0 0 1), row by row; commas, blanks, brackets and semicolons separate.
-/// None: not numbers at all.
+/// 16 numbers (or 12: the last row is 0 0 0 1), row by row, separated by commas, blanks, brackets and semicolons. Empty
+/// if the text holds no numbers.
 [[nodiscard]] std::optional<glm::dmat4> parse_matrix(std::string_view text);
-/// Its parts: takes the next number's text away, empty at the end; and makes the matrix of the numbers.
+/// Parts of parse_matrix(): the first removes the next number from the text and returns it, empty at the end. The
+/// second makes the matrix.
 [[nodiscard]] std::string_view take_matrix_word(std::string_view& text);
 [[nodiscard]] glm::dmat4 matrix_of(std::vector<double> values);
-/// As messages show what they complain of: its start alone where it is long; and in quotes.
+/// Text for error messages: shortened() cuts long text; quoted() also adds quotes.
 [[nodiscard]] std::string shortened(std::string_view text);
 [[nodiscard]] std::string quoted(std::string_view text);
 
-/// The candidate nearest to a mistyped word, if one is near enough to be meant; empty otherwise.
+/// The candidate nearest to a mistyped word; empty if none is near enough.
 [[nodiscard]] std::string_view nearest_word(std::string_view word, std::span<const std::string_view> candidates);
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
 

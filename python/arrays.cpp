@@ -22,7 +22,7 @@ bool fits(const py::array& array, const ArrayShape& shape) {
   return true;
 }
 
-/// Integers of any kind as 32 bits. \throws py::value_error naming the first that is out of range.
+/// Converts integers of any kind to 32 bits. \throws py::value_error naming the first number that is out of range.
 template <class T>
 void convert_indices(const py::array& given, const std::string& name, std::uint64_t end, std::uint32_t* out) {
   const auto values = Array<T>::ensure(given);
@@ -30,7 +30,7 @@ void convert_indices(const py::array& given, const std::string& name, std::uint6
   const py::ssize_t size = values.size();
   bool is_good = true;
   for (py::ssize_t i = 0; i < size; ++i) {
-    is_good &= std::uint64_t(in[i]) < end;  // negative ones are beyond any end
+    is_good &= std::uint64_t(in[i]) < end;  // negative numbers become greater than `end`
     out[i] = std::uint32_t(in[i]);
   }
   if (is_good) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Of every object how much is seen, and why not the rest; masks.
+// For each object, how much is visible and why the rest is not; masks.
 #include <frontmost/report.h>
 #include <pybind11/stl.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 using namespace py::literals;
 
-/// An array with an element for each object.
+/// An array with one element for each object.
 template <class T, class ValueOf>
 Array<T> by_object(const Accounting& accounts, const ValueOf& value_of_account) {
   Array<T> out(py::ssize_t(accounts.objects.size()));
@@ -67,7 +67,7 @@ std::shared_ptr<const Accounting> account_of(const HeldVisible& held, double can
 
 // Explanations.
 
-/// Python's Explanation, with the scene for its texts.
+/// Python's Explanation. Keeps the scene for its texts.
 struct HeldExplanation {
   std::shared_ptr<const KeptScene> scene;
   Explanation said;

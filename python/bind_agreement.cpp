@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether two answers may both be right: every sample at which they part is put to exact arithmetic.
+// Compares two answers: exact arithmetic decides at each differing sample whether both may be right.
 #include <frontmost/precision.h>
 #include <pybind11/stl.h>
 

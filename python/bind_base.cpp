@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Errors, versions and numbers that every subject shares.
+// Errors, versions and conversions that all subjects share.
 #include <frontmost/base.h>
 #include <frontmost/version.h>
 
@@ -26,7 +26,7 @@ const char* word_of(ErrorCode code) {
   return "";
 }
 
-/// Python's Error; kept for the time of the process, as the interpreter keeps the module.
+/// Python's Error. The reference is kept as long as the process, as the interpreter keeps the module.
 PyObject* error_type = nullptr;
 
 void translate(std::exception_ptr thrown) {
@@ -43,7 +43,7 @@ void translate(std::exception_ptr thrown) {
   }
 }
 
-/// PyTorch and others know few operations on unsigned numbers.
+/// Converts ids to signed integers, because PyTorch and others support few operations on unsigned ones.
 py::array signed_ids(const py::array& ids, const std::string& dtype) {
   if (ids.dtype().kind() != 'u' || ids.itemsize() != sizeof(PrimitiveId))
     throw py::type_error("ids: must be an array of uint32");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of data sets, as frontmost report writes them: COCO, BOP and masks, of one view or of many; categories.
+// Data sets, as frontmost report writes them: COCO, BOP and masks, of one view or many; categories.
 #include <frontmost/files.h>
 #include <frontmost/report.h>
 #include <pybind11/stl.h>
@@ -25,14 +25,14 @@ std::string path_of(const py::object& path) {
   return py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
 }
 
-/// How views are counted and run.
+/// Options of counting and running.
 struct Counting {
   double canvas;
   int threads;
   py::object progress;
 };
 
-/// Writes one Visible, or each that an iterable gives. `names` gives the pictures' names, or is None.
+/// Writes one Visible, or all that an iterable yields. `names` yields the pictures' names, or is None.
 std::vector<std::string> write_views(DatasetOptions options, const py::object& seen, const py::object& names,
                                      const Counting& counting) {
   const bool is_one = py::isinstance<HeldVisible>(seen);
@@ -91,7 +91,7 @@ std::vector<std::string> write_masks(const py::object& folder, const py::object&
   return write_views(options, seen, py::none(), {1, threads, progress});
 }
 
-/// By way of what a file of categories says, so that the rules are the same.
+/// Sets categories by making the text of a category file, so that the same rules apply.
 void set_categories(HeldScene& held, const py::dict& of_objects) {
   py::dict objects;
   py::list categories, known;

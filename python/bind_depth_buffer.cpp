@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The depth buffer with OpenGL's state: triangles in the order of their numbers, depths as they are stored.
+// The depth buffer with OpenGL's state: triangles are drawn in the order of their numbers, and depths are stored as in
+// the buffer's format.
 #include <frontmost/zbuffer.h>
 #include <pybind11/stl.h>
 
@@ -28,7 +29,7 @@ namespace {
 
 using namespace py::literals;
 
-/// Python's DepthBuffer: of one Surfaces, whose ids it keeps.
+/// Python's DepthBuffer. Its ids belong to one Surfaces, which it keeps.
 struct HeldDepthBuffer {
   HeldDepthBuffer(int width, int height, int samples, DepthFormat format)
       : shape{samples, height, width}, buffer(width, height, samples, format) {}
@@ -38,10 +39,10 @@ struct HeldDepthBuffer {
   std::shared_ptr<HeldSurfaces> of;
   std::uint64_t moves = 0;  ///< HeldSurfaces::moves at the last draw
   std::optional<View> view;
-  std::mutex drawing;  ///< never waited for with the interpreter's lock
+  std::mutex drawing;  ///< never waited for while holding the interpreter's lock
 };
 
-/// Runs with the buffer to itself.
+/// Calls `work` with exclusive access to the buffer.
 template <class Work>
 auto with(HeldDepthBuffer& held, int threads, const py::object& progress, const Work& work) {
   return run(threads, progress, [&](const Execution& execution) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes made of others: cut by a plane, and with curved meshes as fine as a view needs them.
+// Scenes derived from others: cut by a plane, or with curved meshes tessellated for a view.
 #include <frontmost/lines.h>
 #include <frontmost/view.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Visible faces: every triangle of which a part is seen, from one place or from many, as records.
+// Visible faces as records: all triangles that are visible at least in part, from one place or from many.
 #include <frontmost/report.h>
 #include <pybind11/stl.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 using namespace py::literals;
 
-// Records are packed as those of tables in files are.
+// Records are packed like those of tables in files.
 #pragma pack(push, 1)
 struct VisibleFaceRecord {
   std::uint32_t primitive, object, triangle;

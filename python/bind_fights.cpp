@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which faces a depth buffer cannot tell apart, where, and what ends it.
+// Faces that a depth buffer cannot tell apart, their places, and remedies.
 #include <frontmost/precision.h>
 #include <pybind11/stl.h>
 
@@ -38,7 +38,7 @@ struct FightingObjectsRecord {
 struct HeldFightAreas {
   std::shared_ptr<HeldSurfaces> of;
   std::shared_ptr<const FightAreas> found;
-  std::uint64_t moves = 0;  ///< HeldSurfaces::moves when they were found
+  std::uint64_t moves = 0;  ///< HeldSurfaces::moves at the time of the search
 };
 
 HeldFightAreas areas_of(const std::shared_ptr<HeldSurfaces>& held, const View& view, DepthFormat format, bool reversed,
@@ -62,7 +62,7 @@ py::list polygons_of_areas(const HeldFightAreas& areas) {
   return polygons;
 }
 
-// What ends it.
+// Remedies.
 
 py::list remedies_of(const HeldExact& exact, const DepthSetup& setup, int threads, const py::object& progress) {
   exact.check_current();
@@ -75,7 +75,7 @@ py::list remedies_of(const HeldExact& exact, const DepthSetup& setup, int thread
   return list;
 }
 
-/// (object, factor, units), or None.
+/// The offset (object, factor, units), or None.
 py::object offset_of_pair(const HeldFightAreas& areas, const HeldExact& exact, std::size_t pair, int threads,
                           const py::object& progress) {
   const FightAreas& found = *areas.found;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is in a scene, and what is odd in it, as dicts of numbers.
+// Statistics and oddities of a scene, as dicts of numbers.
 #include <frontmost/report.h>
 
 #include <shared_mutex>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything that a pixel sees: layers in the order of depth, and fragments as data.
+// All surfaces of a pixel: layers in the order of depth, and fragments as data.
 #include <frontmost/abuffer.h>
 #include <pybind11/stl.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hidden lines: feature edges as segments, seen and hidden, with their kinds.
+// Hidden lines: feature edges as visible and hidden segments, with their kinds.
 #include <frontmost/lines.h>
 #include <pybind11/stl.h>
 
@@ -18,7 +18,7 @@ using namespace py::literals;
 constexpr const char* kind_words[] = {"boundary", "silhouette", "border", "crease", "intersection"};
 static_assert(std::size(kind_words) == edge_kind_count);
 
-/// An array with a row for each of `things`, of numbers that `write` puts down.
+/// An array with one row for each of `things`; `write` fills the row.
 template <class T, class Thing, class Write>
 Array<T> written(const std::vector<Thing>& things, const ArrayShape& row, const Write& write) {
   ArrayShape shape{py::ssize_t(things.size())};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models as files: read and written; scenes made by code.
+// Reading and writing of model files; scenes made by code.
 #include <frontmost/files.h>
 #include <pybind11/stl.h>
 
@@ -51,7 +51,7 @@ std::vector<T> column_of(const Array<T>& values) {
   return {values.data(), values.data() + values.size()};
 }
 
-/// A property of every triangle: bytes and bools as bytes, other integers as 32 bits, floats as doubles.
+/// A property of all triangles: bytes and bools become bytes, other integers 32 bits, floats doubles.
 TableColumn column_from(const std::string& name, const py::handle& given, py::ssize_t rows) {
   const std::string argument = "of_triangles: " + name;
   const py::array array = py::array::ensure(given);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Occlusion culling: which objects, and boxes, are certainly hidden in a view.
+// Occlusion culling: objects and boxes that are certainly hidden in a view.
 #include <frontmost/occlusion.h>
 
 #include <mutex>
@@ -25,14 +25,14 @@ namespace {
 
 using namespace py::literals;
 
-/// Python's Occlusion: it keeps the surfaces, and serves one thread after another.
+/// Python's Occlusion. Keeps the surfaces, and serves one thread at a time.
 struct HeldOcclusion {
   HeldOcclusion(std::shared_ptr<HeldSurfaces> surfaces, ObjectUnit unit, const Execution& execution)
       : of(std::move(surfaces)), occlusion(of->surfaces, unit, execution) {}
 
   const std::shared_ptr<HeldSurfaces> of;
   Occlusion occlusion;
-  std::mutex asking;  ///< never waited for with the interpreter's lock
+  std::mutex asking;  ///< never waited for while holding the interpreter's lock
 };
 
 std::unique_ptr<HeldOcclusion> occlusion_of(const std::shared_ptr<HeldSurfaces>& of, ObjectUnit unit, int threads,
@@ -81,7 +81,7 @@ py::array_t<bool> are_hidden(HeldOcclusion& held, const py::object& given) {
   return out;
 }
 
-/// A number for each object.
+/// An array with one number for each object.
 template <class NumberOf>
 Array<std::uint32_t> numbers_of_objects(const Occlusion& occlusion, const NumberOf& number_of) {
   Array<std::uint32_t> out(py::ssize_t(occlusion.object_count()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The painter's order: polygons, each before those that are painted over it, and what of each is seen.
+// The painter's order: polygons from back to front, and the visible parts of each.
 #include <frontmost/painter.h>
 
 #include <shared_mutex>
@@ -21,10 +21,10 @@ namespace {
 
 using namespace py::literals;
 
-/// Python's PaintOrder, and its VisibleParts: they keep the surfaces.
+/// Python's PaintOrder and VisibleParts. They keep the surfaces.
 struct HeldOrder {
   std::shared_ptr<HeldSurfaces> of;
-  std::uint64_t moves;  ///< HeldSurfaces::moves when it was found
+  std::uint64_t moves;  ///< HeldSurfaces::moves at the time of the search
   std::shared_ptr<const PaintOrder> order;
 };
 struct HeldParts {
@@ -85,7 +85,7 @@ py::array_t<bool> cuts_of(const std::vector<PaintCorner>& corners) {
   return out;
 }
 
-/// polygons, corners, is_cut and their number; `list_of` gives what has them.
+/// Binds polygons, corners, is_cut and their number. `list_of(held)` returns the object that has them.
 template <class Class, class ListOf>
 void bind_polygons(Class& bound, const std::string& name, const ListOf& list_of) {
   using Held = typename Class::type;

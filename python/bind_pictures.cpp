@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures: shaded, as files, and as arrays.
+// Pictures: shading, files, and arrays.
 #include <frontmost/files.h>
 #include <frontmost/pictures.h>
 
@@ -38,7 +38,7 @@ py::object shown(py::object array) {
   return array.attr("view")(py::module_::import("frontmost._bitmap").attr("Bitmap"));
 }
 
-// Arrays as images.
+// Conversion of arrays to images.
 
 template <class T>
 Buffer<T> buffer_of(const Array<T>& values) {
@@ -47,7 +47,7 @@ Buffer<T> buffer_of(const Array<T>& values) {
   return buffer;
 }
 
-/// A plane of floats, or of whole numbers from 0 to 2^32 - 1; masks are 0 and 1, floats as luminance.
+/// A channel of floats, or of integers from 0 to 2^32 - 1. Masks are 0 and 1, or floats if the channel is luminance.
 Channel channel_of(const std::string& name, const py::handle& given, const ArrayShape& shape) {
   const py::array array = py::array::ensure(given);
   if (array && array.dtype().kind() == 'b' && name == "Y")
@@ -58,7 +58,7 @@ Channel channel_of(const std::string& name, const py::handle& given, const Array
   return {name, buffer_of(indices(given, name, shape, std::uint64_t(1) << 32))};
 }
 
-/// Of a dict: a plane for each name.
+/// An image from a dict, with one plane for each name.
 Image image_of_planes(const py::dict& planes) {
   Image image;
   for (const auto& [key, plane] : planes) {
@@ -74,7 +74,7 @@ Image image_of_planes(const py::dict& planes) {
   return image;
 }
 
-/// Of (height, width, 3 or 4) floats: linear light, multiplied by alpha.
+/// An image from (height, width, 3 or 4) floats: linear light, premultiplied.
 Image image_of_colors(const py::array& array) {
   const auto values = numbers<float>(array, "image", {-1, -1, array.shape(2)});
   Image image;
@@ -129,7 +129,7 @@ py::dict load_picture(const py::object& path) {
   return planes;
 }
 
-// Pictures of what is visible.
+// Pictures of visible surfaces.
 
 Bitmap shaded_bitmap(const HeldVisible& held, const ShadeOptions& options, const Execution& execution) {
   const std::shared_lock lock(held.of->scene->reading);

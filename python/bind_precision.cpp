@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a depth buffer can tell apart: as a function of distance, and against the exact answer in a picture.
+// Resolution of a depth buffer: as a function of distance, and compared with the exact answer in a picture.
 #include <frontmost/pictures.h>
 #include <frontmost/precision.h>
 #include <frontmost/zbuffer.h>
@@ -19,9 +19,9 @@ namespace {
 
 using namespace py::literals;
 
-// A function of distance.
+// Resolution as a function of distance.
 
-/// A function of a setup and distances, whose shape the answers have.
+/// A function of a setup and an array of distances. The result has the array's shape.
 template <class Function>
 auto of_distances(const Function& function) {
   return [function](const DepthSetup& setup, const py::array_t<double>& distance) {
@@ -47,7 +47,7 @@ void bind_setup(py::module_& m) {
   py::class_<DepthSetup>(m, "DepthSetup", doc("DepthSetup"))
       .def(py::init([](double near, double far, DepthFormat format, bool reversed, bool orthographic) {
              const DepthSetup setup{{near, far}, format, reversed, orthographic};
-             (void)resolvable_gap(setup, near);  // refuses planes out of range
+             (void)resolvable_gap(setup, near);  // throws for planes out of range
              return setup;
            }),
            "near"_a, "far"_a, py::kw_only(), "format"_a = DepthFormat::d24, "reversed"_a = false,
@@ -76,7 +76,7 @@ void bind_setup(py::module_& m) {
       .def("__repr__", &described_setup);
 }
 
-// Of a picture.
+// Resolution in a picture.
 
 struct FightingPairRecord {
   std::uint32_t seen, nearer;
@@ -113,7 +113,7 @@ HeldDepthFights fights_of(const HeldExact& exact, const HeldVisible& answer, int
           })};
 }
 
-/// Over the model, lit before black.
+/// The heat map over the lit model, on black.
 py::object heat_map(const HeldDepthFights& fights, int threads, const py::object& progress) {
   fights.by.check_current();
   return bitmap_array(run(threads, progress, [&](const Execution& execution) {

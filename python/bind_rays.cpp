@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays one by one: what is met, and what is in the way.
+// Single rays: hits and obstacles.
 #include <frontmost/raycast.h>
 #include <pybind11/stl.h>
 
@@ -16,10 +16,10 @@ namespace {
 
 using namespace py::literals;
 
-/// (n, 3), or (3,), which is for all.
+/// Rows of an (n, 3) array, or one row (3,) for all queries.
 struct Rows {
   Array<float> values;
-  py::ssize_t count;  ///< -1: any
+  py::ssize_t count;  ///< -1: one row for any number of queries
 
   [[nodiscard]] glm::vec3 at(py::ssize_t i) const {
     const float* const v = values.data() + (count < 0 ? 0 : 3 * i);
@@ -35,7 +35,7 @@ Rows rows_of(const py::handle& given, const std::string& name) {
   return {std::move(values), count};
 }
 
-/// One query for each pair of rows. \throws py::value_error where there are not as many of both.
+/// One query for each pair of rows. \throws py::value_error if the numbers of rows differ.
 template <class Query>
 std::vector<Query> queries_of(const py::handle& first, const char* first_name, const py::handle& second,
                               const char* second_name) {
@@ -89,7 +89,7 @@ py::tuple all_hits_of(const std::shared_ptr<HeldRayIndex>& held, const py::objec
   return py::make_tuple(hits_of(held->of, hits), owned(std::move(first), {size}));
 }
 
-/// Bytes of 0 and 1 as an array of bool.
+/// Converts bytes of 0 and 1 to an array of bool.
 py::object mask_of(Buffer<std::uint8_t>&& answers) {
   const auto size = py::ssize_t(answers.size());
   return owned(std::move(answers), {size}).attr("view")("bool");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras that only rays can serve: panorama, fisheye, laser scanners.
+// Cameras that need rays: panorama, fisheye, laser scanners.
 #include <frontmost/raycast.h>
 #include <pybind11/stl.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 using namespace py::literals;
 
-/// Python's RangeScan, with the index that met it.
+/// Python's RangeScan, with the index that its rays were cast in.
 struct HeldScan {
   std::shared_ptr<HeldRayIndex> by;
   std::shared_ptr<const RangeScan> scan;
@@ -84,7 +84,7 @@ HeldScan scan_of(const std::shared_ptr<HeldRayIndex>& held, const RayCamera& cam
           })};
 }
 
-/// (height, width, 3): where rays meet something, in the space that `out_from_world` leads to; NaN elsewhere.
+/// Points of the hits, (height, width, 3), in the space that `out_from_world` maps to; NaN without a hit.
 Array<double> points_of(const HeldScan& held, const glm::dmat4& out_from_world) {
   Array<double> points(ArrayShape{held.scan->height, held.scan->width, 3});
   double* out = points.mutable_data();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes: made of arrays, and looked into.
+// Scenes: made of arrays, and inspected.
 #include <frontmost/scene.h>
 #include <pybind11/stl.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 using namespace py::literals;
 
-/// One of a scene's objects or meshes, for looking at: it keeps the scene.
+/// An object or a mesh of a scene, read only. Keeps the scene.
 struct HeldObject {
   std::shared_ptr<const KeptScene> scene;
   std::uint32_t number;
@@ -30,7 +30,7 @@ struct HeldMesh {
   [[nodiscard]] const Mesh& get() const { return scene->meshes[number]; }
 };
 
-/// Where an object is, in the coordinates of the file.
+/// The object's pose, in the coordinates of the file.
 Array<double> pose_of_object(const HeldObject& object) {
   return array_of(run(1, py::none(), [&](const Execution&) {
     const std::shared_lock lock(object.scene->reading);
@@ -38,7 +38,7 @@ Array<double> pose_of_object(const HeldObject& object) {
   }));
 }
 
-/// What makes an object of arrays, as arguments.
+/// Arguments that make an object of arrays.
 struct ObjectArrays {
   py::object vertices, faces, name, pose, color, vertex_colors, face_colors, normals, texcoords, texture;
 };
@@ -93,8 +93,8 @@ Texture texture_of(const py::handle& given) {
 
 // Objects.
 
-/// Where doubles are told from that lie far from zero for their size, as fitting_origin() has it: rounded, so that what
-/// is left is exact.
+/// The origin for doubles that lie far from zero for their size, by the rule of fitting_origin(). The origin is
+/// rounded, so that subtracting it is exact.
 glm::dvec3 offset_of(const Array<double>& vertices) {
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
   const double* const in = vertices.data();
@@ -114,7 +114,7 @@ glm::dvec3 offset_of(const Array<double>& vertices) {
   return offset;
 }
 
-/// Sets the positions, from floats as they are, and their origin, which doubles far from zero have.
+/// Sets the positions. Floats are copied unchanged; doubles far from zero get an origin.
 void set_positions(Mesh& mesh, const py::handle& given) {
   const py::array array = py::array::ensure(given);
   const bool is_double = array && (array.dtype().kind() != 'f' || array.itemsize() > 4);
@@ -156,7 +156,7 @@ void set_attributes(Mesh& mesh, const ObjectArrays& given) {
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) mesh.colors.triangles.emplace_back(i);
 }
 
-/// Adds an object, with its material where it needs one. Nothing is changed where an argument is refused.
+/// Adds an object, with a material if needed. Changes nothing if an argument is refused.
 std::uint32_t add_object(HeldScene& held, const ObjectArrays& given) {
   Mesh mesh;
   set_positions(mesh, given.vertices);
@@ -220,7 +220,7 @@ std::string described(const Scene& scene) {
          std::to_string(triangle_count(scene)) + " triangles";
 }
 
-/// A plane of a mesh as an array that keeps the scene; none where the mesh has no such thing.
+/// An attribute of a mesh as an array that keeps the scene; None if the mesh lacks the attribute.
 template <class T, class Element>
 py::object rows_of(const HeldMesh& mesh, const std::vector<Element>& values) {
   if (values.empty()) return py::none();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors on paper: sheets of hidden-line drawings, and figures of polygons.
+// Vector pictures: sheets of hidden-line drawings, and figures of polygons.
 #include <frontmost/pictures.h>
 #include <frontmost/sheets.h>
 #include <pybind11/stl.h>
@@ -29,11 +29,11 @@ namespace {
 
 using namespace py::literals;
 
-/// Python's Sheet and Figure: pages that show themselves.
+/// Python's Sheet and Figure, which display themselves in notebooks.
 struct HeldPage {
   Page page;
   std::optional<double> scale;
-  std::size_t left_out = 0, undrawn = 0, prisms = 0;  ///< as Sheet's
+  std::size_t left_out = 0, undrawn = 0, prisms = 0;  ///< as in Sheet
 };
 struct HeldFigure {
   std::shared_ptr<const Figure> figure;
@@ -43,7 +43,7 @@ std::string path_of(const py::object& path) {
   return py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
 }
 
-/// What `write` writes to a file of SVG.
+/// The text of the SVG file that `write` writes.
 template <class Write>
 py::str svg_of(const Write& write) {
   const py::object folder = py::module_::import("tempfile").attr("TemporaryDirectory")();
@@ -138,7 +138,7 @@ HeldPage sheet_of(const std::shared_ptr<HeldSurfaces>& held, const py::object& v
   return {std::move(sheet.page), sheet.scale, sheet.left_out, sheet.undrawn, sheet.prisms};
 }
 
-/// Lines on a page that is as large as the view, with 96 pixels to an inch.
+/// A drawing on a page of the view's size, at 96 pixels an inch.
 HeldPage sheet_of_drawing(const HeldDrawing& held, HiddenLines hidden, DrawingStyle style) {
   constexpr double millimetres_per_pixel = 25.4 / 96;
   LinePens pens = style == DrawingStyle::figure ? figure_pens() : technical_pens();
@@ -206,7 +206,7 @@ Array<std::uint8_t> colors_of_shapes(const HeldFigure& held) {
   return out;
 }
 
-/// save(), svg and _repr_svg_ of pages and figures.
+/// Binds save(), svg and _repr_svg_ of pages and figures.
 template <class Class, class Write>
 void bind_page(Class& bound, const std::string& name, const Write& write) {
   const auto svg = [write](const typename Class::type& held) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces, and what is visible of them: the z-buffer, rays for a view, planes of depths and ids.
+// Surfaces and their visibility: the z-buffer, rays for a view, planes of depths and ids.
 #include <frontmost/image.h>
 #include <frontmost/raycast.h>
 #include <frontmost/scene.h>
@@ -25,10 +25,10 @@ std::shared_ptr<HeldSurfaces> surfaces_of(const HeldScene& held, int threads, co
 
 ArrayShape plane_of(const View& view) { return {view.height, view.width}; }
 
-/// The planes of every sample, [sample][y][x].
+/// The shape of planes with all samples: [sample][y][x].
 ArrayShape planes_of(const View& view) { return {view.samples, view.height, view.width}; }
 
-/// A number for each pixel, of where its first sample's triangle comes from; no_index where nothing is seen.
+/// One number for each pixel, from the source of its first sample's triangle; no_index if the sample sees nothing.
 template <class NumberOf>
 py::array_t<std::uint32_t> numbers_of_sources(const HeldVisible& held, const NumberOf& number_of) {
   Buffer<std::uint32_t> out(held.visible->view.pixel_count());
@@ -64,7 +64,7 @@ py::object depth_of(HeldVisible& held) {
   return held.depth;
 }
 
-/// One object and its pose, or as many objects as poses.
+/// Moves one object to a pose, or several objects to as many poses.
 void move_objects(const std::shared_ptr<HeldSurfaces>& held, const py::object& object, const py::object& pose,
                   int threads) {
   const KeptScene& scene = *held->scene;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views: cameras of every convention with a grid of pixels, and back.
+// Views: cameras of all conventions with a grid of pixels, and conversions back.
 #include <frontmost/view.h>
 #include <pybind11/stl.h>
 
@@ -63,7 +63,7 @@ View orthographic(const py::object& eye, const py::object& target, const py::obj
   return checked(view.looking(point(eye, "eye"), point(target, "target"), point(up, "up")), samples, culling);
 }
 
-/// `name` is the argument's.
+/// A box from Surfaces or an array. `name` is the argument's name.
 Box box_of(const py::handle& given, const char* name) {
   if (py::isinstance<HeldSurfaces>(given)) return py::cast<const HeldSurfaces&>(given).surfaces.bounds();
   const auto values = numbers<float>(given, name, {2, 3});
@@ -128,7 +128,7 @@ std::string described(const View& view) {
   return text;
 }
 
-/// All that a view is, for pickles and comparisons.
+/// The complete state of a view, for pickles and comparisons.
 py::tuple state_of(const View& v) {
   const Projection& p = v.projection;
   return py::make_tuple(v.width, v.height, v.samples, v.culling, array_of(v.world_from_eye).attr("tobytes")(),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the files of the Python module share: one bind_ function for each subject, and the words of the stubs, which are
-// the docstrings too.
+// Shared by the files of the Python module: one bind_ function for each subject, and docstrings, which come from the
+// stubs.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -9,11 +9,11 @@ namespace frontmost::python {
 
 namespace py = pybind11;
 
-/// The docstring of a name of the stubs (python/frontmost/__init__.pyi): "load", "View.look_at". Empty for names that
-/// they do not know, which a test finds.
+/// The docstring of a name in the stubs (python/frontmost/__init__.pyi): "load", "View.look_at". Empty for unknown
+/// names, which a test finds.
 [[nodiscard]] const char* doc(const char* name);
 
-// One a subject, in bind_<subject>.cpp; in an order in which types are known before others name them.
+// One function a subject, in bind_<subject>.cpp. The order makes types known before others use them.
 void bind_base(py::module_& m);
 void bind_scene(py::module_& m);
 void bind_models(py::module_& m);

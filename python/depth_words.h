@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words of depth formats.
+// Python's words for depth formats.
 #pragma once
 
 #include <frontmost/zbuffer.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Python's Drawing holds: the surfaces, whose triangles its numbers mean.
+// State of Python's Drawing. It keeps the surfaces, whose triangles its numbers refer to.
 #pragma once
 
 #include <frontmost/lines.h>

@@ -4,7 +4,7 @@
 namespace frontmost::python {
 namespace {
 
-constexpr std::size_t most_spare = 4;  ///< buffers, and planes, that wait to be used again
+constexpr std::size_t most_spare = 4;  ///< limit of spare buffers, and of spare planes
 
 }  // namespace
 

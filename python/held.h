@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Python's objects hold, so that nothing that is borrowed goes before those that borrow it.
+// State of Python's objects. Shared ownership keeps borrowed objects alive.
 //
-//   Scene     shares a frontmost::Scene; changed only while nobody else has it, else as a copy of its own
+//   Scene     shares a frontmost::Scene; changed in place only if nobody else has it, else copied first
 //   Surfaces  shares that scene, and lends ZBuffers and planes of pixels
-//   Visible   shares the surfaces, and the planes with the arrays that show them
+//   Visible   shares the surfaces, and shares its planes with the arrays that show them
 #pragma once
 
 #include <frontmost/pictures.h>
@@ -24,23 +24,23 @@ namespace frontmost::python {
 
 namespace py = pybind11;
 
-/// A scene that several share.
+/// A scene with several owners.
 struct KeptScene : Scene {
   explicit KeptScene(Scene given = {}) : Scene(std::move(given)) {}
 
-  /// Held by whoever reads where objects are, and alone by whoever moves one; never waited for with the interpreter's
-  /// lock.
+  /// Shared lock to read the objects' poses, exclusive lock to move an object. Never waited for while holding the
+  /// interpreter's lock.
   mutable std::shared_mutex reading;
-  std::atomic<int> surfaces_count = 0;  ///< how many Surfaces show it
+  std::atomic<int> surfaces_count = 0;  ///< number of Surfaces of this scene
 };
 
-/// Python's Scene. What was made of it keeps the scene that it was made of.
+/// Python's Scene. Objects made of it keep the scene that they were made of.
 struct HeldScene {
   HeldScene() : HeldScene(Scene()) {}
   explicit HeldScene(Scene&& given) : scene(std::make_shared<KeptScene>(std::move(given))) {}
   explicit HeldScene(std::shared_ptr<KeptScene> given) : scene(std::move(given)) {}
 
-  /// The scene to be changed: a copy where others hold it. With the interpreter's lock.
+  /// The scene for changes: a copy if others hold it. Precondition: the interpreter's lock is held.
   [[nodiscard]] Scene& writable() {
     if (scene.use_count() > 1) scene = std::make_shared<KeptScene>(Scene(*scene));
     return *scene;
@@ -60,18 +60,17 @@ class HeldSurfaces {
   HeldSurfaces(const HeldSurfaces&) = delete;
   HeldSurfaces& operator=(const HeldSurfaces&) = delete;
 
-  /// What zbuffer() gives, by a ZBuffer that was used before where there is one, into planes that nobody shows any
-  /// more.
+  /// Calls zbuffer() with a spare ZBuffer and spare planes, if there are any.
   [[nodiscard]] std::shared_ptr<const Visible> draw(const View& view, const Execution& execution);
-  /// Planes that are given back when the last of those that share them is gone.
+  /// Shares planes. The planes become spare when their last owner is gone.
   [[nodiscard]] std::shared_ptr<const Visible> share(Visible&& visible) const;
 
   const std::shared_ptr<KeptScene> scene;
   Surfaces surfaces;
-  /// Keeps what pictures of these surfaces have in common; for whoever holds `shading`.
+  /// Keeps data that pictures of these surfaces have in common. Use requires `shading`.
   mutable std::unique_ptr<Shader> shader;
   mutable std::mutex shading;
-  /// How often something was moved: what was visible before is so no more.
+  /// The number of moves. Earlier answers are invalid after a move.
   std::uint64_t moves = 0;
 
  private:
@@ -87,24 +86,24 @@ class HeldSurfaces {
 struct HeldVisible {
   std::shared_ptr<HeldSurfaces> of;
   std::shared_ptr<const Visible> visible;
-  std::uint64_t moves = 0;  ///< HeldSurfaces::moves when it was found
+  std::uint64_t moves = 0;  ///< HeldSurfaces::moves at the time of the search
   py::object depth = py::none();
 
-  /// \throws Error bad_argument where an object was moved since.
+  /// \throws Error bad_argument if an object was moved since.
   void check_current() const;
-  /// \throws Error bad_argument, naming `argument`, where this one is of other surfaces, or of the same before a move.
+  /// \throws Error bad_argument, naming `argument`, if this belongs to other surfaces, or is older than a move.
   void check_same(const HeldSurfaces& surfaces, const char* argument) const;
 };
 
-/// A Visible of Python's, of planes that were just found.
+/// Python's Visible with new planes.
 [[nodiscard]] HeldVisible held_visible(const std::shared_ptr<HeldSurfaces>& of, std::shared_ptr<const Visible> visible);
 
-/// What places a mesh in a scene by a pose of its points as they were given, before Mesh::origin was taken off them, in
-/// the coordinates of the file; and back.
+/// placed_by() converts a pose of the mesh's points as given, before Mesh::origin was subtracted, in the file's
+/// coordinates, to the pose in the scene. pose_of_instance() converts back.
 [[nodiscard]] glm::dmat4 placed_by(const glm::dmat4& pose, const Scene& scene, const Mesh& mesh);
 [[nodiscard]] glm::dmat4 pose_of_instance(const Scene& scene, const Instance& instance);
 
-/// The number of an object that an argument names: its number, or its name where that is the only one so called.
+/// The number of the object that an argument names: by number, or by a name that occurs only once.
 /// \throws py::value_error, py::type_error
 [[nodiscard]] std::uint32_t object_of(const Scene& scene, const py::handle& given);
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The extension module frontmost._core: every subject binds its own names.
+// The extension module frontmost._core: each subject binds its own names.
 #include "python/bindings.h"
 
 PYBIND11_MODULE(_core, m) {
   using namespace frontmost::python;
-  // What is bound tells the package as its place, so that help() and messages name what users import.
+  // Bound names get the package as their module, so that help() and messages show the name that users import.
   const pybind11::object name = m.attr("__name__");
   m.attr("__name__") = "frontmost";
   bind_base(m);

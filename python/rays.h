@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Python's RayIndex holds, and its answers.
+// State of Python's RayIndex and of its answers.
 #pragma once
 
 #include <frontmost/raycast.h>
@@ -13,25 +13,25 @@
 
 namespace frontmost::python {
 
-/// Python's RayIndex. Answers name triangles of the surfaces, which it keeps.
+/// Python's RayIndex. It keeps the surfaces, whose triangles its answers refer to.
 struct HeldRayIndex {
   HeldRayIndex(std::shared_ptr<HeldSurfaces> surfaces, const Execution& execution)
       : of(std::move(surfaces)), index(of->surfaces, execution) {}
 
-  /// \throws Error bad_argument where an object was moved since.
+  /// \throws Error bad_argument if an object was moved since.
   void check_current() const {
     if (moves != of->moves)
       throw Error(ErrorCode::bad_argument, "index", "objects were moved since; refit() follows them");
   }
 
   const std::shared_ptr<HeldSurfaces> of;
-  std::uint64_t moves = of->moves;  ///< HeldSurfaces::moves when it was made or refitted
+  std::uint64_t moves = of->moves;  ///< HeldSurfaces::moves at the last build or refit
   RayIndex index;
-  /// Held by whoever asks, and alone by refit(); never waited for with the interpreter's lock.
+  /// Shared lock for queries, exclusive lock for refit(). Never waited for while holding the interpreter's lock.
   mutable std::shared_mutex reading;
 };
 
-/// Python's Hits: arrays with an element for each query.
+/// Python's Hits: arrays with one element for each query.
 struct HeldHits {
   py::array_t<std::uint32_t> primitive;
   py::array_t<double> t;

@@ -43,7 +43,7 @@ bool LongCall::is_stopped() {
 
 void LongCall::note(std::string_view stage, double fraction) {
   const std::unique_lock lock(mutex_, std::try_to_lock);
-  if (!lock) return;  // another thread is noting the same
+  if (!lock) return;  // another thread is noting progress
   stage_ = stage;
   fraction_ = fraction;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long calls: without the interpreter's lock, on as many threads as asked for, ended by Ctrl-C, and watched.
+// Long calls: they release the interpreter's lock, use the requested threads, react to Ctrl-C, and report progress.
 #pragma once
 
 #include <frontmost/base.h>
@@ -17,19 +17,19 @@ namespace frontmost::python {
 
 namespace py = pybind11;
 
-/// One long call. Only the thread that makes it asks Python anything, and that twenty times a second at most: whether
-/// there was a Ctrl-C, and to show how far the work is.
+/// One long call. Only the calling thread talks to Python, at most twenty times a second: it checks for Ctrl-C and
+/// shows the progress.
 class LongCall {
  public:
-  /// `threads` and `progress` are the arguments of those names; `progress` is None, False, True, or what is called with
-  /// a stage and a fraction.
+  /// `threads` and `progress` are the Python arguments of those names. `progress` is None, False, True, or a callable
+  /// that takes a stage and a fraction.
   LongCall(int threads, const py::object& progress);
   ~LongCall();
   LongCall(const LongCall&) = delete;
   LongCall& operator=(const LongCall&) = delete;
 
   [[nodiscard]] Execution execution() const { return {threads_, Isa::best, &watch_}; }
-  /// Shows the last of the progress. \throws what Python raised meanwhile.
+  /// Shows the final progress. \throws an exception that Python raised meanwhile.
   void finish();
 
  private:
@@ -43,7 +43,7 @@ class LongCall {
   Clock::time_point next_;
   std::atomic<bool> stopped_ = false;
   std::exception_ptr raised_;
-  py::object bar_;  ///< to be called; null without progress
+  py::object bar_;  ///< called with progress; null without
   bool owns_bar_ = false;
   std::mutex mutex_;
   std::string stage_;
@@ -51,7 +51,7 @@ class LongCall {
   Watch watch_;
 };
 
-/// The work's result; the work is given an Execution, and must not touch Python.
+/// Runs `work` with an Execution and returns its result. `work` must not touch Python.
 template <class Work>
 auto run(int threads, const py::object& progress, const Work& work) {
   LongCall running(threads, progress);
@@ -64,7 +64,7 @@ auto run(int threads, const py::object& progress, const Work& work) {
     } catch (const Error&) {
       failure = std::current_exception();
     }
-    running.finish();  // Ctrl-C, or what a callable of the caller's raised, is the reason where there is one
+    running.finish();  // throws Ctrl-C or an exception of the caller's callable first, since they are the cause
     if (failure) std::rethrow_exception(failure);
   };
   if constexpr (std::is_void_v<Result>) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words of scenes.
+// Python's words for scenes.
 #pragma once
 
 #include <frontmost/scene.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words of shading, and its options as arguments that several calls share.
+// Python's words for shading, and shading options as arguments that several calls share.
 #pragma once
 
 #include <frontmost/pictures.h>
@@ -40,10 +40,10 @@ FRONTMOST_WORDS(frontmost::ToneMapping, "tone_mapping",
 
 namespace frontmost::python {
 
-/// An Environment out of Environment, "studio", "sky", "none", or the path of a picture.
+/// An Environment from an Environment, "studio", "sky", "none", or the path of a picture.
 [[nodiscard]] Environment environment_of(const py::object& given);
 
-/// Binds `make(of, options, threads, progress)` as a method that takes all that ShadeOptions has as keywords.
+/// Binds `make(of, options, threads, progress)` as a method with the members of ShadeOptions as keyword arguments.
 template <class Class, class Make>
 void bind_shading(Class& bound, const char* name, const char* words, const Make& make) {
   using namespace py::literals;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words of views.
+// Python's words for views.
 #pragma once
 
 #include <frontmost/view.h>
@@ -36,8 +36,8 @@ FRONTMOST_WORDS(frontmost::FramedObjects, "objects",
 
 namespace frontmost::python {
 
-/// The library's words of poses, and three short ones: "opencv" is opencv_world_to_camera, the calibrations of OpenCV,
-/// "opengl" is opengl_camera_to_world, the cameras of OpenGL, "robot" is robot_camera_to_world, the transforms of ROS.
+/// The library's words for poses, and three short ones. "opencv": opencv_world_to_camera, OpenCV's calibrations.
+/// "opengl": opengl_camera_to_world, OpenGL's cameras. "robot": robot_camera_to_world, transforms of ROS.
 [[nodiscard]] PoseConvention pose_convention_of(const std::string& word);
 
 }  // namespace frontmost::python

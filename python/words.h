@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library's choices as words: an argument "back" is Culling::back. Each enumeration says its words once; an
-// argument that is none of them ends in a ValueError that lists them.
+// Python's words for the library's enumerations: the argument "back" is Culling::back. Each enumeration states its
+// words once. An unknown word causes a ValueError that lists the valid ones.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -14,7 +14,7 @@ namespace frontmost::python {
 
 namespace py = pybind11;
 
-/// The words of an enumeration, and what it is called in messages. Specialised below FRONTMOST_WORDS.
+/// The words of an enumeration, and its name in messages. FRONTMOST_WORDS specialises this template.
 template <class E>
 struct Words;
 
@@ -35,7 +35,7 @@ template <class E>
   return "";
 }
 
-/// All words of an enumeration whose values count from 0: what an array of such values means.
+/// All words of an enumeration whose values count from 0. The words explain arrays of such values.
 template <class E>
 [[nodiscard]] py::tuple words_of() {
   py::tuple words(std::size(Words<E>::all));
@@ -45,8 +45,8 @@ template <class E>
 
 }  // namespace frontmost::python
 
-/// FRONTMOST_WORDS(Culling, "culling", {{Culling::none, "none"}, ...}) at global scope, with frontmost:: in front of
-/// names: makes words of an enumeration, and lets functions that are bound take and give it as a string.
+/// FRONTMOST_WORDS(Culling, "culling", {{Culling::none, "none"}, ...}) at global scope, with frontmost:: before names,
+/// defines the words of an enumeration. Bound functions then take and return it as a string.
 #define FRONTMOST_WORDS(Enum, what_it_is, ...)                              \
   template <>                                                               \
   struct frontmost::python::Words<Enum> {                                   \

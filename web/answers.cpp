@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the workbench says of a view: what lies under a pixel, of every object how much is seen and why, and which faces
-// are seen from anywhere.
+// Answers of the workbench about a view: the surfaces under a pixel, the visibility of each object with reasons, and
+// the faces visible from anywhere.
 #include <frontmost/report.h>
 
 #include <numeric>
@@ -40,7 +40,7 @@ PlainJson object_json(const Explanation& why, const ObjectAccount& account, cons
           {"hidden_by", std::move(hiders)}};
 }
 
-/// Along directions that wind from below to above, as `frontmost visible --sphere` looks.
+/// Directions on a spiral from below to above, as in `frontmost visible --sphere`.
 glm::dvec3 direction_around(const glm::dvec3& up, int i, int count) {
   constexpr double golden_angle = 2.3999632297286533;
   const glm::dvec3 side = {up.y, up.z, up.x}, third = glm::cross(up, side);

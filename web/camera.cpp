@@ -4,7 +4,7 @@
 namespace frontmost::web {
 namespace {
 
-// Of cli/values.h, whose products these must be.
+// Same values as in cli/values.h, so that products are equal to the last bit.
 constexpr double kRadiansPerDegree = 0.017453292519943295, kDegreesPerRadian = 57.29577951308232;
 
 PlainJson intrinsics_json(const View& view, PixelRule rule) {

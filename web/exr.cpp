@@ -7,7 +7,7 @@
 namespace frontmost::web {
 namespace {
 
-/// WebAssembly has the lowest byte first, as these files have.
+/// Appends a value. WebAssembly is little-endian, like these files.
 template <class T>
 void add(std::string& bytes, const T& value) {
   char raw[sizeof(T)];
@@ -31,7 +31,7 @@ std::string packed(const T&... values) {
   return bytes;
 }
 
-/// By name, as files have to have them.
+/// Channels sorted by name, as the format requires.
 std::vector<const Channel*> sorted_channels(const Image& image) {
   std::vector<const Channel*> channels;
   for (const Channel& channel : image.channels) channels.push_back(&channel);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenEXR's simplest files, for a module without that library: one part, whole numbers and floats of 32 bits as they
-// are, uncompressed.
+// OpenEXR's simplest files, for a module without that library: one part, uncompressed 32-bit integers and floats.
 #pragma once
 
 #include <frontmost/image.h>
@@ -9,7 +8,7 @@
 
 namespace frontmost::web {
 
-/// The bytes of a file of all channels. Precondition: as validate(image). (Technical Introduction to OpenEXR, OpenEXR
+/// The bytes of a file with all channels. Precondition: as validate(image). (Technical Introduction to OpenEXR, OpenEXR
 /// File Layout.)
 [[nodiscard]] std::string exr_bytes(const Image& image);
 

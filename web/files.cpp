@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of the last view, by the library's own writers: into the module's memory, from where the page takes them.
+// Files of the last view, made by the library's own writers in the module's memory, from which the page takes them.
 #include <frontmost/sheets.h>
 
 #include "web/exr.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG, JPEG and WebP textures, which the browser decodes: the module holds no libraries for them.
+// PNG, JPEG and WebP textures. The browser decodes them, because the module contains no libraries for these formats.
 //
-//   load() -- asks for pixels --> GivenImages: not there, noted --> the page decodes what was noted --> load() again
+//   load() -- asks for pixels --> GivenImages: missing, noted --> the page decodes noted files --> load() again
 #pragma once
 
 #include <frontmost/files.h>
@@ -13,19 +13,20 @@
 
 namespace frontmost::web {
 
-/// Images by their files' bytes. Loading asks from several threads.
+/// Images by their files' bytes. Several threads may ask during loading.
 class GivenImages : public ImageDecoder {
  public:
   [[nodiscard]] glm::ivec2 size(std::span<const std::byte> file) const override;
   [[nodiscard]] Texture pixels(std::span<const std::byte> file) const override;
 
-  /// Files that were asked for and are not there, in the order of asking.
+  /// Files that were asked for and are missing, in the order of the requests.
   [[nodiscard]] const std::vector<const std::string*>& wanted() const { return wanted_; }
-  /// The pixels of a wanted file: four bytes each. \throws Error bad_argument for a number of bytes that does not fit.
+  /// Stores the pixels of a wanted file, four bytes each. \throws Error bad_argument if the number of bytes does not
+  /// fit.
   void give(std::size_t number, int width, int height, std::span<const std::byte> rgba);
-  /// Why a wanted file is none; it is not asked for again.
+  /// Stores the reason why a wanted file cannot be decoded; the file is not asked for again.
   void refuse(std::size_t number, const std::string& reason);
-  /// Before loading again: the list begins anew.
+  /// Clears the list of wanted files. Call before loading again.
   void forget_wanted() { wanted_.clear(); }
 
  private:
@@ -35,7 +36,7 @@ class GivenImages : public ImageDecoder {
   };
   [[nodiscard]] const Texture& find(std::span<const std::byte> file) const;
 
-  // What is asked for is noted while the library only looks.
+  // Members are mutable, because the library's const calls note wanted files.
   mutable std::mutex mutex_;
   mutable std::map<std::string, Image> images_;
   mutable std::vector<const std::string*> wanted_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Questions and answers of the page as JSON: vectors, matrices, and places in memory for what is too long for text.
+// The page's questions and answers as JSON: vectors, matrices, and addresses of data that is too long for text.
 #pragma once
 
 #include <frontmost/base.h>
@@ -10,7 +10,7 @@
 
 namespace frontmost::web {
 
-/// Keys in the order of the alphabet, as the library's own parser has them: the module holds one of it.
+/// JSON with sorted keys, the type that the library's parser uses, so that the module contains only one.
 using PlainJson = nlohmann::json;
 
 template <int n, class T>
@@ -30,12 +30,12 @@ template <int n, class T>
 [[nodiscard]] inline glm::dvec3 vector_of(const PlainJson& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
-/// JSON has no infinity.
+/// The value, or null if it is infinite, since JSON has no infinity.
 [[nodiscard]] inline PlainJson finite_or_null(double value) {
   return std::isfinite(value) ? PlainJson(value) : PlainJson(nullptr);
 }
 
-/// Where `count` values lie in the module's memory until the next question.
+/// The address and size of values in the module's memory, valid until the next question.
 template <class T>
 [[nodiscard]] PlainJson place_of(const T* values, std::size_t count) {
   return {{"at", std::uintptr_t(values)}, {"bytes", count * sizeof(T)}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The module's door: a question as JSON, an answer as JSON.
+// Entry points of the module: a question as JSON, an answer as JSON.
 //
 //   frontmost_ask("{\"ask\": \"draw\", ...}")  ->  "{\"width\": 640, ..., \"pixels\": {\"at\": 1234, \"bytes\": 5678}}"
 //                                              ->  "{\"error\": \"engine.stl: triangle 41: ...\", \"code\":
@@ -20,7 +20,7 @@ std::vector<std::byte>& room() {
   return bytes;
 }
 
-/// The bytes that the page has brought, once.
+/// Takes the bytes that the page has provided.
 std::vector<std::byte> take_room() { return std::exchange(room(), {}); }
 
 Workbench& workbench() {
@@ -95,10 +95,10 @@ PlainJson answer_to(const std::string& text) {
 
 extern "C" {
 
-/// Room for the bytes that the next question brings: a file, or pixels. Null where there is not enough memory.
+/// Memory for the bytes that the next question brings: a file, or pixels. Null if memory is exhausted.
 EMSCRIPTEN_KEEPALIVE void* frontmost_room(std::size_t bytes) {
   try {
-    frontmost::web::room().reserve(bytes + 1);  // a file may be empty
+    frontmost::web::room().reserve(bytes + 1);  // one byte more, since a file may be empty
     frontmost::web::room().resize(bytes);
     return frontmost::web::room().data();
   } catch (const std::exception&) {
@@ -106,7 +106,7 @@ EMSCRIPTEN_KEEPALIVE void* frontmost_room(std::size_t bytes) {
   }
 }
 
-/// The answer stays where it is until the next question.
+/// Answers a question. The text is valid until the next question.
 EMSCRIPTEN_KEEPALIVE const char* frontmost_ask(const char* question) {
   static std::string answer;
   answer = frontmost::web::answer_to(question).dump();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model on its way in: from memory, or with the files that it names, which lie in a folder in memory meanwhile; and
-// with textures that the page decodes.
+// Opens a model from memory, or with the files that it names, which lie in an in-memory folder meanwhile. The page
+// decodes textures.
 #include <filesystem>
 
 #include "web/workbench.h"
@@ -35,7 +35,7 @@ PlainJson Workbench::put_file(std::span<const std::byte> bytes, const PlainJson&
     throw Error(ErrorCode::bad_argument, "file", "not a name below the model's folder");
   if (question.value("first", false)) forget_files();
   fs::create_directories((folder() / name).parent_path());
-  fs::current_path(folder());  // so that names in messages are those of the page
+  fs::current_path(folder());  // so that messages show the page's file names
   save_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
   return PlainJson::object();
 }

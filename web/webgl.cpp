@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The view beside that of WebGL: what WebGL needs to draw it, and why its pixels differ where they do.
+// Compares the view with that of WebGL: the data that WebGL needs to draw, and the reasons for differing pixels.
 //
 //   corners of triangles, a matrix --> WebGL --> ids of triangles --> a reason for each that is not the library's
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 enum class WhyOther : std::uint8_t { edge, depth, other };
 constexpr const char* kWhyNames[] = {"edge", "depth", "other"};
 
-/// What a depth buffer of 24 bits holds of a planar depth, not yet rounded.
+/// The value of a 24-bit depth buffer for a planar depth, before rounding.
 double window_steps(const Projection& p, double depth) {
   constexpr double greatest = 16777215;
   const ClipDistances& clip = p.clip;
@@ -23,17 +23,16 @@ double window_steps(const Projection& p, double depth) {
   return (1 - clip.near / depth) / (1 - clip.near / clip.far) * greatest;
 }
 
-/// How a triangle lies about the centre of a pixel.
+/// A triangle's position relative to the centre of a pixel.
 struct AtPixel {
   bool is_covered = false;
   double border = 0;  ///< pixels from the centre to the nearest line through two of its corners
-  double depth = 0;   ///< planar, of the triangle's plane there
-  double slope = 0;   ///< steps of a 24-bit depth buffer that it changes by from one pixel to the next
+  double depth = 0;   ///< planar depth of the triangle's plane at the centre
+  double slope = 0;   ///< change in steps of a 24-bit depth buffer from one pixel to the next
 };
 
-/// Corners with their pixel times their w, as x and y, and w: what a line through two of them is on the screen needs no
-/// division, and holds behind the eye as well (Olano and Greer, Triangle Scan Conversion using 2D Homogeneous
-/// Coordinates, 1997).
+/// Corners as (pixel x * w, pixel y * w, w). The screen line through two of them needs no division, and holds behind
+/// the eye as well (Olano and Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates, 1997).
 class HomogeneousTriangle {
  public:
   HomogeneousTriangle(const View& view, const std::array<glm::vec3, 3>& corners) {
@@ -68,7 +67,7 @@ class HomogeneousTriangle {
   }
 
  private:
-  /// Of its plane, at a place in pixels.
+  /// The depth of the triangle's plane at a position in pixels.
   [[nodiscard]] double depth_at(const View& view, double x, double y) const {
     const Projection& p = view.projection;
     const double right = p.left + (p.right - p.left) * x / view.width;
@@ -85,7 +84,7 @@ class HomogeneousTriangle {
 struct PixelDifference {
   WhyOther why = WhyOther::other;
   double border = 0;  ///< pixels
-  double steps = 0;   ///< of a depth buffer
+  double steps = 0;   ///< of a 24-bit depth buffer
 };
 
 class PixelReasons {
@@ -93,12 +92,13 @@ class PixelReasons {
   PixelReasons(const Surfaces& surfaces, const View& view, int subpixel_bits)
       : surfaces_(surfaces), view_(view), rounding_(1.0 / double(1 << std::clamp(subpixel_bits, 1, 16))) {}
 
-  /// Why one draws `ours` and the other `theirs` at a pixel; either may be none.
+  /// The reason why the library draws `ours` and WebGL draws `theirs` at a pixel; either may be none.
   [[nodiscard]] PixelDifference explain(PrimitiveId ours, PrimitiveId theirs, int x, int y) const {
     const std::optional<AtPixel> a = at(ours, x, y), b = at(theirs, x, y);
     PixelDifference result;
     result.border = std::min(a ? a->border : 1e9, b ? b->border : 1e9);
-    // Each of three corners moves by half a unit on either axis, and numbers of 24 bits move them about as far again.
+    // Each of three corners moves by half a unit on either axis, and arithmetic of 24 bits moves them about as far
+    // again.
     if ((b && !b->is_covered) || result.border <= 2 * rounding_) {
       result.why = b && !b->is_covered && b->border > 2 * rounding_ ? WhyOther::other : WhyOther::edge;
       if (b && !b->is_covered) result.border = b->border;
@@ -106,7 +106,8 @@ class PixelReasons {
     }
     if (!a || !b) return result;
     result.steps = std::abs(window_steps(view_.projection, a->depth) - window_steps(view_.projection, b->depth));
-    // Two roundings of depths, what interpolating in floats adds, and corners that move where a surface slopes.
+    // The limit covers two roundings of depths, errors of float interpolation, and the slope times the shift of the
+    // corners.
     const double most_steps = 8 + rounding_ * (a->slope + b->slope);
     if (result.steps <= most_steps) result.why = WhyOther::depth;
     return result;
@@ -174,7 +175,7 @@ PlainJson Workbench::compare(std::span<const std::byte> bytes, const PlainJson& 
   std::array<std::size_t, std::size(kWhyNames)> counts{};
   differences_.clear();
   for (std::size_t i = 0; i < pixels; ++i) {
-    std::uint32_t number = 0;  // 0 where there is nothing
+    std::uint32_t number = 0;  // 0: no triangle
     std::memcpy(&number, bytes.data() + 4 * i, 4);
     const PrimitiveId theirs = number == 0 ? no_primitive : number - 1;
     if (theirs == visible.primitives[i]) continue;

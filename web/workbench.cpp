@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opening and drawing.
+// Opening and drawing of models.
 #include "web/workbench.h"
 
 #include <frontmost/lines.h>
@@ -15,7 +15,7 @@ namespace {
 
 class Clock {
  public:
-  /// Milliseconds since it was made or asked last.
+  /// Milliseconds since the construction or the last call.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     const double passed = std::chrono::duration<double, std::milli>(now - start_).count();
@@ -118,7 +118,7 @@ void Workbench::color_ids(const Visible& visible, IdKind kind) {
   auto* pixels = reinterpret_cast<std::uint32_t*>(bitmap_.rgba.data());
   for (std::size_t i = 0; i < values.size(); ++i) {
     const bool is_seen = visible.primitives[i] != no_primitive;
-    pixels[i] = is_seen ? color_of_id(values[i]) : 0;  // no material has the colour of its number, none
+    pixels[i] = is_seen ? color_of_id(values[i]) : 0;  // without material: the colour of id none
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One model on the workbench: opened, drawn, asked about, written to files.
+// A model on the workbench, which is opened, drawn, asked about, and written to files.
 #pragma once
 
 #include <frontmost/abuffer.h>
@@ -17,65 +17,65 @@
 
 namespace frontmost::web {
 
-/// Questions are JSON objects, and so are answers; planes of numbers are told by their places in memory, where they
-/// stay until the next question. Everything throws Error as the library does, and nlohmann::json's exceptions for
-/// questions that lack something.
+/// Questions and answers are JSON objects. Answers give planes of numbers by their addresses in memory, valid until the
+/// next question. All functions throw Error as the library does, and exceptions of nlohmann::json for incomplete
+/// questions.
 class Workbench {
  public:
-  /// A file that the next model names: {"name"}, which may have folders; with {"first"} those before are gone.
+  /// Stores a file that the next model names: {"name"}, which may contain folders. With {"first"}, earlier files are
+  /// removed.
   PlainJson put_file(std::span<const std::byte> bytes, const PlainJson& question);
-  /// The bytes of a model, and its {"name"}; without bytes it is one of the files that were put. \returns what there
-  /// is:
-  /// {"name", "triangles", "objects", "materials", "bounds", "warnings", ...}; or, where textures have to be decoded
-  /// first, {"images"}, their files' places: after put_image() for each {"again"} goes on. The model before is gone,
-  /// unless this one cannot be read. Files that were put are gone in any case.
+  /// Opens the bytes of a model called {"name"}; without bytes, the stored file of that name. \returns {"name",
+  /// "triangles", "objects", "materials", "bounds", "warnings", ...}. If textures have to be decoded first, it returns
+  /// {"images"}, the addresses of their files; {"again"} continues after put_image() for each. The previous model is
+  /// replaced, unless this one cannot be read. Stored files are removed in any case.
   PlainJson open(std::vector<std::byte>&& bytes, const PlainJson& question);
-  /// {"number", "width", "height"} and the pixels, four bytes each; or {"number", "problem"}.
+  /// Stores {"number", "width", "height"} and the pixels, four bytes each; or {"number", "problem"}.
   PlainJson put_image(std::span<const std::byte> bytes, const PlainJson& question);
-  /// {"name"}: a built-in scene.
+  /// Opens the built-in scene {"name"}.
   PlainJson open_builtin(const PlainJson& question);
 
-  /// {"width", "height", "view": "three-quarter", ...} -> a camera that shows all of it.
+  /// Makes a camera of {"width", "height", "view": "three-quarter", ...} that shows the whole model.
   PlainJson frame(const PlainJson& question);
-  /// {"camera", "show", ...} -> {"pixels", "width", "height", "near", "far", "milliseconds"}; with "hash" the hash of
-  /// what is visible, too; with "coarse" pixels share colours. "show" is picture, depth, primitives, objects,
-  /// materials, normals or layer.
+  /// Draws {"camera", "show", ...} -> {"pixels", "width", "height", "near", "far", "milliseconds"}. With "hash", the
+  /// answer has the hash of visibility, too; with "coarse", neighbouring pixels share colours. "show" is picture,
+  /// depth, primitives, objects, materials, normals or layer.
   PlainJson draw(const PlainJson& question);
-  /// The feature edges of the last view: x and y of both ends, and 1 where they are hidden; five floats an edge.
+  /// The feature edges of the last view: x and y of both ends, and 1 if hidden; five floats an edge.
   PlainJson edges(const PlainJson& question);
-  /// {"x", "y"} -> what lies one behind the other there, nearest first.
+  /// The surfaces at {"x", "y"}, nearest first.
   PlainJson point(const PlainJson& question);
-  /// Every object of the last view: its shares, who hides it, why it is not seen.
+  /// All objects of the last view: visible shares, hiders, and reasons.
   PlainJson report(const PlainJson& question);
-  /// {"views"} -> of each object how many faces some view all around sees.
+  /// {"views"} -> for each object, the number of faces that views from all around see.
   PlainJson sphere(const PlainJson& question);
-  /// {"format"} -> the bytes of a file of the last view.
+  /// The bytes of a file of the last view in {"format"}.
   PlainJson write(const PlainJson& question);
   /// The last view's camera in all conventions.
   PlainJson conventions(const PlainJson& question);
 
-  /// What WebGL needs to draw the last view: corners of all triangles, a colour for each corner, the matrix to clip
-  /// coordinates of OpenGL, four rows, and the number of the view.
+  /// Data for WebGL to draw the last view: corners of all triangles, a colour for each corner, the matrix to OpenGL's
+  /// clip coordinates (four rows), and the number of the view.
   PlainJson triangles(const PlainJson& question);
-  /// The numbers of the triangles that WebGL has drawn, from 1 on, 0 where there is none, four bytes a pixel, the top
-  /// row first; {"subpixel_bits"} as WebGL tells, {"view"} as triangles() -> {"differences", "counts"}: for each pixel
-  /// that differs x, y, the reason, pixels to the nearest border, steps of a 24-bit depth buffer, and both triangles or
-  /// -1; seven floats.
+  /// Compares triangle numbers drawn by WebGL: from 1 on, 0 for none, four bytes a pixel, top row first.
+  /// {"subpixel_bits"} comes from WebGL, {"view"} from triangles(). \returns {"differences", "counts"}: for each
+  /// differing pixel x, y, the reason, pixels to the nearest border, steps of a 24-bit depth buffer, and both triangles
+  /// or -1; seven floats.
   PlainJson compare(std::span<const std::byte> bytes, const PlainJson& question);
 
   [[nodiscard]] const Scene& scene() const { return model().scene; }
   [[nodiscard]] const Surfaces& surfaces() const { return model().surfaces; }
 
  private:
-  /// Surfaces and what draws them borrow the scene, which must not move.
+  /// A scene with its borrowers, which require that the scene does not move.
   struct Model {
     explicit Model(Scene&& taken) : scene(std::move(taken)), surfaces(scene), shader(surfaces) {}
     Scene scene;
     Surfaces surfaces;
     Shader shader;
-    std::optional<RayIndex> index;  ///< made when it is asked
+    std::optional<RayIndex> index;  ///< made at its first use
   };
-  /// A model on its way in.
+  /// A model that is being opened.
   struct Opening {
     std::string name;
     std::vector<std::byte> bytes;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost compare: every visibility method on one view, side by side.
+// frontmost compare: all visibility methods on one view, side by side.
 //
 //   for each method: a process of its own --answer, times, memory--> agreement with the first --> text, JSON, or a page
 //
-// The processes come before this one has threads, because a process with threads cannot be split safely; the answers
-// are compared afterwards, here.
+// The methods' processes start before this one has threads, because a process with threads cannot be forked safely.
+// This process compares the answers afterwards.
 #include <frontmost/base.h>
 
 #include <filesystem>
@@ -40,12 +40,12 @@ constexpr Option compare_options[] = {
 
 void check(const Settings& settings) {
   check_view_settings(settings.view);
-  // Every method reads the model for itself.
+  // Each method reads the model in its own process.
   if (settings.view.samples.value_or(1) > 16) throw UsageError("--samples: compare takes 1, 2, 4, 8 or 16");
   if (settings.model == "-") throw UsageError("compare reads its model several times: give a file");
 }
 
-/// The files of the page, if there is to be one.
+/// The files of the page; empty unless a page is asked for.
 std::vector<std::string> outputs_of(const Settings& settings) {
   std::vector<std::string> paths;
   if (!settings.compare.folder) return paths;
@@ -71,7 +71,7 @@ int run_compare(const Settings& settings) {
   if (settings.compare.folder) folder.emplace(*settings.compare.folder);
   const std::vector<std::string> outputs = outputs_of(settings);
   check_outputs(outputs, input_files(settings));
-  // The methods' processes come first: a process that has threads cannot be split.
+  // The methods' processes come first, because a process that has threads cannot be forked.
   std::vector<MethodRun> runs;
   for (const ComparedMethod& method : compared_methods()) {
     runs.push_back(run_alone(method, settings));

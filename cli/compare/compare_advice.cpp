@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which method suits this scene and machine, in words, each with the figure that it comes from.
+// Advice on which method suits this scene and machine. Each sentence gives the figure that it is based on.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace frontmost::cli {
 namespace {
 
-/// The time from surfaces to answer for one view, and for each of many with the same surfaces.
+/// Time from surfaces to answer for the first view, and for each further view of the same surfaces.
 struct Cost {
   const Compared* method;
   double once, again;
@@ -26,7 +26,7 @@ std::string_view title(const Cost& cost) { return cost.method->run.method->title
 
 std::string times(double ratio) { return ratio < 10 ? fmt::format("{:.1f}", ratio) : fmt::format("{:.0f}", ratio); }
 
-/// After how many views the one that prepares has caught up with the one that does not; 0: never.
+/// Number of views after which a method with preparation overtakes one without; 0: never.
 double views_to_catch_up(const Cost& prepared, const Cost& plain) {
   const double gain = plain.again - prepared.again, lead = prepared.once - plain.once;
   return gain > 0 && lead > 0 ? std::ceil(lead / gain) + 1 : 0;
@@ -75,7 +75,7 @@ std::string transparency(const Comparisons& all) {
       grouped(seen_through), spots(all.view));
 }
 
-/// None for methods that are right.
+/// Empty for methods that make no mistakes.
 std::optional<std::string> mistakes(const Compared& compared, const Comparisons& all) {
   if (compared.wrong_by_design() == 0) return std::nullopt;
   return fmt::format("{}: wrong in {} of {} {}, by design.", compared.run.method->title,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Culled, timed, and checked against what is seen at samples.
+// Runs occlusion culling, times it, and checks it against the visible samples.
 #include "cli/compare/compare_culling.h"
 
 #include <frontmost/occlusion.h>

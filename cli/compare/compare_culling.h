@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What occlusion culling proves of the same view, beside the methods: it answers for objects, not for pixels.
+// Results of occlusion culling for the compared view. Culling decides about objects, not about pixels.
 #pragma once
 
 #include <frontmost/scene.h>
@@ -12,15 +12,15 @@ namespace frontmost::cli {
 
 struct CullingRun {
   double prepare = 0;                               ///< milliseconds, once
-  std::vector<double> times;                        ///< of the view, milliseconds
-  std::uint64_t outside = 0, hidden = 0, open = 0;  ///< instances by what is known of them; open: they may be seen
+  std::vector<double> times;                        ///< milliseconds a view
+  std::uint64_t outside = 0, hidden = 0, open = 0;  ///< instances by verdict; open: may be visible
   std::uint64_t seen = 0;                           ///< instances that the z-buffer shows at a sample
-  std::uint64_t wrong = 0;                          ///< those among them that were said to be outside or hidden: none
+  std::uint64_t wrong = 0;                          ///< such instances that culling called outside or hidden; must be 0
 
   [[nodiscard]] std::uint64_t objects() const { return outside + hidden + open; }
 };
 
-/// Culls the view of `reference`, what the z-buffer found, so many times. \throws Error as Occlusion::cull() does.
+/// Culls the view of `reference`, the z-buffer's answer, `runs` times. \throws Error as Occlusion::cull() does.
 [[nodiscard]] CullingRun run_culling(const Surfaces& surfaces, const Visible& reference, int runs,
                                      const Execution& execution);
 

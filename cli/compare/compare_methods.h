@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The methods that frontmost compare lays side by side, how each is run and timed, and the run of one in a process of
-// its own, so that the memory it takes can be told from everybody else's.
+// The compared methods, and how to run and time each. Each method runs in a process of its own, so that its memory can
+// be measured.
 #pragma once
 
 #include <frontmost/scene.h>
@@ -17,16 +17,16 @@
 
 namespace frontmost::cli {
 
-/// Something that took time, once or several times; milliseconds.
+/// A step that took time, once or several times; milliseconds.
 struct Stage {
   std::string name;
   std::vector<double> times;
 };
 
-/// Collects the times of stages, in the order in which they first came.
+/// Collects the times of stages, in the order of their first occurrence.
 class StageClock {
  public:
-  /// Calls `work` and returns what it returns.
+  /// Runs `work`, notes its time, and returns its result.
   template <class Work>
   auto time(std::string_view name, const Work& work) {
     const Stopwatch watch;
@@ -41,46 +41,46 @@ class StageClock {
   std::vector<Stage> stages_;
 };
 
-/// What a method answers, and how much it had to do for that.
+/// A method's answer and the size of its input.
 struct Answer {
   Visible visible;
-  std::optional<Visible> behind;  ///< what shows through the front-most, of methods that know
-  std::uint64_t primitives = 0;   ///< triangles that it works on
+  std::optional<Visible> behind;  ///< layer behind the front-most, if the method finds it
+  std::uint64_t primitives = 0;   ///< triangles that the method works on
 };
 
-/// The lists of fragments, of methods that keep them.
+/// Numbers of fragments, for methods that keep lists of them.
 struct KeptLists {
   std::uint64_t fragments = 0, longest = 0;
 };
 
 struct ComparedMethod {
-  std::string_view name;   ///< as for render --method
-  std::string_view title;  ///< as people call it
-  std::string_view how;    ///< in a sentence
+  std::string_view name;   ///< as in render --method
+  std::string_view title;  ///< the common name
+  std::string_view how;    ///< the principle, in a sentence
   Answer (*answer)(const Surfaces&, const View&, const Execution&, StageClock&);
-  KeptLists (*lists)(const Surfaces&, const View&, const Execution&) = nullptr;  ///< counted apart, beside the clock
-  bool is_naive = false;  ///< known to be wrong: shown to be seen, and not counted among those that agree
+  KeptLists (*lists)(const Surfaces&, const View&, const Execution&) = nullptr;  ///< counted outside of the timing
+  bool is_naive = false;  ///< known to be wrong: shown, but not counted among those that agree
 };
 
-/// The first is the one that the others are compared with.
+/// The others are compared with the first method.
 [[nodiscard]] std::span<const ComparedMethod> compared_methods();
 
-/// How it went.
+/// The run of one method.
 struct MethodRun {
   const ComparedMethod* method = nullptr;
-  std::vector<Stage> stages;     ///< "load" and "surfaces" once, those of the method --runs times
-  std::uint64_t peak_bytes = 0;  ///< of resident memory, beyond what model and surfaces hold
+  std::vector<Stage> stages;     ///< "load" and "surfaces" once, stages of the method --runs times
+  std::uint64_t peak_bytes = 0;  ///< peak of resident memory beyond model and surfaces
   Answer answer;
   std::optional<KeptLists> lists;
 
-  /// How often the method ran.
+  /// The number of times that the method ran.
   [[nodiscard]] std::size_t runs() const { return stages.empty() ? 0 : stages.back().times.size(); }
-  /// Medians; null for a stage that it has not.
+  /// The median time of a stage; empty if the method lacks the stage.
   [[nodiscard]] std::optional<double> median_of(std::string_view stage) const;
 };
 
-/// Reads the model and runs the method. Precondition: this process has no threads yet.
-/// \throws what the method throws there; Error unsupported when it ends otherwise.
+/// Reads the model and runs the method in a process of its own. Precondition: this process has no threads yet. \throws
+/// the method's error; Error unsupported if its process ends otherwise.
 [[nodiscard]] MethodRun run_alone(const ComparedMethod& method, const Settings& settings);
 
 }  // namespace frontmost::cli

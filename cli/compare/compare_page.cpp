@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page: one HTML file with everything in it (styles, tables, pictures as data URIs), so that it can be mailed or
-// kept.
+// The page: one HTML file that embeds everything (styles, tables, pictures as data URIs), so that it can be mailed or
+// archived.
 //
-// Pictures are there as files as well. All of them are written into a hidden folder first and moved when all are whole:
-// a page whose pictures belong to another run would be worse than none.
+// Pictures are also separate files. All files are written into a hidden folder and moved when all are complete, because
+// a page with pictures of another run would be worse than none.
 #include <fmt/format.h>
 #include <frontmost/base.h>
 #include <frontmost/files.h>
@@ -40,7 +40,7 @@ tr:last-child > * { border-bottom: 0; }
 
 struct Cause {
   Difference difference;
-  bool of_naive;    ///< counted for methods that are known to be wrong, and for no others
+  bool of_naive;    ///< counted only for methods that are known to be wrong
   glm::vec3 color;  // sRGB
   const char* text;
 
@@ -49,7 +49,7 @@ struct Cause {
     return of_naive ? c.wrong_by_design() : c.unexplained();
   }
 };
-// Told apart in either kind of colour blindness, on dark grey.
+// Colours that differ in either kind of colour blindness, on dark grey.
 constexpr Cause causes[] = {
     {Difference::edge, false, {0.99f, 0.72f, 0.15f}, "edge within 1/128 pixel"},
     {Difference::depth, false, {0.31f, 0.70f, 1.0f}, "depths closer than can be told"},
@@ -59,13 +59,13 @@ constexpr Cause causes[] = {
 
 float linear(float srgb) { return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f); }
 
-/// Squares, because a single pixel is not seen in a small picture. What is rarer and worse goes on top.
+/// Marks are squares, because a single pixel is invisible in a small picture. Rarer and worse differences go on top.
 void mark(const Compared& compared, Image& map) {
   const Agreement& agreement = compared.agreement;
   const int reach = std::max(map.width, map.height) / 320;
   for (const Cause& cause : causes) {
     if (cause.count(compared) == 0) continue;
-    // Where most of an area differs, pixels are large enough by themselves.
+    // If many samples differ, single pixels are visible enough.
     const int side = cause.count(compared) > agreement.view.sample_count() / 100 ? 0 : reach;
     for (std::size_t sample = 0; sample < agreement.view.sample_count(); ++sample) {
       if (agreement.differences[sample] != cause.difference) continue;
@@ -100,7 +100,7 @@ std::string row(std::string_view label, const std::vector<std::string>& cells, s
   return text + "</tr>\n";
 }
 
-/// A number with a bar that shows its share of the greatest of its row.
+/// A row of numbers with bars that show their share of the greatest number in the row.
 template <class Number, class Text>
 std::string bar_row(const Comparisons& all, std::string_view label, const Number& number, const Text& text) {
   double greatest = 0;
@@ -169,12 +169,12 @@ std::string legend() {
 std::string picture_name(const ComparedMethod& method) { return std::string(method.name) + ".png"; }
 std::string map_name(const ComparedMethod& method) { return std::string(method.name) + "-differences.png"; }
 
-/// The first method has no map.
+/// The first method has no difference map.
 void save_pictures(const Comparisons& all, const StagedFolder& folder, const Execution& execution) {
   bool is_first = true;
   for (const Compared& compared : all.methods) {
     const ComparedMethod& method = *compared.run.method;
-    // What this method sees; the one that keeps lists sees through glass.
+    // The picture of this method; a method that keeps lists sees through glass.
     const ShadeOptions options{.background = std::nullopt,
                                .layers = {.see_through = method.lists ? SeeThrough::always : SeeThrough::never}};
     const Image picture = shade(all.surfaces, compared.run.answer.visible, options, execution);
@@ -222,7 +222,7 @@ std::vector<std::string> page_names() {
 }
 
 void write_page(const Comparisons& all, const std::string& folder, const Execution& execution) {
-  // Of all files together: what is interrupted in between takes the finished ones away too.
+  // Covers all files together: an interruption in between removes the finished ones, too.
   const WritingFiles writing;
   const StagedFolder staged(folder);
   try {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The child runs, and sends what it found through a pipe: first how it ended, then numbers and planes as they lie in
-// memory.
+// The child process runs a method and sends the result through a pipe: first how it ended, then numbers and planes as
+// they lie in memory.
 #include <fmt/format.h>
 #include <frontmost/files.h>
 #include <malloc.h>
@@ -28,7 +28,7 @@ static_assert(std::is_trivially_copyable_v<View>);
 
 enum class Ending : std::uint64_t { done, usage, error };
 
-/// The pipe's end to write to.
+/// The writing end of the pipe.
 class Sender {
  public:
   explicit Sender(int file) : file_(file) {}
@@ -37,7 +37,7 @@ class Sender {
     for (auto* at = static_cast<const char*>(data); size > 0;) {
       const ssize_t written = write(file_, at, size);
       if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) _exit(exit_could_not);  // nobody listens any more
+      if (written <= 0) _exit(exit_could_not);  // the parent is gone
       at += written;
       size -= std::size_t(written);
     }
@@ -62,7 +62,7 @@ class Sender {
   int file_;
 };
 
-/// The end to read from. \throws Error when the child is gone before all is said.
+/// The reading end of the pipe. \throws Error if the child ends before it has sent everything.
 class Receiver {
  public:
   Receiver(int file, std::string_view method) : file_(file), method_(method) {}
@@ -107,7 +107,7 @@ class Receiver {
   std::string_view method_;
 };
 
-/// A line of /proc/self/status, such as VmRSS, in bytes; 0 where there is none.
+/// A field of /proc/self/status, such as VmRSS, in bytes; 0 if missing.
 std::uint64_t status_bytes(std::string_view field) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -116,7 +116,7 @@ std::uint64_t status_bytes(std::string_view field) {
   return 0;
 }
 
-/// Counts from here: what is free goes back to the system, and its high-water mark falls to what is held.
+/// Starts the measurement: returns free memory to the system and resets the high-water mark to the current use.
 std::uint64_t start_counting_memory() {
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << 5;
@@ -137,7 +137,7 @@ MethodRun run_here(const ComparedMethod& method, const Settings& settings) {
   MethodRun run;
   const std::uint64_t before = start_counting_memory();
   for (int i = 0; i < settings.compare.most_runs(); ++i) {
-    run.answer = {};  // as a first run would find it
+    run.answer = {};  // same state as before the first run
     const Stopwatch watch;
     run.answer = method.answer(*surfaces, view, execution, clock);
     if (i == 0) run.peak_bytes = std::max(status_bytes("VmHWM"), before) - before;
@@ -202,7 +202,7 @@ MethodRun receive_run(const Receiver& receiver) {
   return run;
 }
 
-/// The child and the pipe from it; both are gone with this.
+/// The child and the pipe from it. The destructor ends both.
 class Child {
  public:
   Child(const ComparedMethod& method, const Settings& settings) {
@@ -217,7 +217,7 @@ class Child {
     close(files[1]);
     file_ = files[0];
     if (process_ >= 0) return;
-    close(file_);  // an object that was not made is not destroyed
+    close(file_);  // no destructor runs if the constructor throws
     throw Error(ErrorCode::unsupported, "compare", "no process for a method: " + std::generic_category().message(code));
   }
   Child(const Child&) = delete;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same figures twice: as a table for people, with a column for each method, and as JSON for programs. Text rounds,
-// JSON does not.
+// Prints the figures twice: as a table with a column for each method, rounded, and as JSON, not rounded.
 #include "cli/compare/compare_report.h"
 
 #include <fmt/format.h>
@@ -15,7 +14,7 @@ namespace {
 
 constexpr Difference explained_causes[] = {Difference::edge, Difference::depth, Difference::translucent};
 
-/// One line: what it tells, then a cell for each method, under its name. Columns are as wide as the longest name needs.
+/// One line: a label, then a cell for each method, under its name. Columns are as wide as the longest name.
 template <class Cell>
 std::string row_of(const Comparisons& all, std::string_view what, const Cell& cell) {
   constexpr std::size_t least = 13, gap = 2;
@@ -71,7 +70,7 @@ Json culling_json(const CullingRun& culling) {
 std::vector<std::string> stage_names(const std::vector<Compared>& methods) {
   std::vector<std::string> names;
   for (const Compared& compared : methods) {
-    // A stage that others lack goes before the one that follows it here.
+    // A stage that other methods lack goes before the stage that follows it in this method.
     auto place = names.begin();
     for (const Stage& stage : compared.run.stages) {
       const auto found = std::find(names.begin(), names.end(), stage.name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What frontmost compare found out: as text, as JSON, in words, and as a page, one HTML file that holds its pictures.
+// Output of frontmost compare: text, JSON, sentences, and a page (one HTML file with embedded pictures).
 #pragma once
 
 #include <frontmost/precision.h>
@@ -10,12 +10,12 @@
 
 namespace frontmost::cli {
 
-/// A method, and how far it agrees with the first.
+/// A method, and its agreement with the first method.
 struct Compared {
   MethodRun run;
   Agreement agreement;
 
-  /// Where nothing explains the difference: a mistake, unless the method is known to make some.
+  /// Differences that nothing explains: mistakes, unless the method is known to make some.
   [[nodiscard]] std::uint64_t unexplained() const { return run.method->is_naive ? 0 : wrong(); }
   [[nodiscard]] std::uint64_t wrong_by_design() const { return run.method->is_naive ? wrong() : 0; }
 
@@ -29,30 +29,30 @@ struct Comparisons {
   View view;
   std::vector<Compared> methods;
   CullingRun culling;
-  std::vector<std::string> files;  ///< that were written
+  std::vector<std::string> files;  ///< files that were written
 };
 
 /// The stages of all methods, in order.
 [[nodiscard]] std::vector<std::string> stage_names(const std::vector<Compared>& methods);
 [[nodiscard]] std::string mebibytes(std::uint64_t bytes);
-/// What is counted where methods differ: "pixels" as long as each has one sample.
+/// The unit of differences: "pixels" if each has one sample.
 [[nodiscard]] std::string_view spots(const View& view);
-/// "1920 x 1080 pixels, 4 samples each".
+/// The grid, as in "1920 x 1080 pixels, 4 samples each".
 [[nodiscard]] std::string grid_of(const View& view, std::string_view times);
-/// "medians of 5 runs".
+/// The number of runs, as in "medians of 5 runs".
 [[nodiscard]] std::string runs_of(const Comparisons& all);
 [[nodiscard]] std::uint64_t covered_samples(const Visible& visible);
 
-/// What occlusion culling proved, in a sentence.
+/// One sentence about the results of occlusion culling.
 [[nodiscard]] std::string culling_text(const Comparisons& all);
 [[nodiscard]] std::string compare_text(const Comparisons& all);
 [[nodiscard]] Json compare_json(const Comparisons& all);
-/// Which method suits, from these figures: sentences.
+/// Sentences that tell which method suits, according to these figures.
 [[nodiscard]] std::vector<std::string> advice(const Comparisons& all);
 
-/// The names of the page's files: pictures and maps of differences, and index.html.
+/// Names of the page's files: pictures, difference maps, and index.html.
 [[nodiscard]] std::vector<std::string> page_names();
-/// Writes them all into the folder, or none. \throws Error file_unwritable.
+/// Writes all of these files into the folder, or none. \throws Error file_unwritable.
 void write_page(const Comparisons& all, const std::string& folder, const Execution& execution);
 
 }  // namespace frontmost::cli

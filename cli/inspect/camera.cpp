@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost camera: one camera in every convention.
+// frontmost camera: prints one camera in every convention.
 #include <frontmost/scene.h>
 
 #include "cli/command.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost info: what is in a model, as text and as JSON, and what its unit of length may be.
+// frontmost info: the contents of a model, as text and as JSON, and its probable unit of length.
 #include <fmt/format.h>
 #include <frontmost/lines.h>
 #include <frontmost/report.h>
@@ -21,19 +21,19 @@
 namespace frontmost::cli {
 namespace {
 
-/// How long a unit of the model is.
+/// The length of the model's unit.
 struct ModelUnit {
   double metres;
   bool is_guess;
 };
 
-/// What find_rounds() finds. Holes are cylinders, too.
+/// The number of cylinders that find_rounds() finds, holes included.
 struct CylinderCount {
   std::size_t all = 0, holes = 0;
 };
-constexpr std::uint64_t most_for_cylinders = 200'000;  // triangles: a fifth of a second
+constexpr std::uint64_t most_for_cylinders = 200'000;  // triangles, which take a fifth of a second
 
-constexpr std::size_t lines_shown = 20;  // of objects, materials, cameras, lights; JSON has all
+constexpr std::size_t lines_shown = 20;  // objects, materials, cameras, lights; JSON has all
 constexpr std::string_view axis_names[] = {"+x", "+y", "+z", "-x", "-y", "-z"};
 constexpr std::string_view alpha_names[] = {"opaque", "mask", "blend"};
 constexpr std::string_view light_names[] = {"sun", "point", "spot"};
@@ -54,7 +54,7 @@ struct NamedLength {
   std::string_view name;
   double metres;
 };
-/// Those that files name.
+/// Units that files name.
 constexpr NamedLength units[] = {{"micron", 1e-6}, {"millimetre", 1e-3}, {"centimetre", 1e-2},
                                  {"inch", 0.0254}, {"foot", 0.3048},     {"metre", 1}};
 
@@ -70,7 +70,7 @@ Json odd_json(const Oddities& odd) {
   return json;
 }
 
-/// Null for a model without a finite point.
+/// The corners of a box; null for a model without a finite point.
 Json box_json(const Box& box, const glm::dvec3& origin) {
   if (box.is_empty()) return nullptr;
   return {{"low", to_json(in_file(box.low, origin))}, {"high", to_json(in_file(box.high, origin))}};
@@ -148,7 +148,7 @@ Json light_json(const LightReport& light, const glm::dvec3& origin) {
   return json;
 }
 
-/// Turns every element of a list; an empty list stays a list.
+/// Converts each element of a list. An empty list stays a list.
 template <class T, class Turn>
 Json list(const std::vector<T>& elements, const Turn& turn) {
   Json result = Json::array();
@@ -156,7 +156,7 @@ Json list(const std::vector<T>& elements, const Turn& turn) {
   return result;
 }
 
-/// A heading and a line for each element; the first few, then how many more.
+/// A heading and a line for each of the first elements, then the number of others.
 template <class T, class Line>
 std::string section(std::string_view heading, const std::vector<T>& elements, const Line& line) {
   if (elements.empty()) return {};
@@ -184,10 +184,10 @@ std::string light_line(const LightReport& light, const glm::dvec3& origin) {
   return text;
 }
 
-/// Where floats may be too coarse for what the model is made of, or an origin keeps them from being so.
+/// A line about positions that floats may be too coarse for, or about the origin that prevents this.
 std::string rounding_line(const SceneReport& report) {
-  constexpr double coarse = 1e-6;  // of the diagonal: a thousandth of a pixel in a picture of the whole
-  constexpr double wide = 1e-3;    // whatever the unit: from 16384 units on, details may be smaller
+  constexpr double coarse = 1e-6;  // of the diagonal: a thousandth of a pixel in a picture of the whole model
+  constexpr double wide = 1e-3;    // in any unit: from 16384 units on, details may be smaller
   const bool is_away = report.origin != glm::dvec3(0);
   const double worth_telling = std::min(wide, coarse * double(report.bounds.diagonal()));
   if (!is_away && report.rounding <= worth_telling) return {};
@@ -195,7 +195,7 @@ std::string rounding_line(const SceneReport& report) {
   return fmt::format("  rounding   {:.2g} at most{}\n", report.rounding, about);
 }
 
-/// The meshes that have most of an oddity, the first ones first.
+/// The meshes with the highest counts of an oddity, highest first.
 std::string odd_meshes(const SceneReport& report, std::uint64_t Oddities::*count) {
   constexpr std::size_t meshes_shown = 5;
   std::vector<std::size_t> odd;
@@ -221,7 +221,7 @@ std::string odd_lines(const SceneReport& report) {
   for (const NamedCount& one : oddities) {
     if (report.odd.*one.count == 0) continue;
     text += fmt::format("  {:>12}  {}\n", report.odd.*one.count, one.words);
-    // A single mesh has them all.
+    // A single mesh has all of them.
     if (report.meshes.size() > 1) text += odd_meshes(report, one.count);
   }
   return text.empty() ? "\nnothing odd\n" : "\nodd\n" + text;
@@ -239,7 +239,7 @@ std::string unit_line(const std::optional<ModelUnit>& unit, const Box& bounds) {
                      unit->is_guess ? ", a guess" : "", size.x, size.y, size.z, shown.name);
 }
 
-/// The file's own or, where it says none, the one that is likely by its size. None: anything may be meant.
+/// The file's own unit or else the likely one for the model's size. Empty if several are likely.
 std::optional<ModelUnit> unit_of_model(const SceneReport& report, std::optional<double> metres_per_unit) {
   if (report.bounds.is_empty()) return std::nullopt;
   if (metres_per_unit) return ModelUnit{*metres_per_unit, false};
@@ -247,7 +247,7 @@ std::optional<ModelUnit> unit_of_model(const SceneReport& report, std::optional<
   return likely.size() == 1 ? std::optional(ModelUnit{likely.front(), true}) : std::nullopt;
 }
 
-/// None of models that are too large for it.
+/// Empty for models with too many triangles.
 std::optional<CylinderCount> count_cylinders(const Scene& scene, const Execution& execution) {
   if (triangle_count(scene) > most_for_cylinders) return std::nullopt;
   constexpr double whole_turn = 2 * glm::pi<double>() - 0.01;
@@ -338,7 +338,7 @@ int run_info(const Settings& settings) {
   const Scene scene = load_model(settings, execution, progress);
   const SceneReport report = inspect(scene, execution);
   const std::optional<CylinderCount> cylinders = count_cylinders(scene, execution);
-  // Built-in scenes have no size in the world.
+  // Built-in scenes have no size in the real world.
   const bool is_file = scene.source.format.has_value();
   const auto unit = is_file ? unit_of_model(report, scene.source.metres_per_unit) : std::nullopt;
   progress.clear();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options of frontmost lines alone.
+// Options of frontmost lines only.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ std::vector<NamedView> views_from(std::string_view text) {
   return views;
 }
 
-/// "front" or "front=12.5".
+/// Parses sections such as "front" or "front=12.5", separated by commas.
 std::vector<SectionView> sections_from(std::string_view text) {
   std::vector<SectionView> sections;
   for (const std::string_view word : split(text, ',')) {
@@ -31,7 +31,7 @@ std::vector<SectionView> sections_from(std::string_view text) {
   return sections;
 }
 
-/// A name of paper, "210,297" or "210x297" in millimetres, or "fit".
+/// Parses a name of paper, "210,297" or "210x297" in millimetres, or "fit".
 Paper paper_from(std::string_view text) {
   std::string small(text);
   for (char& c : small) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
@@ -48,7 +48,7 @@ Paper paper_from(std::string_view text) {
   }
 }
 
-/// "1:5", "2:1" or "0.2".
+/// Parses a scale such as "1:5", "2:1" or "0.2".
 double scale_from(std::string_view text) {
   constexpr NumberLimits range{1e-6, 1e6};
   const std::size_t colon = text.find(':');
@@ -71,7 +71,7 @@ glm::dvec3 light_from(std::string_view text) {
   return light;
 }
 
-/// Text of a title block: as much as its field holds in letters that can be read.
+/// Text of a title block. \throws UsageError if it has more characters than fit into its field legibly.
 std::string field_text(const Given& given, std::size_t most) {
   const auto is_first = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; };
   const auto count = std::size_t(std::count_if(given.text.begin(), given.text.end(), is_first));

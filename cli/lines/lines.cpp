@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost lines: hidden-line drawings on paper, from the model to the file, and what there is to say about them.
+// frontmost lines: hidden-line drawings on paper, from model to file, with reports and warnings.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ Json view_json(const DrawnView& view, const std::string& name) {
           {"hidden_mm", hidden}};
 }
 
-/// `page` is that of the sheet, as it is written.
+/// The report. `page` is the page of the sheet as written.
 Json lines_json(const Settings& settings, const Sheet& sheet, const Page& page, const StepTimes& times) {
   Json json = {{"model", settings.model}, {"page_mm", {page.width, page.height}}};
   json["scale"] = sheet.scale ? Json(*sheet.scale) : Json(nullptr);
@@ -88,7 +88,7 @@ std::optional<PageFormat> format_of(const std::string& path, const DrawingSettin
   return page_format(path) ? page_format(path) : settings.format;
 }
 
-/// Plotters follow paths. DXF is for programs that know line types.
+/// Writes all outputs. Plotters get the page as paths; programs that read DXF know line types.
 void write(const Page& page, const Page& plotted, const Settings& settings, const Execution& execution) {
   for (const std::string& path : settings.drawing.outputs) {
     stop_if_interrupted();
@@ -106,12 +106,12 @@ void write_books(const std::vector<Page>& pages, const Settings& settings, const
   }
 }
 
-/// An STL file has no names of objects but those that programs write: one object is named as its file is.
+/// STL files hold only object names that programs invent, so a single object is named after its file.
 void name_object(Scene& scene) {
   if (scene.source.format == ModelFormat::stl && scene.instances.size() == 1) scene.instances[0].name = scene.name;
 }
 
-/// Which objects have outlines that do not close.
+/// Warnings about objects with open outlines.
 std::vector<std::string> open_outlines(const Sheet& sheet) {
   std::vector<std::string> warnings;
   for (const DrawnView& view : sheet.views) {
@@ -148,7 +148,7 @@ void warn_of(const Sheet& sheet, const Surfaces& surfaces, const Settings& setti
                       sheet.prisms)});
 }
 
-/// Draws one model, and writes its own files; its page goes to `pages` where some file holds all. \returns the report.
+/// Draws one model and writes its own files. Adds its page to `pages` if a file holds all sheets. \returns the report.
 Json draw_model(const Settings& settings, std::vector<Page>& pages, const Execution& execution, Progress& progress) {
   std::vector<std::string> written = settings.drawing.outputs;
   written.insert(written.end(), settings.drawing.books.begin(), settings.drawing.books.end());
@@ -168,7 +168,8 @@ Json draw_model(const Settings& settings, std::vector<Page>& pages, const Execut
   return lines_json(settings, sheet, plotted, times);
 }
 
-/// Parts a sheet's files from those that hold the sheets of all models as pages. \throws UsageError where they cannot.
+/// Moves files that hold the sheets of all models as pages from `outputs` to `books`. \throws UsageError if a file can
+/// hold only one sheet.
 void part_outputs(DrawingSettings& sheet) {
   std::vector<std::string> own;
   for (const std::string& path : sheet.outputs) {
@@ -185,8 +186,8 @@ void part_outputs(DrawingSettings& sheet) {
   sheet.outputs = std::move(own);
 }
 
-/// Every model has a sheet of its own, and files of its own or pages of one. \throws UsageError where files are to be
-/// written twice.
+/// The settings of each model's sheet; each has files of its own or pages of a common file. \throws UsageError if a
+/// file would be written twice.
 std::vector<Settings> sheets_of(const Settings& given) {
   std::vector<std::string> models = given.more_models;
   models.insert(models.begin(), given.model);

@@ -14,11 +14,12 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr double largest_usual = 50;  // ISO 5455 has no enlargement above it
+constexpr double largest_usual = 50;  // ISO 5455 has no greater enlargement
 
-constexpr glm::ivec2 fine_grid{3840, 2160};  // shaped as render's default picture, for the same camera
+constexpr glm::ivec2 fine_grid{3840, 2160};  // same shape as render's default picture, for the same camera
 
-/// Calls `work`; what the library complains of in a field of the options is one about the flag of that name.
+/// Calls `work` and turns the library's errors about a field of the options into usage errors about the flag of that
+/// name.
 template <class Work>
 auto with_flags(const Work& work) {
   try {
@@ -60,7 +61,7 @@ void check_views(const Settings& s) {
     if (is_set) throw UsageError(fmt::format("{} and --{} exclude each other", sheet, name));
 }
 
-/// Of drawings in perspective.
+/// Refuses options that a drawing in perspective cannot have.
 void check_projection(const Settings& s) {
   if (s.view.orthographic || s.view.camera_index || s.drawing.is_sheet()) return;
   const SheetOptions& sheet = s.drawing.sheet;
@@ -77,7 +78,7 @@ void check_light(const DrawingSettings& s) {
   if (s.casts_shadows) throw UsageError("--cast-shadows needs --hatch or --stipple");
 }
 
-/// True when the user chose what is in the picture, beyond the direction from where the model is seen.
+/// Whether the user chose what is in the picture, beyond the direction of view.
 bool is_framed(const ViewSettings& s) {
   return s.pose || s.camera_index || s.position || s.intrinsics || s.resolution || s.zoom != 1;
 }
@@ -145,7 +146,7 @@ Sheet draw_from_settings(const Settings& settings, const Surfaces& surfaces, con
   if (settings.drawing.is_sheet()) return with_flags([&] { return draw_sheet(surfaces, options, execution); });
   ViewSettings camera = settings.view;
   if (!camera.resolution && !camera.intrinsics) camera.resolution = fine_grid;
-  camera.framed = FramedObjects::all;  // a drawing is complete
+  camera.framed = FramedObjects::all;  // a drawing shows all objects
   const View view = resolve_view(camera, surfaces);
   return with_flags([&] { return draw_view(surfaces, view, options, execution); });
 }

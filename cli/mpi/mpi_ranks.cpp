@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ranks by MPI, through its C interface, which counts in int: what is longer goes in parts.
+// Ranks by MPI's C interface, which counts in int, so longer messages are sent in parts.
 #include <mpi.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace frontmost::cli {
 namespace {
 
 constexpr std::size_t most_bytes = std::size_t(1) << 26;
-/// Open MPI 4.1 merges 8 million of them in parts of this size 10 times as fast as all at once.
+/// Open MPI 4.1 merges 8 million numbers in parts of this size 10 times as fast as all at once.
 constexpr std::size_t most_numbers = std::size_t(1) << 20;
 
 /// Calls send(first, count) for parts of [0, size).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost precision: what a depth buffer can tell apart, alone or on a model.
+// frontmost precision: the resolution of a depth buffer, alone or for a model.
 #include <fmt/format.h>
 #include <frontmost/pictures.h>
 
@@ -62,7 +62,7 @@ ViewSettings with_far(const Settings& settings) {
   return view;
 }
 
-/// The buffer that was asked for, or those in use.
+/// The requested buffer, or those in common use.
 std::vector<PrecisionResult> buffers_of(const Settings& settings, const Projection& projection) {
   const bool reversed = settings.view.depth.reversed;
   std::vector<PrecisionResult> results;
@@ -109,7 +109,7 @@ void save_plot(const PrecisionRun& run) {
             *settings.precision.plot);
 }
 
-/// Of the corners of a box, from the eye or from the origin.
+/// The greatest distance of a box's corners from the eye or from the origin.
 double reach_of(const Box& box, const glm::dvec3& eye) {
   const glm::dvec3 low(box.low), high(box.high);
   const auto farthest = [&](const glm::dvec3& from) {
@@ -118,7 +118,7 @@ double reach_of(const Box& box, const glm::dvec3& eye) {
   return std::max(farthest(eye), farthest(glm::dvec3(0)));
 }
 
-/// Known only after a model has told where its planes lie.
+/// Checks --gap, after the model has determined the clip planes.
 void check_wanted(const Settings& settings, const ClipDistances& clip) {
   const std::optional<glm::dvec2>& wanted = settings.precision.wanted;
   if (!wanted || (wanted->y >= clip.near && wanted->y <= clip.far)) return;
@@ -138,7 +138,8 @@ void look_for_remedies(PrecisionRun& run, const ExactVisible& exact, const Execu
   }
 }
 
-/// What stands too near the eye has every face of a model at risk with every other: the rest is still worth telling.
+/// Finds fighting faces. If the model is too near the eye, nearly all pairs of faces fight and exceed a limit; the rest
+/// of the report is still useful.
 void find_areas(const Surfaces& surfaces, const View& view, PrecisionResult& result, const Execution& execution) try {
   result.areas = find_fighting_faces(surfaces, view, result.setup.format, result.setup.reversed, execution);
 } catch (const Error& error) {
@@ -146,7 +147,7 @@ void find_areas(const Surfaces& surfaces, const View& view, PrecisionResult& res
   result.too_many = error.what();
 }
 
-/// Fills in what a model adds.
+/// Adds the results that need a model.
 void fight(PrecisionRun& run, const View& view, const Execution& execution) {
   const ExactVisible exact = find_exact_visible(*run.surfaces, view, execution);
   for (PrecisionResult& result : run.results) {

@@ -23,11 +23,11 @@ constexpr int line_points = 480;
 struct PlotLine {
   DepthSetup setup;
   const char* color;
-  const char* dashes;              ///< lines that nearly coincide are told apart by them
+  const char* dashes;              ///< dash pattern, which distinguishes lines that nearly coincide
   std::vector<glm::dvec2> points;  ///< distance and gap
 };
 
-/// Distances and gaps to places on the drawing.
+/// Maps distances and gaps to positions on the drawing.
 struct Axes {
   double x_low, x_high, y_low, y_high;  // decimal logarithms
 
@@ -67,7 +67,7 @@ Axes axes_of(const std::vector<PlotLine>& lines, const std::optional<glm::dvec2>
     for (const glm::dvec2& p : line.points) {
       x_low = std::min(x_low, p.x);
       x_high = std::max(x_high, p.x);
-      // Finer than vertices in floats can be: not worth the paper.
+      // Gaps finer than those between float vertices are not worth plotting.
       if (p.y >= p.x * 3e-8) y_low = std::min(y_low, p.y);
       y_high = std::max(y_high, p.y);
     }
@@ -90,7 +90,7 @@ std::string grid(const Axes& axes) {
   std::string minor, major, labels;
   const auto vertical = [](double x) { return fmt::format("M{:.1f} {}V{}", x, top, bottom); };
   const auto horizontal = [](double y) { return fmt::format("M{} {:.1f}H{}", left, y, right); };
-  // Too many decades are too many lines and labels.
+  // With too many decades, only some get lines and labels.
   const int skip = std::max(1, int((axes.y_high - axes.y_low) / 9)),
             x_skip = std::max(1, int((axes.x_high - axes.x_low) / 9));
   for (int e = int(std::ceil(axes.x_low - 1e-9)); e <= axes.x_high + 1e-9; ++e) {
@@ -124,7 +124,7 @@ std::string path_of(const PlotLine& line, const Axes& axes, bool stands_back) {
                      stands_back ? " opacity=\"0.45\"" : "");
 }
 
-/// Beside the ends of the lines, in their order, far enough apart to be read.
+/// Labels beside the ends of the lines, in the same order, far enough apart to be legible.
 std::string names_of(const std::vector<PlotLine>& lines, const Axes& axes) {
   struct Name {
     double y;
@@ -165,7 +165,7 @@ std::string precision_plot(const ClipDistances& clip, bool orthographic, const s
   const auto is_chosen = [&](const PlotLine& line) {
     return chosen && line.setup.format == chosen->format && line.setup.reversed == chosen->reversed;
   };
-  // A reversed integer buffer resolves what the other does; it takes that one's line.
+  // A reversed integer buffer has the same resolution as the ordinary one, so it uses that line.
   if (chosen && std::none_of(lines.begin(), lines.end(), is_chosen))
     for (PlotLine& line : lines)
       line.setup.reversed = line.setup.format == chosen->format ? chosen->reversed : line.setup.reversed;

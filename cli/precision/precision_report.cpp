@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables of gaps: of one buffer with its parts, of several side by side; and with a model, which objects fight.
+// Tables of gaps: one buffer with its parts, or several side by side. With a model, also the fighting objects.
 #include "cli/precision/precision_report.h"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ std::string object_name(const PrecisionRun& run, std::uint32_t instance) {
   return (*run.names)[instance];
 }
 
-/// A single buffer, with more about it.
+/// The table of a single buffer, with details.
 std::string table_of(const PrecisionRun& run, const DepthSetup& setup) {
   std::string text = fmt::format("{:>12}  {:>12}  {:>12}  {:>12}  {:>14}  {:>11}\n", "distance", "of format",
                                  "of positions", "smallest gap", "gap / distance", "values used");
@@ -38,7 +38,7 @@ std::string table_of(const PrecisionRun& run, const DepthSetup& setup) {
   return text;
 }
 
-/// Several, side by side.
+/// The table of several buffers, side by side.
 std::string table_of(const PrecisionRun& run) {
   std::string text = fmt::format("{:>12}  {:>12}", "distance", "of positions");
   for (const PrecisionResult& result : run.results) text += fmt::format("  {:>12}", setup_name(result.setup));
@@ -64,11 +64,12 @@ std::string reach_text(const PrecisionRun& run) {
       reach);
 }
 
-/// The near plane with which the wanted gap is resolved, positions and all.
+/// The near plane that resolves the wanted gap, including the rounding of positions.
 std::optional<double> near_for(const PrecisionRun& run, const DepthSetup& setup) {
   const glm::dvec2 wanted = *run.settings.precision.wanted;
   const double rounding = rounding_gap(setup, wanted.y, run.reach);
-  // Rounding also moves where the format is asked, and grows with the distance; both by less than this share.
+  // Rounding also shifts the distance at which the format is evaluated, and grows with it. Both effects are below this
+  // share.
   constexpr double slack = 4e-6;
   const double left_over = wanted.x * (1 - slack) - rounding;
   if (left_over <= 0) return std::nullopt;
@@ -126,7 +127,7 @@ std::string_view kind_name(FightKind kind) {
   return "";
 }
 
-/// In pixels squared, all of them or those of a kind.
+/// The visible area in pixels squared, of all pairs or of one kind.
 double visible_area(const FightAreas& areas, std::optional<FightKind> kind) {
   double sum = 0;
   for (const FightingObjects& pair : areas.objects)
@@ -149,7 +150,7 @@ std::string remedies_text(const PrecisionResult& result) {
   return text;
 }
 
-/// The pairs of objects of a single buffer.
+/// The fighting pairs of objects, for a single buffer.
 std::string pairs_text(const PrecisionRun& run) {
   const PrecisionResult& result = run.results.front();
   std::string text;

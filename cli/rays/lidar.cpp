@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost lidar: what a spinning laser, or any pattern of rays from one point, meets.
+// frontmost lidar: the points that a spinning laser, or any pattern of rays from one point, meets.
 #include <fmt/format.h>
 #include <frontmost/image.h>
 
@@ -19,7 +19,7 @@
 namespace frontmost::cli {
 namespace {
 
-/// Two numbers within limits, or `what` is wrong with their order.
+/// Two ascending numbers within limits. \throws UsageError with `what` if their order is wrong.
 glm::dvec2 ordered_pair(const Given& given, const NumberLimits& limits, const char* what) {
   const std::vector<double> ends = parse_numbers(given.text, 2, limits);
   if (ends[0] > ends[1]) throw UsageError(what);
@@ -127,7 +127,7 @@ Lidar rings_of(const LidarSettings& s) {
   return lidar;
 }
 
-/// The rays, in the scanner's own axes.
+/// The rays in the scanner's own axes.
 RayCamera rays_of(const LidarSettings& s) {
   RayCamera camera;
   if (s.directions)
@@ -141,7 +141,7 @@ RayCamera rays_of(const LidarSettings& s) {
   return camera;
 }
 
-/// Upright in the model.
+/// The scanner's pose: upright in the model.
 glm::dmat4 pose_of(const LidarSettings& s, const Surfaces& surfaces) {
   FrameOptions front;
   front.direction = NamedView::front;
@@ -174,7 +174,7 @@ void write(const std::string& path, const RangeScan& met, const RayScene& rays, 
   save(range_image(met, rays, &incidences), path, {}, execution);
 }
 
-/// What was met, in all and by object.
+/// The report: points met, in total and by object.
 Json report(const Settings& settings, const RangeScan& scan, const RayScene& rays) {
   std::vector<std::uint64_t> points(rays.scene().instances.size());
   std::uint64_t met = 0;

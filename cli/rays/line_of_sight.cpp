@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost sight: whether one point sees another, for one pair of points or a file of them.
+// frontmost sight: whether one point sees another, for one pair of points or for a file of pairs.
 //
 //   from o-------------------x - - - - - o to      clear, or blocked: by which object, and where (x)
 //
-// Points are told in the coordinates of the model's file; the library's are about the scene's origin.
+// Users give points in the coordinates of the model's file; the library's are relative to the scene's origin.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ constexpr Option sight_options[] = {
      Group::sight, for_sight, [](Settings& s, const Given& g) { s.sight.pairs = g.file_name(); }},
 };
 
-/// In the coordinates of the model's file.
+/// A pair of points in the coordinates of the model's file.
 struct PointPair {
   glm::dvec3 from, to;
 };
@@ -58,7 +58,7 @@ std::vector<Segment> segments_of(std::span<const PointPair> pairs, const glm::dv
   return segments;
 }
 
-/// What stands in the way: a triangle of an object.
+/// The obstacle: a triangle of an object.
 struct Blocked {
   PrimitiveSource by;
   std::string object;
@@ -94,8 +94,8 @@ std::string pair_text(const RayHit& hit, const Segment& pair, const RayScene& ra
                      blocked.by.triangle, place_text(blocked.point, rays.scene().origin), blocked.distance);
 }
 
-/// Calls `use` with every pair and what is met between its points, in order: a part of them at a time, so that memory
-/// does not grow with what is said of them.
+/// Calls `use` with each pair and the hit between its points, in order. Pairs are processed in blocks, so that memory
+/// does not grow with their number.
 template <class Use>
 void for_each_pair(std::span<const PointPair> pairs, const RayScene& rays, const Execution& execution, const Use& use) {
   constexpr std::size_t at_once = 1 << 16;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text in, one line after the other, and bytes out. A line that is not as it should be is named by its number; a file
-// that never ends is found out by its size before it is held.
+// Text is read line by line; errors name the line's number. The size is limited, so that an endless file is found
+// before it fills the memory.
 #include "cli/rays/ray_files.h"
 
 #include <fmt/format.h>
@@ -37,7 +37,7 @@ std::string_view take_word(std::string_view& line) {
 constexpr std::size_t bytes_of_point = 48;  // at most
 
 void append(std::string& bytes, std::uint32_t word) {
-  // PLY's "little endian", whatever the machine's.
+  // PLY's little endian, whatever the machine's order.
   for (int shift = 0; shift < 32; shift += 8) bytes += char(word >> shift & 0xFF);
 }
 
@@ -54,7 +54,7 @@ void append(std::string& bytes, double value) {
   append(bytes, std::uint32_t(word >> 32));
 }
 
-/// Floats near zero, and doubles where those would round what the model is made of.
+/// Appends a point: as floats near zero, and as doubles if floats would round its coordinates.
 void append_place(std::string& bytes, const glm::dvec3& point, const glm::dvec3& origin) {
   for (int axis = 0; axis < 3; ++axis) {
     if (origin == glm::dvec3(0))

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batch files: JSON whose keys are the options' names, so that one table says what both may be.
+// Batch files: JSON whose keys are names of options, so that the table of options describes both.
 //
-// The text is gone through twice: once to count, which keeps nothing, and once to read. The library's own parser with a
-// callback goes through all views again for every one.
+// The text is parsed twice: once to check limits, keeping nothing, and once to read. The library's parser with a
+// callback would go through all views again for each view.
 #include <fmt/format.h>
 #include <frontmost/files.h>
 
@@ -20,13 +20,13 @@ namespace {
 
 constexpr std::size_t most_views = 100'000;
 constexpr std::size_t most_values = 8'000'000;
-/// Of one object: there are fewer options than that, and each key is looked for among those before it.
+/// Limit of keys in one object. The number of options is smaller, and the search for repeated keys is linear.
 constexpr std::size_t most_keys = 256;
-/// Views, a view, its outputs, kinds of ids, a matrix and its rows: nothing is deeper than six. The JSON library copies
-/// and follows what it has read by recursion, which far deeper lists in lists would end without a word.
+/// Limit of nesting. Views, a view, its outputs, kinds of ids, a matrix and its rows need six levels. The JSON library
+/// copies and visits values by recursion, which very deep lists would crash.
 constexpr std::size_t most_depth = 16;
 
-/// Told of every value in turn; refuses what is too much.
+/// Receives each value in turn and refuses files beyond the limits.
 class BatchCheck final : public nlohmann::json_sax<Json> {
  public:
   BatchCheck(const std::string& text, const std::string& name) : text_(text), name_(name) {}
@@ -75,13 +75,13 @@ class BatchCheck final : public nlohmann::json_sax<Json> {
   }
 
   const std::string &text_, &name_;
-  std::vector<std::size_t> keys_;  ///< so far, of each object and list that is open
+  std::vector<std::size_t> keys_;  ///< so far, for each open object and list
   std::size_t views_ = 0, values_ = 0;
   bool in_views_ = false;
 };
 
-/// O(size of the text). \throws UsageError naming file and line for what is not JSON, and for a number that no double
-/// holds; naming the file for more views, values, keys of an object or lists in lists than the limits above.
+/// Parses a batch file. O(size of the text). \throws UsageError naming file and line for invalid JSON and for numbers
+/// beyond double; naming the file for more views, values, keys of an object or levels than the limits above.
 Json parse_batch_json(const std::string& text, const std::string& name) {
   BatchCheck check(text, name);
   Json::sax_parse(text, &check);
@@ -90,7 +90,7 @@ Json parse_batch_json(const std::string& text, const std::string& name) {
 
 constexpr std::uint64_t largest_batch_file = std::uint64_t(1) << 26;
 
-/// A value and where it stands, such as "batch.json: views[2].resolution".
+/// A value and its place, such as "batch.json: views[2].resolution".
 struct JsonPlace {
   const Json& value;
   std::string path;
@@ -105,7 +105,7 @@ std::string number_text(const Json& value) {
   return value.is_number_integer() ? value.dump() : fmt::format("{}", value.get<double>());
 }
 
-/// What the value would be on a command line.
+/// The value as it would be written on a command line.
 std::string text_of(const JsonPlace& place) {
   const Json& value = place.value;
   if (value.is_string()) return value.get<std::string>();
@@ -127,7 +127,7 @@ std::string text_of(const JsonPlace& place) {
   return text;
 }
 
-/// The system ends names at the first one.
+/// Refuses NUL characters, at which the system would end names.
 void refuse_nul(const JsonPlace& place, const std::string& text) {
   if (text.find('\0') != std::string::npos) place.refuse("must not hold a NUL character");
 }
@@ -162,7 +162,7 @@ bool belongs_to_view(const Option& option) {
 }
 bool belongs_to_outputs(const Option& option) { return option.group == Group::output || option.group == Group::look; }
 
-/// Applies every key of an object; `belongs` says which options it may hold.
+/// Applies all keys of an object. `belongs` tells which options it may hold.
 template <class Belongs>
 void apply_object(const JsonPlace& place, const Belongs& belongs, std::vector<std::string_view> other_keys,
                   Settings& settings) {
@@ -193,7 +193,7 @@ Settings parse_view(const JsonPlace& place, const Settings& defaults) {
     if (!name.value.is_string() || name.value.get<std::string>().empty()) name.refuse("must be a string");
     settings.view.name = name.value.get<std::string>();
     refuse_nul(name, settings.view.name);
-    // It becomes part of a file's name, and must not lead elsewhere.
+    // The name becomes part of a file name and must not lead to another folder.
     if (settings.view.name.find('/') != std::string::npos) name.refuse("must not hold a /");
   }
   if (place.value.contains("outputs")) apply_object(place.at("outputs"), belongs_to_outputs, {}, settings);

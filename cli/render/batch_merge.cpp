@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost batch-merge: whether the shards of a batch make all of it, and all of it in one folder.
+// frontmost batch-merge: checks that the shards of a batch are complete, and gathers them in one folder.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <frontmost/base.h>
@@ -24,20 +24,20 @@ constexpr Option batch_merge_options[] = {
      Group::output, for_batch_merge, [](Settings& s, const Given& g) { s.merge_folder = g.file_name(); }},
 };
 
-/// A manifest and where it lies.
+/// A manifest and its folder.
 struct ShardPart {
   std::string path, folder;
   Manifest manifest;
 };
 
-/// A view and the folder that its files are in.
+/// A view and the folder of its files.
 struct FinishedSource {
   FinishedView view;
   std::string folder;
 };
 
 struct Merged {
-  std::vector<FinishedSource> views;  ///< all, in the order of the batch
+  std::vector<FinishedSource> views;  ///< all views, in the order of the batch
   std::uint64_t file_count = 0, bytes = 0;
 };
 
@@ -46,7 +46,8 @@ void add_part(const fs::path& path, std::vector<ShardPart>& parts) {
   parts.push_back({path.string(), folder.empty() ? "." : folder.string(), read_manifest(path.string())});
 }
 
-/// Folders, and manifests by name. In the order of their names, so that messages do not depend on the file system.
+/// Finds the manifests in the given folders, and manifests given by name. Manifests are sorted by name, so that
+/// messages do not depend on the file system.
 std::vector<ShardPart> find_parts(const std::vector<std::string>& places) {
   std::vector<ShardPart> parts;
   for (const std::string& place : places) {
@@ -75,7 +76,7 @@ std::vector<ShardPart> find_parts(const std::vector<std::string>& places) {
                                                       fmt::join(first, ", "), more));
 }
 
-/// Each view once, its files looked at.
+/// Collects each view once and checks its files.
 Merged merge_parts(std::vector<ShardPart>& parts) {
   const Manifest& first = parts.front().manifest;
   Merged merged;
@@ -104,7 +105,7 @@ Merged merge_parts(std::vector<ShardPart>& parts) {
   return merged;
 }
 
-/// A name that leads nowhere else than into the folder.
+/// Whether a name stays within its folder.
 bool stays_within(const std::string& path) {
   const fs::path normal = fs::path(path).lexically_normal();
   return !normal.empty() && !normal.is_absolute() && *normal.begin() != "..";
@@ -123,7 +124,7 @@ void copy_file(const FinishedFile& file, const std::string& folder, const Staged
     throw Error(ErrorCode::file_malformed, from.string(), "", "changed while it was copied");
 }
 
-/// The manifest comes last: it says that the rest is there.
+/// Copies the files into one folder. The manifest comes last, because it states that the rest exists.
 void gather(const Merged& merged, const Manifest& like, const std::string& stem, const std::string& folder) {
   const WritingFiles writing;
   const MadeFolder made(folder);

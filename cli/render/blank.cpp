@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle that is not seen is charged with the first thing that keeps it out of the view. The sentence names what
-// keeps all of them out, or else counts.
+// Each unseen triangle is counted under the first cause that keeps it out of the view. The sentence names the cause
+// that holds for all of them, or gives the counts.
 #include "cli/render/blank.h"
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 7> clauses = {"has corners that are not f
 
 using WorldCorners = std::array<glm::dvec3, 3>;
 
-/// Corners in eye space, z turned into distance.
+/// Corners in eye space, with z replaced by the distance.
 WorldCorners in_eye(const std::array<glm::vec3, 3>& corners, const View& view) {
   WorldCorners result;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -51,11 +51,11 @@ bool is_outside(const WorldCorners& c, const Projection& p) {
          all(c, [&](const glm::dvec3& v) { return v.y > p.top * reach(v); });
 }
 
-/// With Culling::material double-sided triangles count as one-sided ones: they are missing only where they are tiny.
+/// With Culling::material, double-sided triangles count as one-sided. Double-sided ones only get here if they are tiny.
 bool is_culled(const WorldCorners& c, const View& view) {
   if (view.culling == Culling::none) return false;
   if (view.culling == Culling::both) return true;
-  // Positive when the corners run counter-clockwise as seen from the eye: y up, looking along +distance.
+  // Positive if the corners run counter-clockwise as seen from the eye: y up, looking along +distance.
   const glm::dvec3 normal = glm::cross(c[1] - c[0], c[2] - c[0]);
   const double facing = view.projection.orthographic ? normal.z : glm::dot(normal, c[0]);
   return view.culling == Culling::front ? facing > 0 : facing < 0;
@@ -88,25 +88,25 @@ bool is_all_holes(const Surfaces& surfaces, const View& view, const Execution& e
 
 float linear(float srgb) { return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f); }
 
-/// Values of a channel that are like the background's, in its own scale.
+/// The range of a channel's values that look like the background, in the channel's own scale.
 struct Alike {
   float low, high;
   [[nodiscard]] bool holds(float value) const { return value >= low && value <= high; }
 };
 
-/// `scale` takes an sRGB value from 0 to 1 to the channel's.
+/// `scale` converts an sRGB value from 0 to 1 to the channel's scale.
 template <class Scale>
 std::array<Alike, 3> alike_to(const glm::vec3& background, const Scale& scale) {
   std::array<Alike, 3> alike{};
   for (int c = 0; c < 3; ++c) {
     const float low = background[c] - most_steps / 255, high = background[c] + most_steps / 255;
-    // White that is brighter than white is shown as white.
+    // Values brighter than white are displayed as white.
     alike[std::size_t(c)] = {low <= 0 ? -INFINITY : scale(low), high >= 1 ? INFINITY : scale(high)};
   }
   return alike;
 }
 
-/// `stands_out` is asked for pixels that see something.
+/// `stands_out` is called for pixels that see something.
 template <class StandsOut>
 bool too_few(std::span<const PrimitiveId> primitives, const StandsOut& stands_out) {
   std::size_t covered = 0, distinct = 0;
@@ -198,7 +198,7 @@ bool nothing_stands_out(const Bitmap& picture, std::span<const PrimitiveId> prim
 
 bool nothing_stands_out(const Figure& figure, const glm::vec3& background) {
   const auto is_like = [&](const FigureShape& shape) {
-    // What shows of a shape through which the background is seen.
+    // Contrast of a translucent shape with the background behind it.
     const float opacity = float(shape.color.a) / 255;
     const glm::vec3 color = glm::vec3(shape.color) / 255.0f;
     const glm::vec3 apart = glm::abs(color - background) * opacity * 255.0f;

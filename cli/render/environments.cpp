@@ -23,7 +23,7 @@ Environment make(const std::string& name, const Execution& execution) {
 
 LightOptions Environments::light(const LightSettings& settings, const Execution& execution) {
   LightOptions options = settings.options;
-  if (!settings.environment) return options;  // the shader keeps its studio
+  if (!settings.environment) return options;  // the shader uses its studio
   auto found = made_.find(*settings.environment);
   if (found == made_.end()) found = made_.emplace(*settings.environment, make(*settings.environment, execution)).first;
   options.environment = found->second;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The environments that the views of a run are lit by: each is read, or made, once.
+// The environments that light the views of a run. Each is read or made once.
 #pragma once
 
 #include <frontmost/pictures.h>
@@ -13,11 +13,12 @@ namespace frontmost::cli {
 
 class Environments {
  public:
-  /// What pictures are told of their light. \throws Error as load_environment() and Environment do, naming the file.
+  /// The light of pictures, with its environment. \throws Error as load_environment() and Environment do, naming the
+  /// file.
   [[nodiscard]] LightOptions light(const LightSettings& settings, const Execution& execution);
 
  private:
-  std::map<std::string, Environment> made_;  ///< by what they are called on the command line
+  std::map<std::string, Environment> made_;  ///< by name on the command line
 };
 
 }  // namespace frontmost::cli

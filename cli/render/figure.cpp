@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // render -o FILE.svg or .pdf: a picture of polygons, painted one over the other.
 //
-// What is visible is known already where maps were asked for; a figure asks at pixel centres alone, so that it does not
-// have to be found again. How large files will be is told before they are written: a model of a million triangles makes
-// a file that few viewers open.
+// A figure needs visibility only at pixel centres, so it reuses the visibility that maps have found. The sizes of files
+// are printed before they are written, because a model of a million triangles makes a file that few viewers open.
 #include <fmt/format.h>
 #include <frontmost/pictures.h>
 #include <frontmost/sheets.h>
@@ -23,7 +22,7 @@ FigureOptions figure_options(const Job& job, const RenderContext& context) {
           job.output.merges_neighbours, job.output.most_polygons};
 }
 
-/// What the z-buffer has seen at pixel centres.
+/// Whether the z-buffer has determined visibility at pixel centres already.
 bool is_there(const Job& job, const RenderContext& context, const Sights& sights) {
   return !context.run.method && !job.view.depth.is_used && (sights.shared || sights.maps);
 }
@@ -32,7 +31,7 @@ Visible seen_at_centres(const RenderContext& context, View view) {
   return zbuffer(context.surfaces, view, context.execution);
 }
 
-/// In the colours of the picture that the same options make. \throws Error that names the file and the option, where
+/// The polygons in the colours of a picture with the same options. \throws Error that names the file and the option, if
 /// there are too many polygons.
 Figure figure_of(const Job& job, const RenderContext& context, const Sights& sights, const View& view) {
   const FigureOptions options = figure_options(job, context);
@@ -50,7 +49,7 @@ Figure figure_of(const Job& job, const RenderContext& context, const Sights& sig
   }
 }
 
-/// Megabytes of the files, roughly: what a path and a corner take in each.
+/// Prints the files' approximate sizes in megabytes, from the average sizes of a path and of a vertex.
 void tell_size(const Job& job, const Figure& figure) {
   for (const std::string& path : job.figures) {
     const bool is_svg = page_format(path) == PageFormat::svg;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// FNV-1a over words of 64 bits, with a shift after each: without it the upper bits of a word would never reach the
-// lower ones of the hash, and two of them could cancel each other.
+// FNV-1a over words of 64 bits, with a shift after each. Without the shift, the upper bits of a word would never reach
+// the lower bits of the hash, and two words could cancel each other.
 #include "cli/render/file_hash.h"
 
 #include <fcntl.h>
@@ -19,7 +19,7 @@
 namespace frontmost::cli {
 namespace {
 
-/// The last word of those that do not fill one is filled up with zeros; the length is added elsewhere.
+/// Adds bytes. Zeros fill up an incomplete last word; the caller adds the length.
 void add_bytes(RunningHash& hash, std::span<const char> bytes) {
   std::uint64_t word = 0;
   std::size_t at = 0;
@@ -34,7 +34,7 @@ void add_bytes(RunningHash& hash, std::span<const char> bytes) {
 }
 
 [[noreturn]] void fail_to_read(const std::string& path) {
-  const int code = errno;  // before strings are made: that may change it
+  const int code = errno;  // before strings are made, which may change errno
   throw Error(ErrorCode::file_unreadable, path, "", "cannot read: " + std::generic_category().message(code));
 }
 
@@ -47,7 +47,7 @@ class OpenFile {
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
 
-  /// Fewer only at the end.
+  /// Fills `block`. \returns the number of bytes read, which is smaller only at the end.
   std::size_t fill(std::span<char> block) const {
     std::size_t done = 0;
     while (done < block.size()) {
@@ -84,7 +84,7 @@ void RunningHash::add_bits(double number) {
 }
 
 FileHash hash_of_file(const std::string& path) {
-  constexpr std::size_t block_size = std::size_t(1) << 20;  // a multiple of a word's
+  constexpr std::size_t block_size = std::size_t(1) << 20;  // a multiple of a word's size
   const OpenFile file(path);
   std::vector<char> block(block_size);
   RunningHash hash;

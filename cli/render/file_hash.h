@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hashes of files, texts and numbers, for telling whether what was made is what would be made again.
+// Hashes of files, texts and numbers, to detect changes.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 
 namespace frontmost::cli {
 
-/// 64 bits of all that was added, in this order. Not for secrets: collisions can be made on purpose.
+/// 64-bit hash of all added values, in order. Not for security: collisions can be constructed.
 class RunningHash {
  public:
   void add(std::uint64_t word);
-  /// With its length, so that "ab", "c" is not "a", "bc".
+  /// Adds the text with its length, so that "ab", "c" differs from "a", "bc".
   void add(std::string_view text);
   void add_bits(double number);
   [[nodiscard]] std::uint64_t value() const { return value_; }
@@ -22,7 +22,7 @@ class RunningHash {
   std::uint64_t value_ = 0xcbf29ce484222325;
 };
 
-/// A file by its length and its bytes.
+/// Length and hash of a file.
 struct FileHash {
   std::uint64_t bytes = 0, hash = 0;
   [[nodiscard]] bool operator==(const FileHash&) const = default;
@@ -30,7 +30,7 @@ struct FileHash {
 /// \throws Error file_unreadable.
 [[nodiscard]] FileHash hash_of_file(const std::string& path);
 
-/// 16 digits: JSON's numbers lose bits above 2^53 in many readers.
+/// The hash as 16 hexadecimal digits, because JSON numbers above 2^53 lose bits in many readers.
 [[nodiscard]] std::string digits_of_hash(std::uint64_t hash);
 
 }  // namespace frontmost::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which views and files a run has, and which wishes exclude each other: layers and streams, polygons and depth buffers.
-// A wish that cannot be granted is an error that names both options, never a file that is silently something else.
+// Plans the views and files of a run, and checks which options exclude each other: layers and streams, polygons and
+// depth buffers. A wish that cannot be met is an error that names both options; it never silently gives another file.
 #include "cli/render/jobs.h"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 namespace frontmost::cli {
 namespace {
 
-/// What only the A-buffer, or only a method that knows layers, can do.
+/// Checks outputs that only the A-buffer, or only a method with layers, supports.
 void check_layers(const Settings& settings, const Job& job) {
   const bool has_layers = !job.layer_files.empty() || wants(job, OutputKind::deep);
   if (settings.run.stream && (has_layers || settings.output.opacity < 1))
@@ -29,7 +29,7 @@ void check_layers(const Settings& settings, const Job& job) {
     throw UsageError("--samples 64 needs --method abuffer");
 }
 
-/// Takes those pictures out of the outputs that are polygons and no pixels.
+/// Moves pictures of polygons from the outputs to the job's figures.
 void take_figures(const Settings& settings, const std::string& model, Job& job) {
   std::vector<OutputRequest>& files = job.output.files;
   const auto is_one = [](const OutputRequest& r) { return r.kind == OutputKind::picture && is_figure(r.path); };
@@ -97,7 +97,7 @@ void check_files(const std::vector<Job>& jobs, const Settings& settings) {
     if (is_environment_file(job.output.light)) inputs.add(*job.output.light.environment, "is the environment itself");
     if (job.output.reference) references.push_back(*job.output.reference);
   }
-  // Comparing a picture with itself would always pass.
+  // A picture that is compared with itself would always pass.
   check_references(references, paths);
   check_outputs(paths, inputs);
   const bool writes_stdout = std::find(paths.begin(), paths.end(), "-") != paths.end();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one run of `frontmost render` has to do: the views, each with its files.
+// The jobs of a run of `frontmost render`: views, each with its files.
 //
 //   command line ---------------------> one Job
-//   batch file ----> view 0, 1, 2 ... > a Job each: what the file does not say is taken from the command line
+//   batch file ----> view 0, 1, 2 ... > a Job each: settings that the file omits are taken from the command line
 //
-// Jobs are planned before the model is read. Whatever can be refused is refused then, for all of them.
+// Jobs are planned before the model is read, so that errors in any of them are reported first.
 #pragma once
 
 #include <frontmost/image.h>
@@ -22,17 +22,17 @@ namespace frontmost::cli {
 struct Job {
   std::string name;        ///< {view}
   std::size_t number = 0;  ///< in the batch file, from 0
-  std::uint64_t said = 0;  ///< as in Settings
+  std::uint64_t said = 0;  ///< as Settings::said
   ViewSettings view;
   OutputSettings output;
-  std::vector<FileToWrite> files, layer_files;  ///< of what is nearest, or of all; of single layers
+  std::vector<FileToWrite> files, layer_files;  ///< files of the front-most surface or of all; files of single layers
   std::vector<std::string> figures;             ///< pictures of polygons
-  std::string difference;                       ///< where the difference to the reference goes; empty: no reference
-  std::shared_ptr<const Image> reference;       ///< what output.reference holds; none: to be read again
+  std::string difference;                       ///< path of the difference to the reference; empty: no reference
+  std::shared_ptr<const Image> reference;       ///< contents of output.reference; null: to be read again
 };
 
-/// One job, or those of the batch file; all files have been checked.
-/// \throws UsageError and Error as plan_outputs() and check_outputs() do; the batch file's complaints name the place.
+/// Plans one job, or those of the batch file, and checks all their files.
+/// \throws UsageError and Error as plan_outputs() and check_outputs() do; errors in the batch file name the place.
 [[nodiscard]] std::vector<Job> plan_jobs(const Settings& settings);
 
 /// All files that the jobs write.
@@ -41,7 +41,7 @@ struct Job {
 /// The settings of each view of a batch file. \throws UsageError naming file and place; Error file_unreadable, or
 /// limit_exceeded for more than 64 MiB.
 [[nodiscard]] std::vector<Settings> read_batch(const std::string& path, const Settings& defaults);
-/// The same from text; `name` stands for the file in messages.
+/// The settings of each view from a batch file's text; `name` stands for the file in messages.
 [[nodiscard]] std::vector<Settings> parse_batch(const std::string& text, const std::string& name,
                                                 const Settings& defaults);
 

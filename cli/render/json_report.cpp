@@ -15,7 +15,7 @@
 namespace frontmost::cli {
 namespace {
 
-// As text: JSON numbers lose bits above 2^53 in many readers.
+// A hash as text, because JSON numbers above 2^53 lose bits in many readers.
 std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 Json seen_json(const Seen& seen, const View& view) {
@@ -57,7 +57,7 @@ Json depth_json(const DepthSettings& settings) {
           {"reversed", state.nearer_is_greater}};
 }
 
-/// As far as there is anything to say of a camera that is no pinhole.
+/// The camera of a view. Entries that only pinholes have are left out for other cameras.
 Json view_camera_json(const ViewResult& result, const glm::dvec3& origin) {
   Json json = camera_json(result.view, result.target, origin);
   if (result.camera_model == CameraModel::pinhole) return json;
@@ -82,7 +82,7 @@ Json light_json(const LightSettings& light) {
   return json;
 }
 
-/// How the pictures of a view look: what was said, or goes without saying.
+/// Options that determine the look of a view's pictures, with their defaults.
 Json look_json(const OutputSettings& output) {
   constexpr std::string_view shadings[] = {"lit", "flat", "normals", "depth", "ids", "uv"};
   constexpr std::string_view lights[] = {"key", "file", "both", "none"}, shadows[] = {"off", "map", "rays"};
@@ -113,7 +113,7 @@ Json view_json(const Job& job, const ViewResult& result, const glm::dvec3& origi
   return json;
 }
 
-/// Those that wrote files, and all of them polygons.
+/// Whether files were written, and all of them are polygons.
 bool has_only_figures(const std::vector<ViewResult>& views) {
   bool has_any = false;
   for (const ViewResult& view : views)
@@ -124,7 +124,7 @@ bool has_only_figures(const std::vector<ViewResult>& views) {
   return has_any;
 }
 
-/// That of the picture.
+/// The method that made the picture.
 std::string_view method_name(const Settings& settings, const ModelFacts& model, const std::vector<ViewResult>& views) {
   const auto is_pinhole = [](const ViewResult& view) { return view.camera_model == CameraModel::pinhole; };
   if (!views.empty() && std::none_of(views.begin(), views.end(), is_pinhole)) return "raycast";
@@ -170,11 +170,11 @@ Json render_json(const Settings& settings, const ModelFacts& model, const std::v
 std::string hash_lines(const std::vector<ViewResult>& views, bool is_batch) {
   std::string lines;
   for (const ViewResult& view : views) {
-    if (!view.seen) continue;  // its hash was not asked for
+    if (!view.seen) continue;  // no hash was asked for
     const std::string prefix = is_batch ? printable_text(view.name) + ":" : "";
     lines += fmt::format("{}visible {}\n", prefix, hash_text(view.seen->hash));
     for (const Result& result : view.results) {
-      if (!result.hash) continue;  // polygons have none
+      if (!result.hash) continue;  // polygons have no hash
       lines += fmt::format("{}{} {} {}\n", prefix, result.what, hash_text(*result.hash), printable_text(result.path));
     }
   }

@@ -32,7 +32,7 @@ Json json_of(const FinishedView& view) {
   return {{"view", view.number}, {"name", view.name}, {"key", digits_of_hash(view.key)}, {"files", std::move(files)}};
 }
 
-/// One line: what is no UTF-8, in names of files, cannot be told in JSON.
+/// One line of JSON. Invalid UTF-8 in file names is replaced, because JSON cannot hold it.
 std::string line_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 std::uint64_t number_in(const Json& json) {
@@ -65,7 +65,7 @@ Manifest head_in(const Json& json) {
           {}};
 }
 
-/// What `read` makes of the line; none where it is not what it should be.
+/// The result of `read` for the line; empty if the line is malformed.
 template <class Read>
 auto read_line(std::string_view line, const Read& read) -> std::optional<decltype(read(Json()))> {
   try {
@@ -106,7 +106,7 @@ Manifest read_manifest(const std::string& path) {
   std::optional<Manifest> manifest;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = text.find('\n', begin);
-    if (end == std::string::npos) break;  // cut short
+    if (end == std::string::npos) break;  // a truncated line
     const std::string_view line = std::string_view(text).substr(begin, end - begin);
     begin = end + 1;
     if (!manifest) {
@@ -140,7 +140,7 @@ void append_to_manifest(const FinishedView& view, const std::string& path) {
   const int code = errno;
   ::close(descriptor);
   errno = code;
-  // The rest of a line would have to be written by whoever makes room on the disk; it is written anew next time.
+  // An incomplete line is an error; a later run writes it anew.
   if (written != ssize_t(line.size())) fail_to_write(path);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options that say what to write and how it looks.
+// Options that select the outputs and their look.
 #include "cli/failure.h"
 #include "cli/option.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of a view, each composed of what it holds and saved as soon as it is whole; then what else becomes of a
-// picture: it is held against a reference, or shown on the terminal.
+// Composes and saves the files of a view, one after the other. Then compares the picture with a reference, or shows it
+// on the terminal.
 //
-// Maps are made when a file asks for them, one at a time, since each takes as much memory as what is visible. A picture
-// that goes into a PNG file alone is never made in floats.
+// Maps are made one at a time, when a file needs them, because each takes as much memory as the visible surfaces. A
+// picture that goes only into a PNG file is never converted to floats.
 #include "cli/render/output_writer.h"
 
 #include <frontmost/files.h>
@@ -23,7 +23,7 @@ bool is_picture_alone(const FileToWrite& file) {
   return file.kinds.size() == 1 && file.kinds.front() == OutputKind::picture;
 }
 
-/// PFM holds three channels; there the picture is without its alpha.
+/// The picture without alpha, because PFM holds three channels.
 Image without_alpha(const Image& picture) {
   Image copy = picture;
   if (copy.channels.size() == 4) copy.channels.pop_back();
@@ -50,7 +50,7 @@ void note(const Image& part, OutputKind kind, const FileToWrite& file, const Out
   if (source.job.output.hash) one.hash = content_hash(part);
 }
 
-/// The channels of every kind that the file holds.
+/// The channels of all kinds that the file holds.
 Image compose(const FileToWrite& file, const OutputSource& source, ViewResult& result) {
   Image image;
   for (const OutputKind kind : file.kinds) {
@@ -86,7 +86,7 @@ void write_deep(const FileToWrite& file, const OutputSource& source, ViewResult&
 
 void write(const FileToWrite& file, const OutputSource& source, ViewResult& result) {
   if (file.kinds.front() == OutputKind::deep) return write_deep(file, source, result);
-  // A picture on its own is saved as it is: copying one takes as long as finding what is visible.
+  // A picture on its own is saved without a copy, which would take as long as finding visibility.
   const bool as_it_is = is_picture_alone(file) && file.format != ImageFormat::pfm;
   if (as_it_is && source.bitmap) {
     result.results.push_back({std::string(kind_name(OutputKind::picture)), file.path, {}});
@@ -99,7 +99,7 @@ void write(const FileToWrite& file, const OutputSource& source, ViewResult& resu
   }
 }
 
-/// Sizes or channels that are not the same are the reference's fault.
+/// Errors about different sizes or channels name the reference.
 Comparison compared(const Image& picture, const Image& reference, const Job& job, const Execution& execution) {
   try {
     return compare(picture, reference, job.output.reference_threshold, execution);
@@ -108,12 +108,12 @@ Comparison compared(const Image& picture, const Image& reference, const Job& job
   }
 }
 
-// Room below the picture for the prompt that comes next.
+// Rows kept free below the picture for the next prompt.
 constexpr int rows_kept = 2;
 
 glm::ivec2 room(const glm::ivec2& terminal) { return {std::max(terminal.x, 1), std::max(terminal.y - rows_kept, 1)}; }
 
-/// Terminals say so in COLORTERM; the others are given the 256-colour palette, which all know.
+/// Whether the terminal announces true colour in COLORTERM. Others get the 256-colour palette, which all support.
 bool has_true_color() {
   const char* const value = std::getenv("COLORTERM");
   return value && (std::string_view(value) == "truecolor" || std::string_view(value) == "24bit");
@@ -179,7 +179,7 @@ ReferenceResult compare_with_reference(const Image& picture, const Job& job, con
 }
 
 void prepare_for_terminal(Job& job, const glm::ivec2& terminal) {
-  // Two pixels a character; the samples do the smoothing.
+  // A character shows two pixels; supersampling smooths them.
   if (!job.view.resolution && !job.view.intrinsics) job.view.resolution = room(terminal) * glm::ivec2(1, 2);
   if (!job.output.background_given) job.output.background = std::nullopt;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the pictures and maps of a view go: into files, of what is nearest or of layers behind it; into figures, which
-// are pictures of polygons; beside a reference; and onto the terminal, when there is nowhere else.
+// Outputs of a view: image files of the front-most surface or of layers, figures (pictures of polygons), the comparison
+// with a reference, and the terminal if there is no other output.
 #pragma once
 
 #include <frontmost/image.h>
@@ -12,52 +12,52 @@
 
 namespace frontmost::cli {
 
-/// What all files of a view are made from.
+/// The source of all files of a view.
 struct OutputSource {
   const Job& job;
   Execution execution;
-  std::function<Image(OutputKind)> map;  ///< makes the map of a kind, where a file asks for it
-  const Image* picture;                  ///< null where none was asked for, or only its bytes are needed
-  const Bitmap* bitmap = nullptr;        ///< the picture where that is enough: see needs_only_bitmap()
-  std::function<DeepImage()> deep = {};  ///< makes the deep image, where a file asks for it
+  std::function<Image(OutputKind)> map;  ///< makes the map of a kind when a file needs it
+  const Image* picture;                  ///< null if not needed, or if the bitmap suffices
+  const Bitmap* bitmap = nullptr;        ///< the picture in bytes, if it suffices: see needs_only_bitmap()
+  std::function<DeepImage()> deep = {};  ///< makes the deep image when a file needs it
 };
 
-/// Whether the job writes this.
+/// Whether the job writes outputs of this kind.
 [[nodiscard]] bool wants(const Job& job, OutputKind kind);
 
-/// Whether the job writes anything in colours: a picture, its polygons, its layers, or a deep image.
+/// Whether the job writes coloured outputs: a picture, polygons, layers, or a deep image.
 [[nodiscard]] bool writes_colors(const Job& job);
 
-/// Whether the picture goes nowhere but into files of 8 bits (PNG, JPEG, WebP), each its own.
+/// Whether the picture goes only into separate 8-bit files (PNG, JPEG, WebP).
 [[nodiscard]] bool needs_only_bitmap(const Job& job);
 
-/// Writes every file of the job, and notes it in the result.
+/// Writes all files of the job and notes them in the result.
 void write_files(const OutputSource& source, ViewResult& result);
 
-/// Finds, shades and writes the layers that the job asks for. \throws Error limit_exceeded for layers of more than 2^30
-/// samples together.
+/// Finds, shades and writes the job's layers. \throws Error limit_exceeded if all layers together have more than 2^30
+/// samples.
 void write_layers(const Job& job, const RenderContext& context, ViewResult& result);
 
-/// What a report calls them.
+/// The name of figures in reports.
 inline constexpr std::string_view figure_name = "figure";
 
-/// Whether a picture's name asks for polygons.
+/// Whether the suffix of a picture's name asks for polygons.
 [[nodiscard]] bool is_figure(const std::string& path);
 
-/// Orders, shades and writes the figures that the job asks for, after telling how large they will be.
+/// Sorts, shades and writes the job's figures, after printing their approximate size.
 /// \throws Error limit_exceeded for more polygons than the settings allow.
 void write_figures(const Job& job, const RenderContext& context, const Sights& sights, ViewResult& result);
 
-/// Reads every job's reference, so that one that cannot be read is told before anything is drawn or written. Those of
-/// a long batch together may be more than memory holds: what goes beyond 2^26 pixels is let go, and read once more.
-/// \throws Error when one cannot be read.
+/// Reads the references of all jobs, so that an unreadable one is reported before anything is drawn. References of a
+/// long batch may not fit into memory, so pictures beyond 2^26 pixels are dropped and read again later. \throws Error
+/// if one cannot be read.
 void read_references(std::vector<Job>& jobs);
 
-/// For a picture that is not written yet: writes the difference picture where they differ by more than the threshold;
-/// that is not an error here. \throws Error when the reference cannot be read, or has another size or other channels
+/// Compares a picture that is not written yet. Writes the difference picture if they differ by more than the threshold,
+/// which is no error here. \throws Error if the reference cannot be read, or has another size or other channels.
 [[nodiscard]] ReferenceResult compare_with_reference(const Image& picture, const Job& job, const Execution& execution);
 
-/// Fits the picture to the terminal, and lets its background through, where the user did not say otherwise.
+/// Fits the picture to the terminal, and makes its background transparent, unless the user chose otherwise.
 void prepare_for_terminal(Job& job, const glm::ivec2& terminal);
 void show_on_terminal(const Image& picture);
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rank that fails would leave the others waiting for it. So before everything that they do together they find out
-// whether one has failed, by one maximum of small integers; and then all of them end, with its message:
+// A rank that fails would leave the others waiting for it. So before each common operation, the ranks check whether one
+// has failed, by a maximum of small integers; then all end with that rank's message:
 //
 //   rank 0   ... agree, greatest, ... agree  <- waits       : all are well but rank 2 -> its message -> all end
 //   rank 1   ... agree, greatest, ... agree  <- waits       :
 //   rank 2   ... agree, greatest, throws, fail() -> agree   :
 //
-// A rank that dies cannot tell: whoever started the ranks, such as mpirun, ends the others then. Files appear only when
-// they are whole, so none is left half written.
+// A rank that crashes cannot report it; the launcher of the ranks, such as mpirun, ends the others. Files appear only
+// when they are complete, so none is left half written.
 #include "cli/render/ranks.h"
 
 #include <dlfcn.h>
@@ -29,7 +29,7 @@ std::unique_ptr<Ranks> join_mpi() {
   for (const std::filesystem::path& folder : {beside, (beside / FRONTMOST_MODULES).lexically_normal()}) {
     const std::filesystem::path path = folder / mpi_module;
     if (!std::filesystem::exists(path, ignored)) continue;
-    // MPI's own modules look for its symbols among those of the program.
+    // MPI's own modules look up its symbols globally, hence RTLD_GLOBAL.
     void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_GLOBAL);
     void* const join = module ? dlsym(module, join_function) : nullptr;
     if (!join) throw Error(ErrorCode::unsupported, "--mpi", dlerror());
@@ -51,7 +51,7 @@ std::string text_of(const Ranks::Message& message) {
   return {reinterpret_cast<const char*>(message.data()), message.size()};
 }
 
-/// All that decides what ranks have to tell each other.
+/// Hash of all settings that determine the messages between ranks.
 std::uint64_t hash_of(const Settings& settings) {
   RunningHash hash;
   hash.add(settings.said);
@@ -63,7 +63,7 @@ std::uint64_t hash_of(const Settings& settings) {
   return hash.value();
 }
 
-/// Others would send messages that do not fit.
+/// Checks that all ranks run the same command; others would send messages that do not fit.
 void check_same_command(const Settings& settings, Ranks& ranks) {
   const std::uint64_t hash = hash_of(settings);
   std::uint64_t ends[2] = {hash, ~hash};
@@ -72,8 +72,8 @@ void check_same_command(const Settings& settings, Ranks& ranks) {
   throw UsageError("--mpi: the ranks were not started with the same command line, or are not of the same version");
 }
 
-/// What is being thrown, as the program would end by it. Call in a handler. Ctrl-C and the like are thrown again: who
-/// stops one rank stops all.
+/// The current exception as the program would report it. Call in a handler. Interruptions are rethrown, because the
+/// signal that stops one rank stops all.
 RunFailure current_failure(const Settings& settings) {
   try {
     throw;
@@ -103,7 +103,7 @@ int run_carefully(const Settings& settings, CarefulRanks& ranks, const std::func
     failure = ranks.fail(mine);
   }
   if (ranks.number() == 0) complain(failure.message);
-  // Whoever started the ranks ends the others when one ends so: not before this is said.
+  // The launcher ends all ranks when one ends with an error, so all wait until the message is printed.
   ranks.part();
   return failure.status;
 }
@@ -112,7 +112,7 @@ int run_carefully(const Settings& settings, CarefulRanks& ranks, const std::func
 
 RunFailure CarefulRanks::agree(const RunFailure& mine) {
   const WaitingForRanks waiting;
-  // Of the lowest rank that failed this is the greatest.
+  // The urgency is greatest for the lowest rank that failed.
   std::uint64_t urgency = mine.status == exit_done ? 0 : std::uint64_t(count() - number());
   ranks_->keep_greatest({&urgency, 1});
   if (urgency == 0) return {exit_done, {}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run that several ranks share: one of them writes and speaks, and all of them end alike.
+// A run on several ranks: one of them writes files and messages, and all end with the same status.
 #pragma once
 
 #include <frontmost/streams.h>
@@ -14,21 +14,21 @@
 
 namespace frontmost::cli {
 
-/// With whom a model is streamed.
+/// The ranks that stream a model together.
 struct Team {
-  Ranks* ranks = nullptr;    ///< null: nobody
+  Ranks* ranks = nullptr;    ///< null: no other ranks
   std::vector<int> readers;  ///< as StreamOptions::readers
 
   [[nodiscard]] bool is_first() const { return !ranks || ranks->number() == 0; }
 };
 
-/// Why a run failed, and how the program ends then.
+/// The reason why a run failed, and the program's exit status.
 struct RunFailure {
   int status = exit_could_not;
   std::string message;
 };
 
-/// Thrown where another rank has failed.
+/// Thrown on a rank if another rank has failed.
 class FailedElsewhere : public std::exception {
  public:
   explicit FailedElsewhere(RunFailure failure) : failure_(std::move(failure)) {}
@@ -38,40 +38,40 @@ class FailedElsewhere : public std::exception {
   RunFailure failure_;
 };
 
-/// Ranks that ask each other before everything whether all are well, so that none waits for one that has failed. While
-/// they wait, --timeout says so.
+/// Ranks that check before each operation that none has failed, so that none waits in vain. While they wait, --timeout
+/// mentions it.
 class CarefulRanks final : public Ranks {
  public:
   explicit CarefulRanks(std::unique_ptr<Ranks> ranks) : ranks_(std::move(ranks)) {}
 
   [[nodiscard]] int number() const override { return ranks_->number(); }
   [[nodiscard]] int count() const override { return ranks_->count(); }
-  /// \throws FailedElsewhere, as all that follow
+  /// \throws FailedElsewhere, as do gather(), broadcast() and meet().
   void keep_greatest(std::span<std::uint64_t> values) override;
   std::vector<Message> gather(Message message) override;
   Message broadcast(Message message) override;
-  /// Waits for all others to come here, too.
+  /// Waits until all ranks call it.
   void meet();
-  /// Tells the others, who are at any of the above, or come there. \returns whose failure counts: of several the one of
-  /// the lowest rank.
+  /// Tells the other ranks about a failure, when they call one of the above. \returns the failure of the lowest failed
+  /// rank.
   RunFailure fail(const RunFailure& failure);
-  /// Waits for all others to come here, too, whether they are well or not.
+  /// Waits until all ranks call it, whether they failed or not.
   void part();
 
  private:
-  /// \returns the failure of the lowest rank that has one; its status is exit_done where none has.
+  /// \returns the failure of the lowest failed rank; status exit_done if there is none.
   RunFailure agree(const RunFailure& mine);
   void check();
 
   std::unique_ptr<Ranks> ranks_;
 };
 
-/// Replaces {rank} in a model's name by every number below `count`: a file for each rank. Names without it are read by
-/// all. `settings` hold all of them afterwards. \returns the readers.
+/// Replaces {rank} in a model's name by each number below `count`, to give a file for each rank. All ranks read a name
+/// without {rank}. `settings` hold all names afterwards. \returns the readers.
 [[nodiscard]] std::vector<int> name_files_of_ranks(int count, Settings& settings);
 
-/// Runs on all ranks that --mpi joins. Where it fails on one, it ends on all, and rank 0 says why.
-/// \returns the exit status. \throws Error unsupported where there is no MPI
+/// Runs on all ranks that --mpi joins. If one fails, all end, and rank 0 prints the reason.
+/// \returns the exit status. \throws Error unsupported if MPI is not available.
 [[nodiscard]] int run_on_ranks(Settings settings, const std::function<int(const Settings&, const Team&)>& run);
 
 }  // namespace frontmost::cli

@@ -39,20 +39,20 @@ void check_method(const Settings& settings, const std::vector<Job>& jobs) {
   }
 }
 
-/// Whether something is behind glass.
+/// Whether a material is transparent.
 bool lets_light_through(const Scene& scene) {
   return std::any_of(scene.materials.begin(), scene.materials.end(),
                      [](const Material& m) { return m.is_see_through(); });
 }
 
-/// "render model.obj out.png" lacks an "-o".
+/// A model that is a picture's name, as in "render model.obj out.png", which lacks "-o".
 std::optional<std::string> picture_among_models(const Settings& settings) {
   for (const std::string& model : settings.more_models)
     if (format_by_suffix(model) || is_figure(model)) return model;
   return std::nullopt;
 }
 
-/// Without any result asked for, the picture goes to the terminal, if there is one. What MPI's ranks write to is none.
+/// Shows the picture on the terminal if no other result is asked for. Output of MPI's ranks goes to no terminal.
 bool shows_on_terminal(const Settings& settings, std::vector<Job>& jobs) {
   if (has_result(settings, jobs)) return false;
   const std::optional<glm::ivec2> terminal = settings.run.mpi ? std::nullopt : output_terminal();
@@ -67,7 +67,7 @@ bool shows_on_terminal(const Settings& settings, std::vector<Job>& jobs) {
   return true;
 }
 
-/// Warnings first, then the picture, so that both can be read.
+/// Prints warnings before the picture, so that both can be read.
 void tell(const ViewResult& result, const Settings& settings, Progress& progress) {
   progress.clear();
   const std::string prefix = settings.run.batch ? result.name + ": " : "";
@@ -87,7 +87,7 @@ int status_of(const std::vector<ViewResult>& results) {
   return std::any_of(results.begin(), results.end(), differs) ? exit_differs : exit_done;
 }
 
-/// What both ways to render begin with.
+/// State that rendering of models and of streams share.
 struct Run {
   const Settings& settings;
   std::vector<Job> jobs;
@@ -96,7 +96,7 @@ struct Run {
   Team team{};
   std::optional<ShardRun> shard{};
 
-  /// Leaves what is to be done of the shard. `used` are the files of the model.
+  /// Keeps only the unfinished jobs of the shard. `used` are the files of the model.
   void choose_jobs(const std::vector<std::filesystem::path>& used) {
     if (!settings.run.shard) return;
     shard.emplace(settings, jobs, used);
@@ -108,14 +108,14 @@ struct Run {
   }
 };
 
-/// Whether the z-buffer draws the model so often, shadows aside, that clusters had better be there from the beginning.
+/// Whether the z-buffer draws the model more than once, shadows aside, so that clusters pay off from the start.
 bool is_drawn_often(const Run& run) {
   std::size_t count = 0;
   for (const Job& job : run.jobs) count += views_of({}, plan_sights(job, run.settings.run, run.on_terminal, {})).size();
   return count * std::size_t(run.settings.run.repeat) > 1;
 }
 
-/// What a lit picture does not show of the model's own lights, where the user may not know it.
+/// A warning about the model's own lights, if a lit picture ignores them and the user may not know it.
 std::optional<std::string> lights_warning(const Scene& scene, const Job& job) {
   if (job.output.shading != Shading::lit || !writes_colors(job)) return std::nullopt;
   if (scene.lights.empty() && job.output.lights == Lights::file)
@@ -135,7 +135,7 @@ std::optional<std::string> lights_warning(const Scene& scene, const Job& job) {
   return fmt::format("{}, {} of which throw no shadows by maps; --shadows rays finds those of all", own, without);
 }
 
-/// Renders every job by `render`, and tells of each.
+/// Renders each job by `render` and prints its messages.
 template <class Render>
 std::vector<ViewResult> render_all(const Run& run, Progress& progress, const Render& render) {
   const std::vector<Job>& jobs = run.jobs;
@@ -163,7 +163,7 @@ void report(const Settings& settings, const ModelFacts& model, const std::vector
   if (!settings.run.json) print(hash_lines(results, settings.run.batch.has_value()));
 }
 
-/// What the reader says, and once, for whichever views, what their framing and their lights leave out.
+/// The reader's warnings, and one warning each about framing and lights, for any of the views.
 std::vector<std::string> model_warnings(const std::vector<Job>& jobs, const Surfaces& surfaces,
                                         const Settings& settings, Progress& progress) {
   std::vector<std::string> warnings = surfaces.scene().warnings;
@@ -173,13 +173,13 @@ std::vector<std::string> model_warnings(const std::vector<Job>& jobs, const Surf
     warnings.push_back(*warning);
     return true;
   };
-  // The same of every view that is fitted so.
+  // Framing is the same for all views that are fitted so.
   const auto fitted =
       std::find_if(jobs.begin(), jobs.end(), [](const Job& job) { return is_fitted_to_subject(job.view); });
   if (fitted != jobs.end()) tell_once(framing_warning(fitted->view, surfaces));
   for (const Job& job : jobs)
     if (tell_once(lights_warning(surfaces.scene(), job))) break;
-  // Whichever view it is, the model lies.
+  // The warning holds for all views, because it is the model that lies.
   const auto upright = std::find_if(jobs.begin(), jobs.end(), [](const Job& job) { return depends_on_up(job.view); });
   if (upright != jobs.end()) tell_once(up_warning(upright->view, settings.load, surfaces));
   return warnings;
@@ -247,7 +247,7 @@ int render_stream(Run& run) {
   const std::vector<ViewResult> results = render_all(run, progress, [&](const Job& job) {
     ViewResult result =
         render_streamed_view(job, stream, {environments, settings.run, execution, run.on_terminal, options.ranks});
-    // They are known now, and stand before what there is to say of the view, as without --stream.
+    // The stream's warnings are complete now, and come before those of the view, as without --stream.
     if (std::exchange(is_first, false)) show_warnings(stream.scene().warnings, settings.run, progress);
     return result;
   });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Panoramas and fisheyes: rays instead of a view, ranges instead of depths. Everything that follows is what a pinhole's
-// picture goes through, with the maps that such a camera can have, which have one ray a pixel.
+// Panoramas and fisheyes: rays instead of a view, ranges instead of depths. The other steps are those of a pinhole,
+// with the maps that such cameras support, at one ray a pixel.
 #include <fmt/format.h>
 #include <frontmost/pictures.h>
 #include <frontmost/raycast.h>
@@ -21,7 +21,7 @@ namespace {
 constexpr double half_turn_degrees = 180;
 constexpr glm::ivec2 panorama_resolution{2048, 1024}, fisheye_resolution{1024, 1024};
 
-/// The pose of the view that the same options make of a pinhole.
+/// The camera with the pose that the same options give a pinhole.
 RayCamera camera_of(const ViewResult& result, int samples) {
   const View& view = result.view;
   if (result.camera_model == CameraModel::panorama)
@@ -64,7 +64,7 @@ Image ranges(const RangeScan& around, const char* name, float background) {
 Image map_around(OutputKind kind, const Job& job, const RayScene& rays, const RangeScan& around) {
   const float background = job.output.background_depth;
   switch (kind) {
-    // There is no image plane that a depth could be measured from.
+    // Depth is a range here, because there is no image plane.
     case OutputKind::depth: return ranges(around, "Z", background);
     case OutputKind::ray_distance: return ranges(around, "distance", background);
     case OutputKind::primitive_ids: return rays.ids(around, IdKind::primitive);
@@ -73,7 +73,7 @@ Image map_around(OutputKind kind, const Job& job, const RayScene& rays, const Ra
     case OutputKind::picture:
     case OutputKind::deep:
     case OutputKind::window_depth:
-    case OutputKind::normals: break;  // refused before, or not a map
+    case OutputKind::normals: break;  // refused earlier, or no map
   }
   return {};
 }
@@ -87,7 +87,7 @@ Seen summary_around(const RayScene& rays, const RangeScan& around) {
   return seen;
 }
 
-/// What the rays of a job meet: of the picture, and at the middle of every pixel, which may be the same.
+/// Hits of a job's rays: those of the picture, and one at each pixel's centre, which may be the same.
 struct SightsAround {
   std::optional<RangeScan> picture, middles;
 

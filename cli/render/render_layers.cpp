@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// render --layers: the A-buffer finds the nearest K surfaces of every sample at once, and each layer is then a picture,
-// and maps, of its own, shaded as if nothing were before it.
+// render --layers: the A-buffer finds the nearest K surfaces of each sample at once. Each layer then gets a picture and
+// maps of its own, shaded as if nothing were in front of it.
 #include <frontmost/abuffer.h>
 #include <frontmost/pictures.h>
 
@@ -24,8 +24,8 @@ std::vector<Visible> layers_of(const Job& job, const RenderContext& context, con
 /// One layer with its files.
 struct LayerFiles {
   Job job;
-  const Visible* picture;  ///< null where no file shows it
-  const Visible* maps;     ///< likewise
+  const Visible* picture;  ///< null if no file shows it
+  const Visible* maps;     ///< null if no file needs it
 };
 
 void write_layer(const LayerFiles& layer, const RenderContext& context, ViewResult& result) {

@@ -25,11 +25,11 @@ void check_one_pass(const Job& job, const StreamNeeds& needs, const Stream& stre
   if (depends_on_model(job.view))
     refuse(
         "say where the camera is (--camera-position with --camera-focal-point, or --pose), and give --near and --far");
-  // Smooth normals may turn out to need none: look() says.
+  // Smooth normals may need no further pass; look() decides.
   if (needs.key_light) refuse("shadows take another pass; --no-shadows, --shading flat, depth, ids or uv do not");
 }
 
-/// A scene that has these bounds, which is all that is looked at.
+/// A scene with these bounds, which suffice for framing.
 Scene scene_of(const Box& bounds, const glm::dvec3& origin) {
   Scene scene;
   scene.origin = origin;
@@ -41,18 +41,18 @@ Scene scene_of(const Box& bounds, const glm::dvec3& origin) {
   return scene;
 }
 
-/// The view of no model: its direction, shape and size are those of every model's.
+/// The view without a model, which has the direction, shape and size of the final view.
 View view_of_nothing(const Job& job, const Stream& stream, const Execution& execution) {
   Scene nothing;
   nothing.up = stream.scene().up;
   nothing.origin = stream.scene().origin;
-  // Framing is wide enough for the whole model; the zoom comes after it.
+  // The outline must include the whole model, so zoom is applied later.
   ViewSettings settings = job.view;
   if (depends_on_model(settings)) settings.zoom = 1;
   return resolve_view(settings, Surfaces(nothing, execution));
 }
 
-/// The camera that the whole model would give.
+/// The camera that the whole model determines.
 View find_view(const Job& job, const View& of_nothing, Stream& stream, const Execution& execution) {
   if (!depends_on_model(job.view)) return of_nothing;
   const Scene outline = stream.outline(of_nothing, FrameOptions().margin, execution);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models with spheres and patches, as triangles that are made for each view.
+// Models with spheres and patches, tessellated for each view.
 #pragma once
 
 #include "cli/render/jobs.h"
@@ -7,14 +7,14 @@
 
 namespace frontmost::cli {
 
-/// Whether a view has triangles of its own: the model is curved, the job says how finely to cut it, and its camera is a
-/// pinhole. Others have no screen to measure an error on.
+/// Whether a view has its own triangles: the model is curved, the job states the allowed error, and the camera is a
+/// pinhole. Other cameras have no screen to measure the error on.
 [[nodiscard]] bool is_tessellated(const Job& job, const Scene& scene);
 
-/// True where a view has rays: by the method, by the camera or for its shadows.
+/// Whether a view needs rays: for the method, the camera or shadows.
 [[nodiscard]] bool needs_index(const Job& job, const RunSettings& run);
 
-/// As render_view(). Precondition: is_tessellated().
+/// render_view() with triangles made for the view. Precondition: is_tessellated().
 [[nodiscard]] ViewResult render_tessellated_view(const Job& job, const RenderContext& context);
 
 }  // namespace frontmost::cli

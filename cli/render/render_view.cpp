@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One view. The picture has several samples a pixel; maps, the report and the hash have one, at pixel centres, so that
-// they do not depend on how smooth the picture is to be.
+// One view. The picture has several samples a pixel. Maps, the report and the hash have one, at pixel centres, so that
+// they do not depend on the picture's antialiasing.
 #include "cli/render/render_view.h"
 
 #include <fmt/format.h>
@@ -51,7 +51,7 @@ SeenView timed(const View& view, const DepthSettings& depth, const RenderContext
   }
 }
 
-/// Whether the z-buffer draws once for nothing but a picture in bytes, of several samples.
+/// Whether the z-buffer draws once, only for a picture in bytes with several samples.
 bool needs_only_pixels(const Job& job, const RenderContext& context, const SightPlan& plan) {
   const bool is_bitmap = wants(job, OutputKind::picture) && !context.keep_picture && needs_only_bitmap(job);
   const bool is_zbuffer = context.run.method.value_or(Method::zbuffer) == Method::zbuffer && !job.view.depth.is_used;
@@ -83,7 +83,7 @@ Sights look(const Job& job, const RenderContext& context, ViewResult& result) {
   return sights;
 }
 
-/// With the stream's own ids, where the surfaces are an excerpt of one.
+/// The content hash, by the stream's own ids if the surfaces are an excerpt of a stream.
 std::uint64_t hash_of(const Sights& sights) {
   if (!sights.stream_ids) return content_hash(sights.for_maps().visible);
   Visible visible = sights.for_maps().visible;
@@ -115,13 +115,13 @@ Image window_depth_image(const SeenView& sight) {
 
 void warn_if_blank(const Sights& sights, const RenderContext& context, ViewResult& result) {
   if (!sights.is_blank()) return;
-  // Of a stream, the triangles that are not seen are gone.
+  // Unseen triangles of a stream are not in memory any more, so their causes were counted before.
   const std::string reason = sights.blank_reason ? sights.blank_reason->clause()
                                                  : blank_reason(context.surfaces, result.view, context.execution);
   result.warnings.push_back("nothing is in view: " + reason);
 }
 
-/// Models seen from their edge, and long ones in small pictures: hardly wider than a pixel.
+/// Warns about models hardly wider than a pixel: seen edge-on, or long ones in small pictures.
 void warn_if_thread(const Sights& sights, ViewResult& result) {
   constexpr double thinnest = 2.5;  // pixels, on average
   constexpr int shortest = 32;
@@ -148,7 +148,7 @@ void warn_if_thread(const Sights& sights, ViewResult& result) {
                   length, double(count) / length));
 }
 
-/// 64 sub-samples are the A-buffer's; what is visible has one.
+/// 64 samples are sub-samples of the A-buffer; visibility has one sample then.
 bool is_fine(const Job& job) { return job.view.samples == 64; }
 
 }  // namespace
@@ -172,7 +172,7 @@ Image map_of(OutputKind kind, const Job& job, const RenderContext& context, cons
     case OutputKind::object_ids: return id_image(context.surfaces, visible, IdKind::object);
     case OutputKind::material_ids: return id_image(context.surfaces, visible, IdKind::material);
     case OutputKind::picture:
-    case OutputKind::deep: break;  // not a map
+    case OutputKind::deep: break;  // no map
   }
   return {};
 }
@@ -229,7 +229,7 @@ ShadeOptions shade_options(const Job& job, const RenderContext& context) {
   options.light.shadows = job.output.shadows;
   const std::optional<Method> method = context.run.method;
   if (method) options.layers.see_through = *method == Method::abuffer ? SeeThrough::always : SeeThrough::never;
-  if (job.view.depth.is_used) options.layers.see_through = SeeThrough::never;  // what its state lets through
+  if (job.view.depth.is_used) options.layers.see_through = SeeThrough::never;  // the depth state decides
   if (is_fine(job)) options.layers.grid = 8;
   options.light.lights = job.output.lights.value_or(options.light.lights);
   options.pixels.blend = job.output.blend;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A view is finished if an earlier run noted it under the same key, and its files are still what they were. The key is
-// a hash of whatever decides the bytes of its files: the program's version, the bytes of the model and of all files
-// that it names, and every option but those that change no result. So it does not matter when or where the earlier run
-// was, and one view that is changed in a batch file is the only one that is made again.
+// A view is finished if an earlier run noted it under the same key, and its files are unchanged. The key hashes all
+// that determines the files' bytes: the program's version, the bytes of the model and of all files that it names, and
+// all options that affect results. So time and place of the earlier run do not matter, and only views that changed in a
+// batch file are made again.
 #include "cli/render/shard.h"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ std::set<std::string> paths_of(const Job& job) {
   return {paths.begin(), paths.end()};
 }
 
-/// Of the model, by what is in it and not by where it lies.
+/// Hash of the model's contents; its path does not count.
 std::uint64_t hash_of_model(const Settings& settings, const std::vector<std::filesystem::path>& used) {
   RunningHash hash;
   hash.add(std::string_view(FRONTMOST_VERSION));
@@ -37,7 +37,7 @@ std::uint64_t hash_of_model(const Settings& settings, const std::vector<std::fil
   return hash.value();
 }
 
-/// Hashes of the jobs, those of environments looked up where several share one.
+/// Computes keys of jobs. Hashes of environments are kept, because several jobs may share one.
 class ViewHasher {
  public:
   explicit ViewHasher(std::uint64_t model) : model_(model) {}
@@ -47,7 +47,7 @@ class ViewHasher {
     hash.add(model_);
     hash.add(job.said);
     for (const std::string& path : paths_of(job)) hash.add(std::string_view(path));
-    // What was said of it may be the name of a file.
+    // The pose is hashed by value, because the option may name a file.
     if (job.view.pose)
       for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row) hash.add_bits((*job.view.pose)[column][row]);
@@ -66,7 +66,7 @@ class ViewHasher {
   std::map<std::string, std::uint64_t> environments_;
 };
 
-/// None where there is no file, or an empty one, as a machine that lost its power may leave.
+/// Finished views in a manifest. Empty if the file is missing or empty, as a power failure may leave it.
 std::vector<FinishedView> noted_in(const std::string& path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);

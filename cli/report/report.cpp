@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost report: how much of every object is seen, and who hides the rest.
+// frontmost report: how much of each object is visible, and which objects hide the rest.
 #include <fmt/format.h>
 #include <frontmost/files.h>
 #include <frontmost/scene.h>
@@ -73,7 +73,7 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-/// What an unknown name may have meant: names that hold it, or the one that is nearest.
+/// Suggestions for an unknown name: names that contain it, or the nearest one.
 std::string names_like(std::string_view wanted, const std::vector<std::string_view>& known) {
   constexpr std::size_t most_named = 5;
   std::vector<std::string> near;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Folders are made before the model is read, so that one that cannot be made is told at once; files come last.
+// Folders are made before the model is read, so that failures are reported at once. Files are written last.
 #include "cli/report/report_datasets.h"
 
 #include <algorithm>

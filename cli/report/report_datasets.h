@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report as files of data sets: COCO's annotations, a scene folder of BOP, and masks.
+// The report as data sets: COCO annotations, a scene folder of BOP, and masks.
 #pragma once
 
 #include <frontmost/base.h>
@@ -14,16 +14,16 @@
 
 namespace frontmost::cli {
 
-/// The files of --coco, --bop and --masks, of one view or of several. Without these options it does nothing.
+/// The files of --coco, --bop and --masks, for one view or several. Does nothing without these options.
 class DatasetFiles {
  public:
   /// Makes the folders. \throws Error file_unwritable.
   explicit DatasetFiles(const ReportSettings& settings);
 
-  /// From here to finish() an interruption waits until unfinished files are gone.
-  /// \throws UsageError where --leave-out names nothing of the scene.
+  /// Starts writing. Until finish(), an interruption waits for the removal of unfinished files. \throws UsageError if
+  /// --leave-out names nothing in the scene.
   void begin(const Settings& settings, const Scene& scene);
-  /// The next view; `name` is what {view} stands for, where there are several.
+  /// Adds the next view. `name` is the text for {view}, if there are several.
   void add(const ReportRun& run, const std::optional<std::string>& name, const Execution& execution);
   /// \returns the paths of all files.
   [[nodiscard]] std::vector<std::string> finish();

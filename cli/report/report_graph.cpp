@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The graph of who hides whom: what nothing hides stands on top, and everything below what hides it.
+// The graph of hiding: objects that nothing hides are at the top, and each object is below those that hide it.
 //
-// Rows are ranks of the order, parted where one is too long; objects that hide each other in a ring have one rank, and
+// Rows are ranks of that order, split if they are too long. Objects that hide each other in a cycle share a rank, and
 // lines between them are dashed.
 #include <fmt/format.h>
 
@@ -21,7 +21,7 @@ constexpr double node_width = 140, node_height = 34, across = 164, down = 92;
 
 struct GraphNode {
   std::uint32_t object = 0, rank = 0;
-  double x = 0, y = 0;  ///< of its middle
+  double x = 0, y = 0;  ///< of its centre
 };
 
 class HidingGraph {
@@ -46,7 +46,7 @@ class HidingGraph {
   }
 
  private:
-  /// The pairs of which most is hidden, of as many objects as fit.
+  /// Chooses the pairs with the most hidden samples, with as many objects as fit.
   void choose_pairs() {
     std::vector<HiddenSamples> all = run_.accounts.hidden_by_front;
     std::stable_sort(all.begin(), all.end(),
@@ -69,7 +69,7 @@ class HidingGraph {
     for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].rank = order.ranks[i];
   }
 
-  /// Row by row, each near the mean place of what hides it.
+  /// Places nodes row by row, each near the mean position of the objects that hide it.
   void place_nodes() {
     std::vector<std::vector<std::uint32_t>> rows;
     for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
@@ -89,7 +89,7 @@ class HidingGraph {
         for (std::size_t k = 0; k < count; ++k) {
           GraphNode& node = nodes_[row[begin + k]];
           node.x = width_ / 2 + (double(k) - double(count - 1) / 2) * across;
-          // Lines between neighbours of a row would lie on each other.
+          // Alternate nodes of a row are shifted, so that lines between neighbours do not coincide.
           node.y = height_ + node_height / 2 + (k % 2 == 1 ? 14 : 0);
         }
         height_ += down;
@@ -133,8 +133,8 @@ class HidingGraph {
 
   const ReportRun& run_;
   std::vector<GraphNode> nodes_;
-  std::map<std::uint32_t, std::uint32_t> places_;  // by object: in `nodes_`
-  std::vector<HiddenSamples> pairs_;               // of places in `nodes_`
+  std::map<std::uint32_t, std::uint32_t> places_;  // index in `nodes_`, by object
+  std::vector<HiddenSamples> pairs_;               // indices in `nodes_`
   double width_ = 0, height_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report as JSON: all objects by number, each with the pairs that it is the hidden one of.
+// The report as JSON: all objects by number, each with the pairs in which it is the hidden object.
 #include <frontmost/version.h>
 
 #include "cli/report/report_run.h"
@@ -33,7 +33,7 @@ Json places_json(const TrianglePlaces& triangles) {
           {"in_view", triangles.in_view}};
 }
 
-/// With the numbers that its kind has.
+/// A remedy, with the numbers of its kind.
 Json remedy_json(const Remedy& remedy) {
   if (remedy.kind == RemedyKind::none) return nullptr;
   Json json = {{"kind", name(remedy.kind)}};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page: the picture, what the script shows over it, a table of all objects, and the graph of who hides whom.
+// The page: the picture with the script's overlays, a table of all objects, and the graph of hiding.
 //
-// Without a script the picture, the table and the graph are there, and numbers and masks of single objects are not.
+// Without scripts, the page has picture, table and graph, but no numbers and masks of single objects.
 #include "cli/report/report_page.h"
 
 #include <fmt/format.h>
@@ -79,7 +79,7 @@ std::string name_of(const ReportRun& run, std::uint32_t object) {
   return printable_name(run.scene().instances[object].name);
 }
 
-/// The map of objects, as runs of object + 1 and of how many pixels show it.
+/// The map of objects, as runs: object + 1, and the number of pixels.
 Json map_json(const ReportRun& run) {
   const Image ids = id_image(run.surfaces, run.visible, IdKind::object);
   Json runs = Json::array();
@@ -87,14 +87,14 @@ Json map_json(const ReportRun& run) {
   for (std::size_t i = 0; i < values.size();) {
     std::size_t end = i + 1;
     while (end < values.size() && values[end] == values[i]) ++end;
-    runs.push_back(std::uint32_t(values[i] + 1));  // none wraps to 0
+    runs.push_back(std::uint32_t(values[i] + 1));  // the id for none wraps to 0
     runs.push_back(end - i);
     i = end;
   }
   return runs;
 }
 
-/// How many pixels are outside, hidden and visible in turn.
+/// A mask as runs: the numbers of outside, hidden and visible pixels, in turn.
 Json mask_json(const PixelMask& mask) {
   Json runs = Json::array();
   auto kind = int(MaskPixel::outside);
@@ -128,7 +128,7 @@ std::string data_of(const ReportRun& run, const Execution& execution) {
       {"objects", std::move(objects)},
       {"map",
        map_json(run)}}.dump();
-  // Nothing in it may end the element that it stands in.
+  // Escapes "<", so that the text cannot end its element.
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
   return text;
 }
@@ -156,7 +156,7 @@ std::string table_of(const ReportRun& run) {
   return text + "</tr></thead><tbody>\n" + rows_of(run) + "</tbody></table></div>\n";
 }
 
-/// A paragraph; empty where the file hides nothing.
+/// A paragraph about nodes that the file hides; empty if there are none.
 std::string hidden_by_file(const ReportRun& run) {
   std::string names;
   for (const std::string& name : run.scene().source.hidden) names += (names.empty() ? "" : ", ") + printable_name(name);

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report as a page: one HTML file, which needs nothing else.
+// The report as a page: one self-contained HTML file.
 #pragma once
 
 #include "cli/report/report_run.h"
 
 namespace frontmost::cli {
 
-/// What makes the page answer: a script, without its element.
+/// The script that makes the page interactive, without its element.
 [[nodiscard]] std::string_view report_script();
-/// Who hides whom, as an SVG element: the pairs of which most is hidden, what stands before others above them. Empty
-/// where nothing hides anything.
+/// The graph of hiding as an SVG element, for the pairs with the most hidden samples. Hiding objects are above hidden
+/// ones. Empty if nothing is hidden.
 [[nodiscard]] std::string report_graph(const ReportRun& run);
 
-/// Writes the page, or nothing. \throws Error file_unwritable.
+/// Writes the whole page, or nothing. \throws Error file_unwritable.
 void write_report_page(const ReportRun& run, const std::string& path, const Execution& execution);
 
 }  // namespace frontmost::cli

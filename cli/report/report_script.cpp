@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The script of the page. Names reach the page as text nodes alone. Masks and the map of objects are runs: the map has
-// an object + 1 (0: none) and how many pixels show it, a mask how many pixels of its box are outside, hidden and
-// visible in turn.
+// The script of the page. Names reach the page only as text nodes. Masks and the map of objects are runs. A run of the
+// map is an object + 1 (0: none) and its number of pixels. A mask's runs are the numbers of outside, hidden and visible
+// pixels of its box, in turn.
 #include "cli/report/report_page.h"
 
 namespace frontmost::cli {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reports of many views in one process: the model is made ready once, and each view's report is printed before the next
-// one is made.
+// Reports of many views in one process. The model is prepared once, and each report is printed before the next one is
+// made.
 #include <fmt/format.h>
 #include <frontmost/scene.h>
 #include <frontmost/version.h>
@@ -26,10 +26,10 @@ void check_view_of_report(const ViewSettings& view, const ReportSettings& report
   if (view.depth.is_used) throw UsageError("objects are counted where they are nearest, without a depth buffer");
 }
 
-/// The views of the file, checked before any model is known.
+/// The views of the file, checked before the model is read.
 std::vector<ViewSettings> views_of_file(const Settings& settings) {
   std::vector<ViewSettings> views;
-  std::map<std::string, std::size_t> numbers;  // of the names of views
+  std::map<std::string, std::size_t> numbers;  // by name of the view
   for (Settings& one : read_batch(*settings.report.views, settings)) {
     try {
       check_view_of_report(one.view, settings.report);
@@ -46,13 +46,13 @@ std::vector<ViewSettings> views_of_file(const Settings& settings) {
   return views;
 }
 
-/// Accounts for one view after another, in the same memory.
+/// Accounts for one view after the other, in the same memory.
 class ViewReporter {
  public:
   ViewReporter(const Settings& settings, const Scene& scene, const Execution& execution)
       : settings_(settings), scene_(scene), execution_(execution), surfaces_(scene, execution), names_(scene) {}
 
-  /// Calls tell(run) with what was found out.
+  /// Calls tell(run) with the results of a view.
   template <class Tell>
   void report(const ViewSettings& settings, const Tell& tell) {
     const View view = resolve_view(settings, surfaces_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points and cameras as users know them, in the coordinates of the model's file, where scenes and views have them about
-// the scene's origin; and one camera in every convention.
+// Points and cameras in the coordinates of the model's file, which users know; scenes and views use coordinates
+// relative to the scene's origin. Also one camera in every convention.
 //
 //   file's zero o------- origin ------->o zero of the scene ---- in_scene ---->x
 //               o--------------------------- in_file ------------------------->x
@@ -14,7 +14,7 @@
 
 namespace frontmost::cli {
 
-/// Adding zero would turn -0 into 0, and reports of models that lie near zero are to stay as they are.
+/// Zero is not added, because that would turn -0 into 0 in reports of models near zero.
 [[nodiscard]] inline glm::dvec3 in_file(const glm::dvec3& in_scene, const glm::dvec3& origin) {
   return origin == glm::dvec3(0) ? in_scene : origin + in_scene;
 }
@@ -27,13 +27,13 @@ namespace frontmost::cli {
   return world_from_eye;
 }
 
-/// For people: six digits, and all that a double holds where the model lies far from zero.
+/// A point for people: six digits, or all digits of a double if the model lies far from zero.
 [[nodiscard]] std::string place_text(const glm::dvec3& in_scene, const glm::dvec3& origin);
 
-/// `target` is the focal point that the look-at form names. The view and it are about the scene's `origin`; what is
-/// reported is in the coordinates of the model's file.
+/// The camera as JSON, in the coordinates of the model's file. `target` is the focal point of the look-at form. `view`
+/// and `target` are relative to the scene's `origin`.
 [[nodiscard]] Json camera_json(const View& view, const glm::dvec3& target, const glm::dvec3& origin);
-/// The options that make this view again.
+/// Options that reproduce this view.
 [[nodiscard]] std::string camera_flags(const View& view, const glm::dvec3& target, const glm::dvec3& origin);
 [[nodiscard]] std::string camera_text(const View& view, const glm::dvec3& target, const glm::dvec3& origin);
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options of a depth buffer, as OpenGL names its state.
+// Options of a depth buffer, named after OpenGL's state.
 #include "cli/failure.h"
 #include "cli/option.h"
 
 namespace frontmost::cli {
 namespace {
 
-/// Any of these asks for a depth buffer instead of the exact default.
+/// Marks the depth buffer as used: any of these options selects it instead of the exact default.
 DepthSettings& used(Settings& settings) {
   settings.view.depth.is_used = true;
   return settings.view.depth;

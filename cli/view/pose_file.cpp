@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera poses in files: 16 numbers, however they are separated.
+// Camera poses in files: 16 numbers with any separators.
 #include <fmt/format.h>
 #include <frontmost/files.h>
 
@@ -12,7 +12,7 @@
 namespace frontmost::cli {
 namespace {
 
-/// A pose is a few hundred characters; anything much longer is some other file.
+/// A pose takes a few hundred characters; anything much longer is another kind of file.
 constexpr std::uint64_t largest_pose_file = 1 << 16;
 
 glm::dmat4 pose_in(const std::string& text, const std::string& path) {

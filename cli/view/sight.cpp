@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ways to look, behind two faces: at all pixels of a view (look_at_surfaces) and along single rays (RayScene).
-// Callers name the way once, by an index or by settings, and do not branch again.
+// The methods of visibility behind two interfaces: all pixels of a view (look_at_surfaces) and single rays (RayScene).
+// Callers choose the method once, by an index or by settings.
 #include "cli/view/sight.h"
 
 #include <frontmost/zbuffer.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finding what is visible: in every pixel of a view, by the default z-buffer, by rays, or by a depth buffer with the
-// state that the user asked for; and along single rays.
+// Determines visibility: in all pixels of a view, by the default z-buffer, by rays, or by a depth buffer with the
+// user's state; and along single rays.
 #pragma once
 
 #include <frontmost/image.h>
@@ -15,18 +15,18 @@ namespace frontmost::cli {
 
 struct SeenView {
   Visible visible;
-  Buffer<float> window_depths;  ///< of a depth buffer, in the order of Visible; empty without one
+  Buffer<float> window_depths;  ///< of a depth buffer, in the order of `visible`; else empty
 };
 
-/// The state with its defaults filled in, which --reversed changes.
+/// The depth state with defaults, which depend on --reversed.
 [[nodiscard]] DepthState depth_state(const DepthSettings& settings);
 [[nodiscard]] double depth_clear(const DepthSettings& settings);
 
-/// By rays where there is an index.
+/// Casts rays if there is an index.
 [[nodiscard]] SeenView look_at_surfaces(const Surfaces& surfaces, const View& view, const DepthSettings& settings,
                                         const Execution& execution, const RayIndex* index = nullptr);
 
-/// "D8", "LESS" and so on, as on the command line.
+/// Names on the command line: "D8", "LESS" and so on.
 [[nodiscard]] std::string_view name(DepthFormat format);
 [[nodiscard]] std::string_view name(DepthFunc func);
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands has a flat base: triangles in the lowest plane of its bounds that face down. So where that is the only
-// flat one of the six sides, and along the other axis that files are made with, the model lies:
+// A standing model has a flat base: triangles in the lowest plane of its bounds that face down. So a model lies if the
+// only flat one of the six sides is along the other usual up axis:
 //
 //          up         .-.                      up
 //           |        /   \                      |      ___
 //           |        |   |                      |   .-'   |  <- flat, and nothing else is
-//           |        |___|  <- flat             |   '-.___|
+//            |        |___|  <- flat             |   '-.___|      no other side is flat
 //
-// Plates are flat on both sides, and boxes everywhere: nothing is said of them.
+// Plates are flat on both sides and boxes everywhere, so they cause no warning.
 #include "cli/view/up_axis.h"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@
 namespace frontmost::cli {
 namespace {
 
-/// What part of a side of the bounds is covered by triangles that lie in it and face outwards.
+/// The share of a side of the bounds that is covered by triangles in it which face outwards.
 struct FlatSides {
   double low = 0, high = 0;
 };
@@ -26,7 +26,7 @@ struct FlatSides {
 constexpr PrimitiveId most_asked = 1'000'000;
 
 std::array<FlatSides, 3> find_flat_sides(const Surfaces& surfaces) {
-  constexpr double thin = 0.01;  // of the extent along the axis: bases of scans are uneven
+  constexpr double thin = 0.01;  // of the extent along the axis, since bases of scans are uneven
   const Box& bounds = surfaces.bounds();
   const glm::dvec3 low(bounds.low), size = glm::dvec3(bounds.high) - low;
   const PrimitiveId step = surfaces.primitive_count() / most_asked + 1;
@@ -51,7 +51,7 @@ std::array<FlatSides, 3> find_flat_sides(const Surfaces& surfaces) {
   return sides;
 }
 
-/// Formats whose specification says which axis is up are believed.
+/// Formats whose specification defines the up axis are trusted.
 bool leaves_up_open(const SceneSource& source) {
   return source.format == ModelFormat::stl || source.format == ModelFormat::ply || source.format == ModelFormat::obj ||
          source.format == ModelFormat::off;
@@ -68,9 +68,10 @@ std::optional<std::string> up_warning(const ViewSettings& view, const LoadOption
   if (!depends_on_up(view) || load.up || !leaves_up_open(scene.source)) return std::nullopt;
   const int up = scene.up == Axis::y ? 1 : 2, other = 3 - up;
   const glm::dvec3 size = glm::dvec3(surfaces.bounds().high) - glm::dvec3(surfaces.bounds().low);
-  // Parts of the sides: of models that stand 0.06 (the Armadillo's feet) and more at the base, below 0.02 elsewhere.
+  // Shares of covered sides: standing models have 0.06 (the Armadillo's feet) and more at the base, below 0.02
+  // elsewhere.
   constexpr double base = 0.05, none = 0.02, least_height = 0.25;
-  constexpr PrimitiveId fewest = 24;  // of fewer nothing can be told
+  constexpr PrimitiveId fewest = 24;  // fewer triangles tell nothing
   if (surfaces.primitive_count() < fewest) return std::nullopt;
   if (!(size.x > 0 && size.y > 0 && size.z > 0) || size[other] < least_height * std::max({size.x, size.y, size.z}))
     return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a model looks as if another axis than the scene's were up.
+// Checks whether a model looks as if another axis than the scene's were up.
 #pragma once
 
 #include <frontmost/scene.h>
@@ -11,12 +11,12 @@
 
 namespace frontmost::cli {
 
-/// Whether the camera is aimed by what is up.
+/// Whether the camera's direction depends on the up axis.
 [[nodiscard]] bool depends_on_up(const ViewSettings& view);
 
-/// A warning that names --up, where the view depends on it, nobody has told it, the format leaves it open, and the
-/// model lies for all that its triangles tell: a flat base at the low side of the other axis that files are made with,
-/// y or z, and no other flat side. None otherwise. O(triangles), of a million at most.
+/// A warning that names --up if the model seems to lie: it has a flat base at the low side of the other usual up axis,
+/// y or z, and no other flat side. Empty unless the view depends on the up axis, nobody stated it, and the format
+/// leaves it open. O(triangles), of a million at most.
 [[nodiscard]] std::optional<std::string> up_warning(const ViewSettings& view, const LoadOptions& load,
                                                     const Surfaces& surfaces);
 

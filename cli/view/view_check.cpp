@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which view options exclude or need one another.
+// Checks which view options exclude or need one another.
 //
-// A camera can be told in four ways: by a name, by places and directions, by a pose, by a camera of the model. Two of
-// them at once contradict each other, and a parameter of one means nothing to the others; so each pair is an error that
-// names both flags, rather than a rule about which one wins.
+// A camera can be given in four ways: by a name, by places and directions, by a pose, or by a camera of the model. Two
+// of them contradict each other, and a parameter of one has no meaning for the others. So each such pair is an error
+// that names both flags; there is no rule of precedence.
 #include <fmt/format.h>
 
 #include <vector>
@@ -26,7 +26,7 @@ void exclude(const Flag& one, std::initializer_list<Flag> others) {
   }
 }
 
-/// Of a pinhole alone. Rays see both sides of everything, however near or far.
+/// Refuses options that only pinholes have. Rays see both sides of all surfaces, however near or far.
 void check_camera_model(const ViewSettings& s) {
   const Flag model{"camera-model", s.camera_model != CameraModel::pinhole};
   exclude(model, {{"camera-orthographic", s.orthographic},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options that say which model and where from.
+// Options of the model and of the camera.
 #include "cli/failure.h"
 #include "cli/option.h"
 
@@ -25,7 +25,7 @@ void set_pose(ViewSettings& view, const Given& given) {
 }
 
 glm::ivec2 resolution_from(std::string_view text) {
-  // "1920x1080" is what most people type first.
+  // "1920x1080" is the form that most people type first.
   std::string spelled(text);
   if (const std::size_t x = spelled.find('x'); x != std::string::npos && spelled.find(',') == std::string::npos) {
     spelled[x] = ',';

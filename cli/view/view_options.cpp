@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From what was said about the camera to a View: first where it looks, then how wide, then how far away, then the
+// Makes a View of the camera settings: first the direction, then the view angle, then the distance, then the clip
 // planes.
 #include "cli/view/view_options.h"
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr glm::ivec2 default_resolution{1920, 1080};
 
-/// The eye's axes, what it turns about, and whether its distance is still open.
+/// The eye's axes, its centre of rotation, and whether its distance is still to be fitted.
 struct Aim {
   glm::dmat4 world_from_eye{1.0};
   glm::dvec3 target{0.0};
@@ -69,19 +69,19 @@ Subject subject_of(const ViewSettings& settings, const Surfaces& surfaces) {
   return objects == FramedObjects::all ? Subject{surfaces.bounds(), {}} : find_subject(surfaces);
 }
 
-/// Around what is framed.
+/// Bounds of the framed objects.
 Box subject_box(const ViewSettings& settings, const Surfaces& surfaces) {
   return or_unit_box(subject_of(settings, surfaces).bounds);
 }
 
-/// The middle of what is framed, brought onto the viewing axis.
+/// The centre of the framed objects, projected onto the viewing axis.
 glm::dvec3 ahead_of(const ViewSettings& settings, const View& view, const Surfaces& surfaces) {
   const Box box = subject_box(settings, surfaces);
   const double along = glm::dot(middle_of(box) - view.eye(), view.forward());
   return view.eye() + view.forward() * (along > 0 ? along : std::max(double(box.diagonal()), 1e-6));
 }
 
-/// `base` is the library's own choice of view, from which anything not said is taken.
+/// `base` is the library's default view, which provides all that the settings omit.
 Aim aim_of(const ViewSettings& settings, const Surfaces& surfaces, const View& base) {
   const glm::dvec3& origin = surfaces.scene().origin;
   const glm::dvec3 target =
@@ -102,7 +102,7 @@ Aim aim_of(const ViewSettings& settings, const Surfaces& surfaces, const View& b
     if (aim.target == eye) throw UsageError("--camera-position is where the camera looks; give --camera-direction");
     return {looking(eye, aim.target - eye, up), aim.target, false};
   }
-  // Turned about the origin, so that the axes do not depend on where the model is, not even in their last bits.
+  // The rotation is about the origin, so that the axes do not depend on the model's place, not even in their last bits.
   aim.world_from_eye = looking(glm::dvec3(0), settings.direction.value_or(base.forward()), up);
   aim.world_from_eye[3] = glm::dvec4(aim.target, 1);
   return aim;
@@ -114,7 +114,8 @@ std::optional<Intrinsics> intrinsics_of(const ViewSettings& settings) {
   return Intrinsics{fx, fy, cx, cy, settings.pixel_rule};
 }
 
-/// The sides at unit distance; in parallel projection, of what a perspective camera would see at the focal point.
+/// The sides at unit distance. For a parallel projection, the extent that a perspective camera would see at the focal
+/// point.
 Projection shape_of(const ViewSettings& settings, const glm::ivec2& size, const View& base) {
   const double aspect = double(size.x) / size.y;
   if (const auto intrinsics = intrinsics_of(settings))
@@ -144,7 +145,7 @@ void scale(Projection& projection, double factor) {
   for (double* const side : {&projection.left, &projection.right, &projection.bottom, &projection.top}) *side *= factor;
 }
 
-/// As VTK and f3d: the view angle is divided, or the height of a parallel projection.
+/// Zooms as VTK and f3d do: divides the view angle, or the height of a parallel projection.
 void zoom(Projection& projection, double factor) {
   if (factor == 1) return;
   if (projection.orthographic) return scale(projection, 1 / factor);
@@ -154,7 +155,7 @@ void zoom(Projection& projection, double factor) {
   scale(projection, std::tan(half_angle) / projection.top);
 }
 
-/// What the model's own camera says, then what the user says, over what fits. `fitted` is what framing found.
+/// Clip planes: the user's, else the model camera's, else fitted ones. `fitted` is the result of framing.
 ClipDistances clip_of(const ViewSettings& settings, const Surfaces& surfaces, const View& view,
                       const std::optional<ClipDistances>& fitted) {
   const Box box = framed_box(surfaces);
@@ -169,14 +170,14 @@ ClipDistances clip_of(const ViewSettings& settings, const Surfaces& surfaces, co
   const double depth = std::max(double(box.diagonal()), 1.0);
   if (near) clip.near = *near;
   if (far) clip.far = *far;
-  // Only one was given, and lies beyond the other one that was fitted.
+  // Only one plane was given, and it lies beyond the other, fitted one.
   if (clip.far <= clip.near && !far)
     clip.far = orthographic ? clip.near + depth : std::numeric_limits<double>::infinity();
   if (clip.far <= clip.near && !near) clip.near = orthographic ? clip.far - depth : clip.far / 10000;
   return clip;
 }
 
-/// The library's own framing. `aim`, where given, says the direction in place of the named one, and is in the middle.
+/// The library's framing. `aim`, if given, replaces the named direction, and its target becomes the centre.
 View framed(const ViewSettings& settings, const Surfaces& surfaces, const glm::ivec2& size, const Aim* aim = nullptr) {
   FrameOptions options;
   if (aim) {
@@ -189,14 +190,14 @@ View framed(const ViewSettings& settings, const Surfaces& surfaces, const glm::i
   options.orthographic = settings.orthographic;
   options.objects = settings.framed.value_or(FramedObjects::subject);
   if (settings.view_angle) {
-    // The library counts the field of view over the smaller side; the flag, as f3d, from bottom to top.
+    // The library measures the field of view over the smaller side; the flag, like f3d, from bottom to top.
     const double half = std::tan(*settings.view_angle * 0.5 * radians_per_degree);
     options.min_fov = 2 * std::atan(half * std::min(1.0, double(size.x) / size.y));
   }
   return frame(surfaces, size.x, size.y, options);
 }
 
-/// A camera whose eye was told.
+/// Places a camera whose eye is given.
 void place(View& view, const Aim& aim, const ViewSettings& settings, const Surfaces& surfaces) {
   const glm::ivec2 size(view.width, view.height);
   view.world_from_eye = aim.world_from_eye;
@@ -206,7 +207,7 @@ void place(View& view, const Aim& aim, const ViewSettings& settings, const Surfa
     scale(view.projection, glm::distance(aim.target, view.eye()));
 }
 
-/// True when the library's own framing is all that was asked for.
+/// Whether the library's own framing is all that is needed.
 bool is_plain(const ViewSettings& s) {
   return !s.position && !s.focal_point && !s.direction && !s.view_up && !s.pose && !s.camera_index && !s.intrinsics &&
          s.azimuth == 0 && s.elevation == 0;
@@ -241,7 +242,7 @@ glm::dvec3 focal_point_of(const ViewSettings& settings, const View& view, const 
 
 bool depends_on_model(const ViewSettings& s) {
   const bool is_turned = s.azimuth != 0 || s.elevation != 0;
-  // A parallel projection, and what the camera turns about, are as far ahead as the model.
+  // A parallel projection, and the centre of rotation, depend on the model's distance.
   const bool is_ahead = (s.pose || (s.position && s.direction)) && !s.orthographic && !is_turned;
   const bool is_placed = is_ahead || (s.position && s.focal_point);
   return !is_placed || !s.near || !s.far;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From what was said about the camera to a View.
+// Makes a View of the camera settings.
 #pragma once
 
 #include <frontmost/scene.h>
@@ -12,36 +12,36 @@
 
 namespace frontmost::cli {
 
-/// Reads the file that the pose lies in, where it does and was not read yet.
-/// \throws UsageError where there is no such file; Error naming file and line for one that holds no pose.
+/// Reads the pose's file, if there is one that has not been read yet.
+/// \throws UsageError if the file is missing; Error naming file and line if it holds no pose.
 void read_pose_file(ViewSettings& settings);
 
-/// Finds options that exclude or need one another, before any model is read.
+/// Finds options that exclude or need one another, before a model is read.
 /// \throws UsageError naming them
 void check_view_settings(const ViewSettings& settings);
 
-/// The view for these surfaces; `samples` is left at 1. Where no position is given the model is fitted into the
-/// picture. What the settings say is in the coordinates of the model's file; a view is about the scene's origin.
-/// \throws UsageError for a camera number that the model has not; Error from the library's own checks.
+/// The view of these surfaces; `samples` is left at 1. Without a position, the model is fitted into the picture.
+/// Settings are in the coordinates of the model's file; a view is relative to the scene's origin. \throws UsageError
+/// for a camera number that the model lacks; Error from the library's own checks.
 [[nodiscard]] View resolve_view(const ViewSettings& settings, const Surfaces& surfaces);
 
 /// Whether the picture is fitted to find_subject(), so that other objects may reach out of it.
 [[nodiscard]] bool is_fitted_to_subject(const ViewSettings& settings);
 
-/// What there is to say where it is, and there are such objects. O(objects).
+/// A warning if is_fitted_to_subject() and objects reach out of the picture. O(objects).
 [[nodiscard]] std::optional<std::string> framing_warning(const ViewSettings& settings, const Surfaces& surfaces);
 
-/// The bounds that planes are fitted to: the model's, or those of a unit box about the origin for a model without any.
+/// Bounds for fitting clip planes: the model's, or a unit box about the origin if the model has none.
 [[nodiscard]] Box framed_box(const Surfaces& surfaces);
 
-/// False when resolve_view() gives the same for all surfaces: the camera is placed, and both planes are told.
+/// False if resolve_view() gives the same view for all surfaces: the camera and both planes are given.
 [[nodiscard]] bool depends_on_model(const ViewSettings& settings);
 
-/// What {view} stands for: the given name, the named direction, or how the camera was told.
+/// The text for {view}: the given name, the named direction, or the way in which the camera was given.
 [[nodiscard]] std::string view_name(const ViewSettings& settings);
 
-/// What the camera turns about, in world space: the focal point that was given, or else the middle of what is framed,
-/// brought onto the viewing axis.
+/// The centre of rotation of the camera, in world space: the given focal point, or else the centre of the framed
+/// objects, projected onto the viewing axis.
 [[nodiscard]] glm::dvec3 focal_point_of(const ViewSettings& settings, const View& view, const Surfaces& surfaces);
 
 }  // namespace frontmost::cli

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is known of faces as tables: a row for each face that is seen, or one for every face of the model, coloured.
+// Tables of faces: a row for each visible face, or a coloured row for each face of the model.
 //
 //   not seen   grey
-//   seen       dark blue where next to nothing of the face is seen, over green to yellow where all of it is
+//   seen       dark blue for hardly visible faces, over green, to yellow for wholly visible ones
 #pragma once
 
 #include <frontmost/files.h>
@@ -13,16 +13,16 @@
 
 namespace frontmost::cli {
 
-/// A row for each that is listed: primitive, object, triangle, and what is known of it.
+/// A row for each listed face: primitive, object, triangle, and its measurements.
 [[nodiscard]] Table table_of(const std::vector<VisibleFace>& faces, const Surfaces& surfaces);
 [[nodiscard]] Table table_of(const std::vector<SeenFace>& faces, const Surfaces& surfaces);
 
-/// A row for every face of the model: object, triangle, what is known (0 of those that are not seen), and red, green
-/// and blue by the share of it that is seen.
+/// A row for each face of the model: object, triangle, measurements (0 for unseen faces), and red, green and blue by
+/// the visible share.
 [[nodiscard]] Table colored_table_of(const std::vector<VisibleFace>& faces, const Surfaces& surfaces);
 [[nodiscard]] Table colored_table_of(const std::vector<SeenFace>& faces, const Surfaces& surfaces);
 
-/// Of each of these faces its object and its number there.
+/// The object of each of these faces, and its number in that object.
 [[nodiscard]] Table origin_table_of(const std::vector<PrimitiveId>& ids, const Surfaces& surfaces);
 
 }  // namespace frontmost::cli

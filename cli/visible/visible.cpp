@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost visible: every face of which a part is seen, in one view or in many.
+// frontmost visible: all faces that are visible at least in part, in one view or in many.
 //
-//   one view        visible_faces()      of every face that is seen its areas
-//   --views FILE \  faces_ever_seen()    of every face that is ever seen in how many views, and its largest share
+//   one view        visible_faces()      the areas of each visible face
+//   --views FILE \  faces_ever_seen()    for each face ever seen, its number of views and its largest share
 //   --sphere N   /
 #include <fmt/format.h>
 #include <frontmost/files.h>
@@ -82,7 +82,7 @@ void check(const Settings& settings) {
   check_outputs(files_of(s), input_files(settings));
 }
 
-/// What is looked from, before any model is known.
+/// The views' settings, checked before the model is read.
 std::vector<ViewSettings> places_of(const Settings& settings) {
   std::vector<ViewSettings> places;
   if (!settings.visible.views) return {settings.view};
@@ -99,7 +99,7 @@ std::vector<ViewSettings> places_of(const Settings& settings) {
   return places;
 }
 
-/// Views along `count` directions that wind from below the model to above it: each turns on by a golden angle, so that
+/// Views along `count` directions on a spiral from below the model to above it. Each turns by a golden angle, so that
 /// all are about equally far from their neighbours.
 std::vector<View> views_around(const ViewSettings& settings, const Surfaces& surfaces, int count) {
   constexpr double golden_angle = 2.3999632297286533;
@@ -123,10 +123,10 @@ std::vector<View> views_of(const Settings& settings, const std::vector<ViewSetti
   return views;
 }
 
-/// What was found.
+/// The results.
 struct FacesFound {
   std::vector<PrimitiveId> ids;
-  Table listed, colored;  ///< the latter only where a model is to be written
+  Table listed, colored;  ///< `colored` only if a model is to be written
   Json json;
   std::string text;
 };
@@ -182,7 +182,7 @@ void write(const std::string& path, const FacesFound& found, const Scene& scene)
   save(found.listed, path, has_suffix(path, {".npy"}) ? TableFormat::npy : TableFormat::csv);
 }
 
-/// Writes the model of what is seen, and adds what it leaves out to the reports.
+/// Writes the model of the visible faces, and adds the omitted ones to the reports.
 void write_kept(const std::vector<std::string>& paths, const Surfaces& surfaces, FacesFound& found) {
   if (paths.empty()) return;
   const Scene kept = keep_faces(surfaces.scene(), found.ids);

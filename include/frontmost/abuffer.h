@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The A-buffer: everything that a pixel sees, in the order of depth, with how much of the pixel each covers.
+// The A-buffer: all fragments that a pixel sees, in order of depth, with the part of the pixel that each covers.
 //
 // L. Carpenter. The A-buffer, an Antialiased Hidden Surface Method. SIGGRAPH 1984.
 #pragma once
@@ -13,31 +13,31 @@
 namespace frontmost {
 
 struct AbufferOptions {
-  /// Sub-samples of a pixel: 0 takes the view's own (View::samples, at sample_offsets()); 2, 4 or 8 a regular grid of
-  /// that many by as many.
+  /// Sub-samples of a pixel. 0: the view's samples (View::samples, at sample_offsets()); 2, 4 or 8: a regular grid with
+  /// as many rows and columns.
   int grid = 0;
-  /// Multiplies the opacity of everything, 0 to 1. Below 1 nothing is opaque, so nothing is cut off.
+  /// Multiplies every opacity, 0 to 1. Below 1 nothing is opaque, so all fragments are kept.
   float opacity = 1.0f;
 };
 
-/// What one triangle shows in one pixel.
+/// The part of one triangle that lies in one pixel.
 struct Fragment {
-  /// Bit s: sub-sample s is covered. Grids are numbered row by row from the top left. Never 0.
+  /// Bit s is set if sub-sample s is covered. Grids are numbered row by row from the top left. Never 0.
   std::uint64_t mask = 0;
   PrimitiveId primitive = no_primitive;
-  float key = 0;                 ///< at the pixel's centre, within the triangle's range; as Visible::keys
+  float key = 0;                 ///< at the pixel's centre, within the triangle's range; as in Visible::keys
   float key_dx = 0, key_dy = 0;  ///< change of the key per pixel to the right and down
-  float opacity = 1;             ///< of the material without its texture, times AbufferOptions::opacity
+  float opacity = 1;             ///< the material's without its texture, times AbufferOptions::opacity
 };
 
-/// The fragments of every pixel, nearer first; at equal keys of the centre the lower id is first. What lies wholly
-/// behind an opaque fragment that covers the whole pixel is left out, and where there are more than 2^18 in 64 x 64
-/// pixels, copies of an opaque triangle, which its lower id hides. A triangle that had to be clipped may come in
-/// several pieces, whose masks are disjoint.
+/// The fragments of every pixel, nearer first; at equal keys at the centre, the lower id first. Fragments that lie
+/// wholly behind an opaque one covering the whole pixel are left out. If 64 x 64 pixels have more than 2^18 fragments,
+/// coincident triangles of higher id than an opaque one are left out as well. A clipped triangle may have several
+/// fragments in a pixel, with disjoint masks.
 struct FragmentLists {
   View view;
-  std::vector<glm::ivec2> samples;  ///< positions of the mask's bits in 1/256 pixel from the pixel's top left corner
-  Buffer<std::uint64_t> first;      ///< by pixel, row by row, where its list begins; and the end of the last
+  std::vector<glm::ivec2> samples;  ///< positions of the mask's bits, in 1/256 pixel from the pixel's top left corner
+  Buffer<std::uint64_t> first;      ///< index of each pixel's first fragment, row by row, and the total at the end
   std::vector<Fragment> fragments;
 
   [[nodiscard]] std::span<const Fragment> at(int x, int y) const {
@@ -46,36 +46,36 @@ struct FragmentLists {
   }
 };
 
-/// The most fragments that abuffer() returns: 2^30, 32 GiB. A pixel has at most 2^20 - 1 in every function here.
-/// Functions go through at most 2^28 fragments and 1,024 more for each triangle, 2^30 in all; or 64 for each pixel, if
-/// that is more. Hidden fragments count. How many there are is estimated by the areas of the triangles, before they are
-/// gathered. Of opaque triangles at one place the lowest id alone counts, for visible_layers() of others as many as
-/// there are layers, and for count_fragments() all.
+/// The most fragments that abuffer() returns: 2^30, 32 GiB. In every function here, a pixel has at most 2^20 - 1.
+/// Functions process at most 2^28 fragments and 1,024 more per triangle, up to 2^30; or 64 per pixel, if that is more.
+/// The number of fragments is estimated from the areas of triangles before gathering, and includes hidden ones. Of
+/// coincident opaque triangles only the lowest id counts. Other coincident triangles all count, but in visible_layers()
+/// only as many as there are layers. In count_fragments() all count.
 inline constexpr std::uint64_t most_fragments = std::uint64_t(1) << 30;
 
-/// All fragments of a view as data: 32 bytes each, twice that while it works.
-/// O(triangles + n log^2 n for lists of n fragments). The bytes depend on neither threads, instruction set, nor the
-/// order of triangles, but for equal keys.
-/// \throws Error as validate(view) does, bad_argument for options out of range, limit_exceeded over the limits above.
+/// \returns all fragments of a view: 32 bytes each, and twice that during the call. O(triangles + n log^2 n for lists
+/// of n fragments). The bytes do not depend on threads or instruction set, nor, except at equal keys, on the order of
+/// triangles.
+/// \throws Error as validate(view) does, bad_argument for options out of range, limit_exceeded beyond the limits above.
 [[nodiscard]] FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferOptions& options = {},
                                     const Execution& execution = {});
 
-/// What the A-buffer goes through for a view.
+/// Numbers of fragments that the A-buffer processes for a view.
 struct FragmentCounts {
-  std::uint64_t fragments = 0;  ///< of all pixels, those behind opaque ones too
-  std::uint32_t longest = 0;    ///< the most of one pixel
+  std::uint64_t fragments = 0;  ///< of all pixels, including those behind opaque ones
+  std::uint32_t longest = 0;    ///< the most in one pixel
 };
 
-/// Counts without keeping: what a picture's depth complexity is, and before abuffer() is called an upper bound of its
-/// fragments. O(triangles + fragments), in 10 to 20 megabytes a thread. `options.opacity` has no meaning here.
+/// Counts fragments without storing them: the depth complexity of a picture, and an upper bound for abuffer().
+/// `options.opacity` is ignored. O(triangles + fragments), in 10 to 20 megabytes a thread.
 /// \throws Error as abuffer() does.
 [[nodiscard]] FragmentCounts count_fragments(const Surfaces& surfaces, const View& view,
                                              const AbufferOptions& options = {}, const Execution& execution = {});
 
-/// The first `count` layers, nearest first, at the view's samples: the k-th holds the k-th nearest primitive at every
-/// sample, by the key there. Behind an opaque primitive nothing is seen. The nearest layer is what zbuffer() gives, to
-/// the bit; shade() shows the others with SeeThrough::never. Memory: `count` Visibles and a few megabytes a thread.
-/// `options.grid` has no meaning here.
+/// The first `count` layers at the view's samples. Layer k holds, at every sample, the k-th nearest primitive by its
+/// key there; nothing is seen behind an opaque primitive. The nearest layer equals zbuffer()'s answer to the bit;
+/// shade() shows the others with SeeThrough::never. `options.grid` is ignored. Memory: `count` Visibles and a few
+/// megabytes a thread.
 /// \throws Error as abuffer() does; bad_argument unless `count` is 1 to 1024.
 [[nodiscard]] std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, int count,
                                                   const AbufferOptions& options = {}, const Execution& execution = {});

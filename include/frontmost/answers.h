@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is seen, what hides it, and what a depth buffer cannot tell apart.
+// Answers: what is seen, what hides the rest, and what a depth buffer cannot tell apart.
 #pragma once
 
 #include "frontmost/precision.h"  // IWYU pragma: export

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every room shares: errors, how to run (threads, instruction set, watching long work), boxes, buffers, names as
-// texts, and folders of files that are all there or not.
+// Basics that all other headers use: errors, execution (threads, instruction set, progress), boxes, buffers, names as
+// text, and folders whose files appear together or not at all.
 #pragma once
 
 #include <cstddef>
@@ -18,20 +18,20 @@
 
 namespace frontmost {
 
-/// Why a public function could not do what it was asked.
+/// The kind of failure that an Error reports.
 enum class ErrorCode : std::uint8_t {
   bad_argument,     ///< a value outside its documented range
-  file_unreadable,  ///< missing, a folder, no permission
-  file_malformed,   ///< contents that break the format
-  file_unwritable,  ///< output that could not be written whole; nothing is left behind
-  unsupported,      ///< valid, but not something Frontmost can do
-  limit_exceeded,   ///< larger than a documented limit
+  file_unreadable,  ///< the file is missing, is a folder, or may not be read
+  file_malformed,   ///< the contents break the format
+  file_unwritable,  ///< the output could not be written whole; nothing is left behind
+  unsupported,      ///< valid input that Frontmost cannot process
+  limit_exceeded,   ///< the input exceeds a documented limit
   singular_camera,  ///< a camera or transform that cannot be inverted
-  cancelled,        ///< Watch::cancelled said so
+  cancelled,        ///< Watch::cancelled returned true
 };
 
-/// Thrown by every public function that can be given bad input. what() is file, place and reason, as far as they are
-/// known, with ": " between them: "engine.stl: triangle 41: its third corner is not a number".
+/// The exception thrown by every public function that can be given bad input. what() joins file, place and reason with
+/// ": ", without the empty ones: "engine.stl: triangle 41: its third corner is not a number".
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, std::string reason);
@@ -39,12 +39,12 @@ class Error : public std::runtime_error {
   Error(ErrorCode code, std::string file, std::string place, std::string reason);
 
   [[nodiscard]] ErrorCode code() const noexcept { return code_; }
-  /// Whose contents or name is wrong: a path, "standard input", "builtin:..."; empty where no file is.
+  /// The file whose contents or name is wrong: a path, "standard input", "builtin:..."; empty if no file is involved.
   [[nodiscard]] const std::string& file() const noexcept { return parts_->file; }
-  /// Where in the file, or which argument or function: "line 7", "near"; may be empty.
+  /// The place in the file, or the argument or function: "line 7", "near"; may be empty.
   [[nodiscard]] const std::string& place() const noexcept { return parts_->place; }
   [[nodiscard]] const std::string& reason() const noexcept { return parts_->reason; }
-  /// The same error as one of this file and place; what it named itself comes behind the place.
+  /// \returns a copy with this file and place; the error's own file and place are appended to the place.
   [[nodiscard]] Error within(const std::string& file, const std::string& place = "") const;
 
  private:
@@ -52,40 +52,40 @@ class Error : public std::runtime_error {
     std::string file, place, reason;
   };
   ErrorCode code_;
-  std::shared_ptr<const Parts> parts_;  // copies of an exception must not throw
+  std::shared_ptr<const Parts> parts_;  // copying an exception must not throw
 };
 
-/// Instruction sets that the kernels are compiled for. None changes any result.
+/// Instruction sets that the kernels are compiled for. Results are the same with all of them.
 enum class Isa : std::uint8_t { best, scalar, sse4, avx2, avx512, neon, wasm };
 
-/// \returns "scalar", "sse4", ...; "best" is resolved to what this machine would run.
+/// \returns "scalar", "sse4", ...; for `best`, the name of the set that this machine would run.
 [[nodiscard]] std::string_view name(Isa isa);
-/// The instruction sets that this build holds and this machine can run, slowest first, never `best`.
+/// Instruction sets that this build contains and this machine can run, slowest first, never `best`.
 [[nodiscard]] std::span<const Isa> available_isas();
 
-/// Watches long work. Both functions are called after every small piece of it, by several threads at a time, so they
-/// must be quick and safe to call at once. What they throw ends the work and is thrown again.
+/// Callbacks that watch long work. Both are called after every small piece of work, by several threads at a time, so
+/// they must be quick and thread-safe. An exception that a callback throws ends the work and is thrown again.
 struct Watch {
-  /// What is being done ("load", "surfaces", ...), and how much of it is done, 0 to 1.
+  /// Receives the name of the current stage ("load", "surfaces", ...) and the part of it that is done, 0 to 1.
   std::function<void(std::string_view stage, double fraction)> progress;
-  /// True ends the work soon, by Error with ErrorCode::cancelled.
+  /// Returning true ends the work soon, by an Error with ErrorCode::cancelled.
   std::function<bool()> cancelled;
 };
 
-/// How to run; never what the result is.
+/// Settings for how the work is run. They never change a result.
 struct Execution {
-  int threads = 0;               ///< 0: one per core; at most 1024
-  Isa isa = Isa::best;           ///< must be one of available_isas(), or best
+  int threads = 0;               ///< 0: one thread per core; at most 1024
+  Isa isa = Isa::best;           ///< `best`, or one of available_isas()
   const Watch* watch = nullptr;  ///< borrowed; may be null
 };
 
-/// The running number of a triangle over all instances in scene order.
+/// Number of a triangle, counted over all instances in scene order.
 using PrimitiveId = std::uint32_t;
 inline constexpr std::uint32_t no_primitive = 0xFFFFFFFFu;
-/// "None" for materials, textures, objects and every other index.
+/// "None" as an index of materials, textures, objects and everything else.
 inline constexpr std::uint32_t no_index = 0xFFFFFFFFu;
 
-/// True unless a coordinate is NaN or infinite: those times 0 are NaN, and NaN is not 0.
+/// False if a coordinate is NaN or infinite: such a coordinate times 0 is NaN, and NaN is not 0.
 [[nodiscard]] inline bool is_finite(const glm::vec3& p) {
   const glm::vec3 zero = p * 0.0f;
   return zero.x == 0 && zero.y == 0 && zero.z == 0;
@@ -95,7 +95,7 @@ inline constexpr std::uint32_t no_index = 0xFFFFFFFFu;
   return zero.x == 0 && zero.y == 0 && zero.z == 0;
 }
 
-/// An axis-aligned box. Default: empty.
+/// An axis-aligned box, empty by default.
 struct Box {
   glm::vec3 low{std::numeric_limits<float>::infinity()};
   glm::vec3 high{-std::numeric_limits<float>::infinity()};
@@ -116,13 +116,14 @@ struct Box {
 };
 
 namespace detail {
-/// Uninitialised memory, aligned to 64 bytes; large pieces ask the system for large pages. \throws std::bad_alloc.
+/// Allocates uninitialised memory, aligned to 64 bytes; large blocks ask the system for large pages.
+/// \throws std::bad_alloc.
 [[nodiscard]] void* allocate(std::size_t bytes);
 void release(void* pointer) noexcept;
 }  // namespace detail
 
-/// A fixed-size array, aligned to 64 bytes, whose elements start uninitialised: for planes of pixels that are written
-/// whole before they are read. Copies are deep.
+/// A fixed-size array, aligned to 64 bytes, with uninitialised elements. Its main use is planes of pixels that are
+/// written whole before they are read. Copies are deep.
 template <class T>
 class Buffer {
  public:
@@ -165,31 +166,31 @@ class Buffer {
   std::size_t size_ = 0;
 };
 
-// Names come from files, and may be any bytes.
+// Names come from files and may contain any bytes.
 
-/// `text` as UTF-8, whatever bytes it holds: one that is no part of a character is written as four, such as \xE9. For
-/// JSON, which has its own way to write control characters. O(size).
+/// \returns `text` as valid UTF-8: a byte that belongs to no character becomes four characters, such as \xE9. Control
+/// characters stay, because JSON has its own way to write them. O(size).
 [[nodiscard]] std::string utf8_text(std::string_view text);
-/// The same for terminals and pages, with control characters written likewise: a line feed is \x0A.
+/// Like utf8_text(), but control characters are escaped as well: a line feed becomes \x0A. For terminals and web pages.
 [[nodiscard]] std::string printable_text(std::string_view text);
 
-// Several files that belong together: all of them are there, or none.
+// Output of several files that belong together: either all of them appear, or none.
 
-/// Makes a folder and those that lead to it, where they are missing. The destructor removes the folders that this
-/// object made, if they are empty.
+/// Makes a folder, and missing folders on the path to it. The destructor removes the folders that this object made, if
+/// they are empty.
 class MadeFolder {
  public:
-  /// \throws Error file_unwritable where the folder cannot be made or is something else.
+  /// \throws Error file_unwritable if the folder cannot be made or the path is not a folder.
   explicit MadeFolder(const std::string& folder);
   ~MadeFolder();
   MadeFolder(const MadeFolder&) = delete;
   MadeFolder& operator=(const MadeFolder&) = delete;
 
  private:
-  std::vector<std::filesystem::path> made_;  ///< the outermost first
+  std::vector<std::filesystem::path> made_;  ///< outermost folder first
 };
 
-/// A hidden folder within another, gone with this, for files on their way there.
+/// A hidden temporary folder inside `folder`, for files until commit() moves them. The destructor removes it.
 class StagedFolder {
  public:
   /// \throws Error file_unwritable.
@@ -198,12 +199,13 @@ class StagedFolder {
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;
 
-  /// Where the file of this name is to be written.
+  /// Path at which the file of this name is to be written.
   [[nodiscard]] std::string path(const std::string& name) const { return (staged_ / name).string(); }
-  /// The path that a file in here is to have, where it begins with this folder; other texts as they are.
+  /// Replaces the hidden folder at the beginning of `path` by the final folder; returns other texts unchanged.
   [[nodiscard]] std::string told(const std::string& path) const;
-  /// Moves the files to their places, in this order; they need no more room there. Those that were there are replaced,
-  /// those at the end of links too, and leave their permissions. \throws Error file_unwritable.
+  /// Moves the files to the final folder, in this order, which takes no further disk space. Existing files are
+  /// replaced, also those at the end of links; their permissions are kept.
+  /// \throws Error file_unwritable.
   void commit(const std::vector<std::string>& names) const;
 
  private:

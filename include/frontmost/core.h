@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every method, picture and drawing stands on: meshes, surfaces, views, what is visible in them, images.
+// Core: everything that methods, pictures and drawings share: scenes, surfaces, views, visible samples and images.
 #pragma once
 
 #include "frontmost/base.h"     // IWYU pragma: export

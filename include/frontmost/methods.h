@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The visibility methods.
+// Includes the headers of all visibility methods.
 #pragma once
 
 #include "frontmost/abuffer.h"    // IWYU pragma: export

@@ -1,9 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// The painter's algorithm: polygons in an order in which painting one over the other is right everywhere.
+// The painter's algorithm: polygons in an order such that painting them one over the other is right everywhere.
 //
 //   Surfaces, View --painter()--> PaintOrder --paint()----------> Visible, for comparison with other methods
 //                                     |
 //                                     +-------visible_parts()---> VisibleParts, for drawings; see draw_figure()
+//
+// The depth sort starts with the order of farthest depths. For every two polygons that may cover each other, the tests
+// of Newell, Newell and Sancha run in their order until one decides which is painted first. Only if these decisions
+// form a cycle are polygons cut, along the plane of one of them. Planes are compared by signs of determinants of the
+// vertices' floats, without tolerance. Pairs are found by a grid when needed and not stored, so memory does not grow
+// with overlap.
+//
+// visible_parts() clips every polygon by the later ones that overlap it, in the cells of a grid. At most the 4,096
+// foremost occluders of a cell clip a polygon. Once 48 parts are left in a cell, a part goes only if one occluder hides
+// it whole. Polygons of meshes that overlap nothing are found together and not clipped.
+//
+// M. Newell, R. Newell, T. Sancha. A Solution to the Hidden Surface Problem. 1972. R. Tarjan. Depth-First Search and
+// Linear Graph Algorithms. 1972. H. Fuchs, Z. Kedem, B. Naylor. On Visible Surface Generation by A Priori Tree
+// Structures. 1980.
 #pragma once
 
 #include <functional>
@@ -15,24 +29,24 @@
 
 namespace frontmost {
 
-/// How polygons are put into order.
+/// The rule by which polygons are put into order.
 enum class PaintMethod : std::uint8_t {
-  depth_sort,  ///< by depth, with exchanges and cuts: right everywhere, and cuts only what cannot be ordered whole
-  bsp,         ///< by a binary tree of planes: right everywhere, and cuts much more
-  farthest,    ///< by their farthest points alone: wrong where that does not decide
-  centroid,    ///< by their centroids alone: likewise, elsewhere
+  depth_sort,  ///< by depth, with exchanges and cuts: right everywhere; cuts only polygons that cannot be ordered whole
+  bsp,         ///< by a binary tree of planes: right everywhere; cuts many more polygons
+  farthest,    ///< by farthest points alone: wrong where they do not decide
+  centroid,    ///< by centroids alone: wrong in other cases than `farthest`
 };
 
-/// Which triangles hide what lies behind them: nothing is seen through these.
+/// The set of triangles that hide everything behind them.
 class Occluders {
  public:
   [[nodiscard]] static Occluders none() { return Occluders({}, false); }
   [[nodiscard]] static Occluders all() { return Occluders({}, true); }
-  /// Those of which `is_occluder` is true. Several threads ask at once.
+  /// Triangles for which `is_occluder` returns true. Several threads may call it at once.
   [[nodiscard]] static Occluders where(std::function<bool(PrimitiveId)> is_occluder) {
     return Occluders(std::move(is_occluder), false);
   }
-  /// False where surely no triangle is one.
+  /// False if it is certain that no triangle is an occluder.
   [[nodiscard]] bool may_exist() const { return is_occluder_ || is_each_; }
   [[nodiscard]] bool contain(PrimitiveId id) const { return is_occluder_ ? is_occluder_(id) : is_each_; }
 
@@ -46,47 +60,46 @@ class Occluders {
 
 struct PainterOptions {
   PaintMethod method = PaintMethod::depth_sort;
-  /// More polygons, whole ones and pieces, are an error.
+  /// More polygons, whole ones and pieces together, are an error.
   std::size_t most_polygons = std::size_t(1) << 27;
-  /// More cuts are one, too: where all of n triangles pass through each other there may be n * n and more. About 400
-  /// bytes each.
+  /// More cuts are an error, too. If n triangles all pass through each other, there may be n * n cuts and more. About
+  /// 400 bytes each.
   std::size_t most_cuts = std::size_t(1) << 20;
-  /// Most triangles that these hide together are left out before the rest is put into order. That saves most of the
-  /// time inside of a machine, and takes some 300 bytes a triangle more. Triangles that overlap no other one on the
-  /// screen come first, and take no part in the sorting. For visible_parts() with the same occluders, which leaves out
-  /// what is hidden here, too.
+  /// Most triangles that occluders together hide are left out before sorting. This saves most of the time inside of a
+  /// machine, and takes some 300 bytes a triangle more. Triangles that overlap no other one on the screen come first
+  /// and are not sorted. Pass the same occluders to visible_parts(), which also leaves out what is hidden here.
   Occluders occluders = Occluders::none();
 };
 
-/// A corner of a polygon, and the side from it to the next one.
+/// A corner of a polygon, and the polygon's side from it to the next corner.
 struct PaintCorner {
   glm::dvec3 at{0};     ///< x and y in pixels of the view (x right, y down), z the planar distance
-  bool is_cut = false;  ///< the side is no edge of the primitive: it was cut here
+  bool is_cut = false;  ///< the side was made by a cut and is no edge of the primitive
 };
 
-/// A primitive, or a convex piece of one: `corner_count` of PaintOrder::corners from `first_corner` on,
-/// counter-clockwise as they are seen.
+/// A primitive, or a convex piece of one, counter-clockwise as seen. Its corners are `corner_count` of
+/// PaintOrder::corners, from `first_corner` on.
 struct PaintPolygon {
   PrimitiveId id = no_primitive;
   std::uint32_t corner_count = 0;
   std::size_t first_corner = 0;
 };
 
-/// What it took. Pairs are counted as often as they are asked about, by the test that decided.
+/// Counts of the sort's steps. A pair counts each time it is asked about, under the test that decided it.
 struct PaintSteps {
   std::uint64_t depths_apart = 0;       ///< one ends in depth before the other begins
-  std::uint64_t boxes_apart = 0;        ///< boxes around them do not overlap on the screen
+  std::uint64_t boxes_apart = 0;        ///< their bounding boxes do not overlap on the screen
   std::uint64_t behind = 0;             ///< the first lies wholly behind the plane of the second
   std::uint64_t before = 0;             ///< the second lies wholly before the plane of the first
   std::uint64_t projections_apart = 0;  ///< they do not overlap on the screen
-  std::uint64_t compared = 0;           ///< decided where they overlap
-  std::uint64_t exchanges = 0;          ///< pairs of all these in which the second had to be painted first
-  std::uint64_t cycles = 0;             ///< groups without an order among them
-  std::uint64_t largest_cycle = 0;      ///< polygons
+  std::uint64_t compared = 0;           ///< they overlap on the screen; decided where they do
+  std::uint64_t exchanges = 0;          ///< pairs, of all the above, of which the second had to be painted first
+  std::uint64_t cycles = 0;             ///< groups that have no order
+  std::uint64_t largest_cycle = 0;      ///< its number of polygons
   std::uint64_t cuts = 0;               ///< polygons that were cut in two
 };
 
-/// Polygons in an order of painting: where two overlap, the later one is before the other. paint() paints it.
+/// Polygons in painting order: where two overlap, the later one lies before the earlier. paint() paints them.
 struct PaintOrder {
   View view;
   std::vector<PaintPolygon> polygons;  ///< the first is painted first
@@ -94,51 +107,38 @@ struct PaintOrder {
   PaintSteps steps;
 };
 
-/// What is seen of an order: convex polygons within the picture, in the same order. No two overlap where both hide what
-/// is behind them, but for what visible_parts() leaves too much.
+/// The visible parts of an order: convex polygons within the picture, in the same order. Parts of occluders do not
+/// overlap, except for hidden parts that visible_parts() keeps.
 struct VisibleParts {
   View view;
   std::vector<PaintPolygon> polygons;
   std::vector<PaintCorner> corners;
 };
 
-/// All triangles that `view` may show, in the order of painting.
-///
-/// Depth sort: by farthest depth, then for every two that may cover each other the tests of Newell, Newell and Sancha
-/// in their order, until one decides; what has to be painted before goes first, and only where that leads in a circle
-/// are polygons cut, along the plane of one of them. Planes are compared by the signs of determinants of the vertices'
-/// floats, without tolerance. Triangles in one plane are painted as the z-buffer decides: the lower id on top; those
-/// with the same corners as one of a lower id directly below it, at no more cost than their polygons. (M. Newell, R.
-/// Newell, T. Sancha. A Solution to the Hidden Surface Problem. 1972; R. Tarjan. Depth-First Search and Linear Graph
-/// Algorithms. 1972; H. Fuchs, Z. Kedem, B. Naylor. On Visible Surface Generation by A Priori Tree Structures. 1980.)
-///
-/// What is seen from its edge, is left out by View::culling, or lies outside of the view is not there; the near and the
-/// far plane cut what they meet, the sides of the picture do not. Triangles with holes (alpha mode MASK) are whole.
-/// Near-linear in scenes of bounded depth complexity: n log n to sort, then one test for every two triangles that
-/// overlap on the screen and in depth. They are found by a grid when they are asked for, and not stored: about 200
-/// bytes a triangle, 110 of them the result, whatever overlaps. The result is the same to the bit for any number of
-/// threads. \throws Error as validate(view) does, and limit_exceeded for more than PainterOptions allow, or 2^28 tests
-/// and 8,192 for each polygon.
+/// \returns all triangles that `view` may show, in painting order. Of coplanar triangles the lower id is on top. Copies
+/// (same vertices as a triangle of lower id) lie directly below it, and cost no more than their polygons.
+/// Triangles seen edge-on, excluded by View::culling or outside the view are left out. Near and far planes cut
+/// triangles; the picture's sides do not. Triangles with holes (alpha mode MASK) are whole. The result is the same to
+/// the bit for any number of threads. O(n log n), and one test per pair that overlaps on the screen and in depth. 200
+/// bytes a triangle, 110 of them the result.
+/// \throws Error as validate(view) does; limit_exceeded beyond the limits of PainterOptions, or 2^28 tests and 8,192
+/// per polygon.
 [[nodiscard]] PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOptions& options = {},
                                  const Execution& execution = {});
 
-/// What is seen of an order, for drawings. Polygons that later occluders hide together are left out. Of a polygon that
-/// is hidden in part, what is left stays in its place of the order, as convex pieces. Polygons are cut at the sides of
-/// the picture, too.
-///
-/// Parts thinner than 1/1024 pixel are left out, and those between that and 1/16 are not cut off. Large polygons are
-/// cut along a grid where they are hidden in part. Near-linear, as painter(): every polygon is held against the later
-/// ones that overlap it, but for those of meshes that overlap nothing, which are found together. A polygon is held
-/// against the 4,096 foremost in each cell of a grid at most, and where 48 parts of it are left in one, a part goes
-/// only if one occluder hides it whole. What is left too much is painted over, as in the order itself. Long parallel
-/// strips share cells with many others. \throws Error limit_exceeded as painter() does for tests.
+/// \returns the visible parts of an order, for drawings. Polygons that later occluders hide together are left out. A
+/// partly hidden polygon becomes convex pieces of its visible part, at its place in the order; a large one is also cut
+/// along a grid. Polygons are cut at the picture's sides. Parts thinner than 1/1024 pixel are left out. Cuts that would
+/// leave a part of 1/1024 to 1/16 pixel are not made. Hidden parts that are kept are painted over, as in the order.
+/// Near-linear, as painter(), except for long parallel strips, which share many cells of the grid.
+/// \throws Error limit_exceeded as painter() does for tests.
 [[nodiscard]] VisibleParts visible_parts(const PaintOrder& order, const Occluders& occluders = Occluders::all(),
                                          const Execution& execution = {});
 
-/// Paints an order: every polygon over those before it, at the samples that its primitive covers in the z-buffer and
-/// that lie on the polygon's side of all cuts. Wrong orders give wrong pictures. Holes are left open.
+/// Paints an order: every polygon over those before it. A polygon is painted at the samples that its primitive covers
+/// in the z-buffer and that lie on its side of all cuts. Wrong orders give wrong pictures. Holes are left open.
 /// O(polygons + samples that each covers), on one thread.
-/// \throws Error bad_argument for an order that is not of these surfaces.
+/// \throws Error bad_argument for an order of other surfaces.
 [[nodiscard]] Visible paint(const Surfaces& surfaces, const PaintOrder& order);
 
 }  // namespace frontmost

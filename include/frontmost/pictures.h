@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shading: colour for what a method found visible, decided last and only where something is seen.
+// Shading: the colour of what a method found visible. Shading comes last, and only where something is seen.
 //
 //   Visible ----> once for every pixel and primitive in it ----> normal, texture, light ----> R, G, B, A
 //                     |                                              |
 //                     Surfaces: attributes and materials             shadows: a map, or rays
 //
-// How dear a material is thus does not depend on how much lies behind what is seen. Colours are linear while they are
-// computed.
+// The cost of a material therefore does not depend on how much lies behind the visible surface. Colours are linear
+// during shading.
 #pragma once
 
 #include <memory>
@@ -21,15 +21,15 @@
 
 namespace frontmost {
 
-// Environment: the light that comes from all around, made ready to be asked for by any surface.
+// Environment: the light that arrives from all directions, prepared so that any surface can look it up.
 //
-//   a picture of all directions, or code
-//     --> the same on an octahedron unfolded to a square           mirrored by smooth surfaces
-//     --> that blurred as surfaces of eight roughnesses blur it    mirrored by rough ones
-//     --> its mean, its first and its second moments               sent back by matt ones
+//   a panorama, or code
+//     --> an octahedron unfolded to a square                       reflected by smooth surfaces
+//     --> the octahedron, blurred for eight roughnesses            reflected by rough surfaces
+//     --> its mean, its first and its second moments               reflected by matt surfaces
 //
-// Directions are those of a Panorama: ahead is the middle of the picture, right a quarter of its width from there, up
-// its upper side. In the axes of an environment x is right, y up and z behind.
+// Directions follow Panorama: the middle of the picture is ahead, a quarter of the width to its right is right, and the
+// upper side is up. In the axes of an environment x is right, y up and z behind.
 
 class Environment;
 namespace shading {
@@ -37,33 +37,35 @@ struct PrefilteredEnvironment;
 const PrefilteredEnvironment& prefiltered(const Environment& environment);
 }  // namespace shading
 
-/// Cheap to copy: copies share what was made, which never changes, and may be used by several threads at once.
+/// An environment is cheap to copy. Copies share the prepared maps, which never change, and several threads may use
+/// them at once.
 class Environment {
  public:
-  /// From an equirectangular picture with channels R, G and B, twice as wide as high, as load_environment() gives it.
-  /// Keeps the picture, which is what a background shows. O(pixels), in parallel; about 7 MB beside the picture, less
-  /// for pictures below 1024 x 512. \throws Error bad_argument for other sizes and channels, or values that are not 0
-  /// to max_environment_value; limit_exceeded above 16384 x 8192.
+  /// Prepares an equirectangular picture with channels R, G and B, twice as wide as high, as load_environment() returns
+  /// it. Keeps the picture, which LightOptions::shows_environment shows. O(pixels), in parallel; about 7 MB beside the
+  /// picture, less for pictures below 1024 x 512.
+  /// \throws Error bad_argument for other sizes and channels, or values outside 0 to max_environment_value;
+  /// limit_exceeded above 16384 x 8192.
   explicit Environment(Image equirectangular, const Execution& execution = {});
-  /// A neutral room, grey below and brighter above, with soft boxes that metals mirror; the brightest stands before the
-  /// model to the left, where the key light is. Turns with the camera. White matt surfaces send back 0.15 of it from
-  /// below and 0.36 from above. About three milliseconds.
+  /// A neutral room, grey below and brighter above, with soft boxes that metals reflect. The brightest box stands in
+  /// front of the model to the left, where the key light is. The room turns with the camera. White matt surfaces that
+  /// face down have radiance 0.15 from it, those that face up 0.36. Takes about three milliseconds.
   [[nodiscard]] static Environment studio(const Execution& execution = {});
-  /// A clear sky without a sun over dull ground; as bright as the studio.
+  /// A clear sky without a sun over dull ground. It is as bright as the studio.
   [[nodiscard]] static Environment sky(const Execution& execution = {});
   /// No light at all.
   [[nodiscard]] static Environment none();
 
-  /// True of studio(): what is ahead in it is ahead of the camera; in others it is ahead in the world, where
-  /// NamedView::front looks.
+  /// True for studio(), which turns with the camera: ahead in the environment is ahead of the camera. In other
+  /// environments ahead is the direction in which NamedView::front looks.
   [[nodiscard]] bool turns_with_camera() const;
-  /// The picture that it was made from, or null.
+  /// The picture that the environment was made from, or null.
   [[nodiscard]] const Image* picture() const;
 
-  /// Radiance from a direction as a surface of this roughness (0 to 1) mirrors it that is seen from straight ahead: the
-  /// mean weighted by the GGX lobe and the cosine. `towards` is in the environment's axes, of any length but zero.
+  /// Radiance that a surface of this roughness (0 to 1) reflects from the direction `towards` if it is seen head-on:
+  /// the mean weighted by the GGX lobe and the cosine. `towards` is in the environment's axes, of any length but zero.
   [[nodiscard]] glm::vec3 radiance(const glm::vec3& towards, float roughness = 0) const;
-  /// What a white matt surface with this unit normal sends back: irradiance / pi, by spherical harmonics of order 2.
+  /// Radiance of a white matt surface with this unit normal: irradiance / pi, by spherical harmonics of order 2.
   /// (R. Ramamoorthi, P. Hanrahan. An Efficient Representation for Irradiance Environment Maps. SIGGRAPH 2001.)
   [[nodiscard]] glm::vec3 irradiance(const glm::vec3& normal) const;
 
@@ -73,81 +75,81 @@ class Environment {
   std::shared_ptr<const shading::PrefilteredEnvironment> made_;
 };
 
-/// What the picture shows.
+/// The quantity that a picture shows.
 enum class Shading : std::uint8_t {
-  lit,      ///< metallic-roughness under a key light with shadow and an environment
-  flat,     ///< base colour as it is, no light
+  lit,      ///< metallic-roughness materials under a key light with shadow and an environment
+  flat,     ///< base colour without light
   normals,  ///< world-space shading normals, 0.5 + 0.5 n
-  depth,    ///< near bright, far dark, over the depths that are seen
-  ids,      ///< a colour of its own for every object
+  depth,    ///< near is bright, far is dark, scaled to the range of depths in the picture
+  ids,      ///< each object in its own colour
   uv,       ///< texture coordinates as red and green
 };
 
-/// Which direct lights count in lit pictures, beside the surroundings.
+/// The direct lights of lit pictures, in addition to the environment.
 enum class Lights : std::uint8_t {
-  key,   ///< one that moves with the camera
-  file,  ///< Scene::lights: a white matt surface that gets E lux sends back E / pi, which is the picture's value
+  key,   ///< the key light, which moves with the camera
+  file,  ///< Scene::lights; a white matt surface that receives E lux has the value E / pi
   both,
   none,
 };
 
-/// So many suns and spots of a scene have maps of shadows: the first ones.
+/// Number of suns and spots that have shadow maps: the first ones of the scene.
 inline constexpr std::size_t most_mapped_lights = 16;
 
-/// How shadows are found, which what is opaque throws.
+/// How shadows are found. Only opaque materials cast shadows.
 enum class Shadows : std::uint8_t {
-  off,  ///< none
-  /// What a light sees on 256 to 1024 texels squared, as the picture needs, with edges a few of them wide. Of the key
-  /// light, and of the first most_mapped_lights suns and spots of the scene; points throw none, and spots none farther
-  /// than 75 degrees from their axis.
+  off,  ///< no shadows
+  /// Shadow maps of 256 to 1024 texels squared, by the size of the picture; edges are a few texels wide. The key light
+  /// and the first most_mapped_lights suns and spots of the scene have maps. Point lights cast no shadows, and spots
+  /// cast none beyond 75 degrees from their axis.
   map,
-  rays,  ///< a ray to every light from every sample: as sharp as the picture
+  rays,  ///< a ray from every sample to every light; edges are as sharp as the picture
 };
 
-/// How much of what lies one behind another a picture shows. Of lit, flat and normals alone.
+/// Whether a picture shows surfaces behind translucent ones. Ignored unless the shading is lit, flat or normals.
 enum class SeeThrough : std::uint8_t {
-  /// Every layer, by the A-buffer, wherever something is visible that can be seen through; what is visible elsewhere.
-  /// The Visible has to be the front-most of its view: what others hold is shown by `never`.
+  /// Every layer, by the A-buffer, in pixels where a see-through surface is visible; elsewhere the visible surface
+  /// alone. Requires a Visible that holds the front-most surfaces of its view; use `never` for any other.
   where_needed,
-  always,  ///< every layer everywhere, of opaque scenes too: for the A-buffer's sub-samples
-  never,   ///< what is visible, over the background
+  always,  ///< every layer in every pixel, opaque scenes included: for the A-buffer's sub-samples
+  never,   ///< the visible surface alone, over the background
 };
 
-/// For how many pixels a colour is found at once. Of lit, flat and normals alone.
+/// For how many pixels one colour is computed. Ignored unless the shading is lit, flat or normals.
 /// (K. Vaidyanathan et al. Coarse Pixel Shading. High-Performance Graphics 2014.)
 enum class ShadingRate : std::uint8_t {
   each_pixel,
-  /// Those of two by two pixels all of whose samples see the same primitive have the colour of the first of them, and
-  /// pixels with several layers share those that are as many deep and cover the same samples. For pictures that are
-  /// followed by others at once: down to a quarter of the colours are found. Borders of triangles stay as sharp;
-  /// textures, with their holes, shadows and highlights do not.
+  /// In each block of 2 x 2 pixels, pixels all of whose samples see the same primitive share the colour of the first
+  /// such pixel. Fragments of several layers share a colour if their primitives, samples and places in the lists agree.
+  /// Down to a quarter of the colours are computed: for pictures that are replaced at once. Triangle edges stay as
+  /// sharp; textures, their holes, shadows and highlights get coarser.
   each_2x2,
 };
 
-/// In which numbers a picture is blended: what is half transparent, and the samples of a pixel.
+/// The numbers in which translucent layers, and the samples of a pixel, are blended.
 enum class Blend : std::uint8_t {
-  linear,  ///< light, as nature does
-  srgb,    ///< as viewers blend the shapes of SVG and PDF: a half-transparent red over white is darker
+  linear,  ///< linear light, as in nature
+  srgb,    ///< sRGB, as viewers of SVG and PDF blend: half-transparent red over white is darker
 };
 
-/// What is near keeps light from all around off: corners, and what stands on something, are darker. Found on the depths
-/// that the picture shows, of what is opaque by its material, so that it costs the same for any model; what is hidden
-/// from the eye hides nothing. The key light is not weakened by it.
+/// Ambient occlusion: nearby surfaces weaken the environment's light, so corners and contacts between objects are
+/// darker. The key light is not weakened. Occlusion is found from the depths of opaque materials in the picture, so its
+/// cost does not depend on the model; surfaces that the eye does not see occlude nothing.
 /// (J. Jimenez, X. Wu, A. Pesce, A. Jarabo. Practical Real-Time Strategies for Accurate Indirect Occlusion. 2016.)
 struct AmbientOcclusion {
-  double strength = 1;  ///< 0: none, to 1: as much as is hidden
-  /// Scene units: what is farther away hides nothing, and what is nearer the more, the nearer it is. None: a tenth of
-  /// the diagonal of find_subject().
+  double strength = 1;  ///< 0 (none) to 1 (all light that is occluded)
+  /// Scene units: surfaces farther away occlude nothing, and the effect grows towards nearer ones. None: a tenth of the
+  /// diagonal of find_subject().
   std::optional<double> radius = std::nullopt;
 };
 
-/// How light beyond what a picture can hold, which is 1, is brought below it.
+/// How values above 1, the most that a picture holds, are brought into range.
 enum class ToneMapping : std::uint8_t {
-  none,  ///< cut off at 1, each channel by itself
-  /// Filmic: more contrast, and colours fade as they grow bright. (S. Hill's fit of ACES 1.0, as in
-  /// three.js and other viewers, there ACESFilmicToneMapping.)
+  none,  ///< each channel is clamped to 1
+  /// Filmic: higher contrast, and bright colours fade to white. (S. Hill's fit of ACES 1.0, as in three.js, where it is
+  /// called ACESFilmicToneMapping, and in other viewers.)
   aces,
-  /// Khronos PBR Neutral: base colours stay what they are up to 0.76, what is brighter fades to white.
+  /// Khronos PBR Neutral: base colours up to 0.76 are kept, brighter ones fade to white.
   khronos,
 };
 
@@ -158,90 +160,89 @@ struct LightOptions {
   std::optional<AmbientOcclusion> ambient_occlusion = std::nullopt;
   /// None: Environment::studio().
   std::optional<Environment> environment = std::nullopt;
-  /// Radians, counter-clockwise seen from above, by which the environment is turned about the scene's up. Finite.
+  /// Radians: turns the environment about the scene's up axis, counter-clockwise seen from above. Finite.
   double environment_angle = 0;
-  /// Pictures show the environment where nothing hides it, in place of the background, also those that are not lit. Not
-  /// figures, pictures of scans, or other blends than linear.
+  /// True: the environment is shown in place of the background, for every Shading. Not supported for figures, pictures
+  /// of scans, and blends other than linear.
   bool shows_environment = false;
-  /// Stops, -32 to 32: light is multiplied by 2^exposure before tone mapping; unlit materials stay as they are.
+  /// Stops, -32 to 32: light is multiplied by 2^exposure before tone mapping. Unlit materials are unaffected.
   double exposure = 0;
   ToneMapping tone_mapping = ToneMapping::none;
-  /// Towards the key light, in the world, of any length but zero. None: the camera's upper left.
+  /// Direction towards the key light, world space, any length but zero. None: the camera's upper left.
   std::optional<glm::dvec3> direction = std::nullopt;
-  /// Multiplies the key light, 0 to 1e6; 0 leaves it out. None: 1, and 0 beside an environment from a picture, which
-  /// has lights of its own.
+  /// Multiplies the key light, 0 to 1e6; 0 turns the key light off. None: 1, or 0 if the environment comes from a
+  /// picture, which has lights of its own.
   std::optional<double> intensity = std::nullopt;
 };
 
-/// What lies one behind another.
+/// Translucent layers of a picture.
 struct LayerOptions {
   SeeThrough see_through = SeeThrough::where_needed;
-  int grid = 0;  ///< the A-buffer's sub-samples: as AbufferOptions::grid
+  int grid = 0;  ///< the A-buffer's sub-samples, as AbufferOptions::grid
 };
 
-/// How the pixels of a picture are found.
+/// How the colours of pixels are computed and blended.
 struct PixelOptions {
-  Blend blend = Blend::linear;                 ///< not of deep images or figures
-  ShadingRate rate = ShadingRate::each_pixel;  ///< of views; not of scans, deep images or figures
+  Blend blend = Blend::linear;                 ///< ignored for deep images and figures
+  ShadingRate rate = ShadingRate::each_pixel;  ///< ignored for scans, deep images and figures
 };
 
 struct ShadeOptions {
   Shading shading = Shading::lit;
   /// sRGB, 0 to 1. None: transparent.
   std::optional<glm::vec3> background = glm::vec3(1.0f);
-  /// Multiplies the opacity of everything, 0 to 1. Of lit, flat and normals.
+  /// Multiplies every opacity, 0 to 1. Ignored unless the shading is lit, flat or normals.
   float opacity = 1.0f;
-  LightOptions light = {};   ///< of lit
-  LayerOptions layers = {};  ///< of lit, flat and normals
-  PixelOptions pixels = {};  ///< of lit, flat and normals
+  LightOptions light = {};   ///< all but a shown environment is ignored unless the shading is lit
+  LayerOptions layers = {};  ///< ignored unless the shading is lit, flat or normals
+  PixelOptions pixels = {};  ///< ignored unless the shading is lit, flat or normals
 };
 
-/// What is to be shaded, and what a caller may have found already of what shadows need. Borrows everything.
+/// Visible surfaces to be shaded, and results for shadows that the caller already has. Borrows everything.
 struct ShadeInput {
-  /// What is visible in the view: front-most, at every sample. One of both is given.
+  /// The front-most surface at every sample of the view. Exactly one of `visible` and `pixels` is set.
   const Visible* visible = nullptr;
-  const VisiblePixels* pixels = nullptr;  ///< for all shadings but depth; not for figures
-  /// For Shadows::map of the key light: what is visible in key_light_view(). Null: shade() finds what is visible of the
-  /// surfaces there.
+  const VisiblePixels* pixels = nullptr;  ///< not for Shading::depth, nor for figures
+  /// For Shadows::map of the key light: what is visible in key_light_view(). Null: shade() computes it.
   const Visible* seen_by_light = nullptr;
-  /// For Shadows::rays: that of the surfaces. Null: shade() makes one, as it does where materials are see-through.
+  /// For Shadows::rays: the index of the surfaces. Null, or with see-through materials: shade() makes one.
   const RayIndex* index = nullptr;
 
-  /// At every sample, or of `pixels` at the first.
+  /// The surface at every sample, or, of `pixels`, at the first sample of each pixel.
   [[nodiscard]] const Visible& first() const { return pixels ? pixels->first : *visible; }
   [[nodiscard]] const View& view() const { return pixels ? pixels->view : visible->view; }
 };
 
-/// A scan that is to be shaded, of cameras all around. Borrows everything.
+/// A scan to be shaded, from a camera that is no pinhole. Borrows everything.
 struct ScanInput {
   const RangeScan* scan = nullptr;
-  /// That of the surfaces, for Shadows::rays and for what is seen through. Null: shade() makes one where it needs it.
+  /// The index of the surfaces, for Shadows::rays and see-through materials. Null: shade() makes one where needed.
   const RayIndex* index = nullptr;
 };
 
-/// The view in which the key light sees what `visible` shows: whatever is visible in it is lit, the rest in shadow. For
-/// pictures made of parts, of which shade() is given only the triangles that are seen; `bounds` are those of the whole.
-/// None where nothing is visible, or where there is no key light. O(pixels).
+/// The view in which the key light sees the surfaces of `visible`: surfaces visible in it are lit, all others are in
+/// shadow. For pictures in parts, where shade() gets the visible triangles alone; `bounds` are the whole scene's. None
+/// if nothing is visible, or without a key light. O(pixels).
 /// \throws Error bad_argument for light options out of range.
 [[nodiscard]] std::optional<View> key_light_view(const Visible& visible, const Box& bounds,
                                                  const LightOptions& light = {}, const Execution& execution = {});
 
-/// A picture with channels R, G, B, A. Shades once per pixel and primitive and averages over the samples.
-/// Where something is visible that can be seen through, or the opacity is below 1, the A-buffer of the same view says
-/// all that is seen, in true order at every sample: of 64 x 64 pixels at a time, or of all with a grid of sub-samples.
+/// A picture with channels R, G, B, A. Each primitive is shaded once per pixel; the pixel is the mean over its samples.
+/// Where a see-through surface is visible, or `opacity` is below 1, the A-buffer of the same view finds all layers in
+/// depth order. The A-buffer works on tiles of 64 x 64 pixels, or, with a grid of sub-samples, on the whole picture.
+/// O(covered pixels). Borrows everything. The bytes do not depend on threads or instruction set.
 /// \throws Error bad_argument for an opacity, a grid, ambient occlusion or light options out of range; limit_exceeded
-/// for more than 4096 lights that count, or where shadows by rays are too much work; unsupported for depths of pixels.
-/// Borrows everything; O(covered pixels). The bytes do not depend on threads or instruction set.
+/// for more than 4096 lights that count, or too much work for ray shadows; unsupported for Shading::depth of `pixels`.
 [[nodiscard]] Image shade(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
                           const Execution& execution = {});
-/// The same of nothing but what is visible.
+/// Shades `visible`, or `pixels`, without shadow results of the caller's.
 [[nodiscard]] Image shade(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
                           const Execution& execution = {});
 [[nodiscard]] Image shade(const Surfaces& surfaces, const VisiblePixels& pixels, const ShadeOptions& options = {},
                           const Execution& execution = {});
 
-/// The same picture as a PNG file of shade()'s holds it, to the byte, without the planes of floats that are four times
-/// as large: for pictures that are only to be shown or saved.
+/// The picture that shade() makes, with the bytes that a PNG file of it holds. A bitmap needs a quarter of the memory,
+/// so it is for pictures that are only shown or saved.
 [[nodiscard]] Bitmap shade_bitmap(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
                                   const Execution& execution = {});
 [[nodiscard]] Bitmap shade_bitmap(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
@@ -249,13 +250,13 @@ struct ScanInput {
 [[nodiscard]] Bitmap shade_bitmap(const Surfaces& surfaces, const VisiblePixels& pixels,
                                   const ShadeOptions& options = {}, const Execution& execution = {});
 
-/// Every fragment of the picture by itself, nearest first: channels R, G, B (multiplied by A), A, Z and ZBack, and the
-/// integers "primitive", "object" and "material". A is the part that a sample hides of what those before it leave
-/// uncovered, at the options' sub-samples: laid over each other with nothing in between, samples give the picture that
-/// shade() gives with SeeThrough::always over a transparent background, edges included. Z is the planar depth at the
-/// pixel's centre; surfaces have no thickness, so ZBack is the same. O(fragments * sub-samples); 36 bytes a fragment,
-/// twice that while it works. Options as for shade(). \throws Error as shade() and abuffer() do, unsupported for other
-/// shadings than lit, flat and normals.
+/// Every fragment of the picture, nearest first, with channels R, G, B (premultiplied), A, Z, ZBack and the integers
+/// "primitive", "object" and "material". A is the part of the pixel that the fragment hides of what nearer fragments
+/// leave uncovered, at the sub-samples of the options. Compositing all fragments over a transparent background gives
+/// the picture that shade() makes with SeeThrough::always, edges included. Z and ZBack are the planar depth at the
+/// pixel's centre.
+/// O(fragments * sub-samples); 36 bytes a fragment, twice that while it works. Options as for shade().
+/// \throws Error as shade() and abuffer() do; unsupported for shadings other than lit, flat and normals.
 [[nodiscard]] DeepImage shade_deep(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
                                    const Execution& execution = {});
 [[nodiscard]] DeepImage shade_deep(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
@@ -266,19 +267,18 @@ namespace shading {
 struct PreparedScene;
 PreparedScene& prepared(Shader& shader, const Execution& execution);  // for draw_figure() in sheets.h
 }  // namespace shading
-
-/// Shades pictures of the same surfaces one after another, each as the function of that name gives it, to the byte.
-/// What does not depend on the view is made when the first picture needs it, and kept: textures' mip levels, smooth
-/// normals, what throws shadows, the studio; and every light's map as long as the light sees the same. From the second
-/// picture of a size on, views of opaque scenes allocate nothing, but for rays of shadows, the blend srgb and a shown
-/// environment, as long as none needs more than those before: other materials, other meshes without normals, another
-/// size. Memory: the last picture; a third of the texels that were seen; 12 bytes a triangle of meshes without normals;
-/// up to 8.25 MiB of what a light sees, of 17 lights at most; half a megabyte a thread; surfaces of what is opaque
-/// beside glass, and an index for rays, where they are needed. Not for several threads at once.
+/// Shades pictures of the same surfaces one after another. Each member returns the same bytes as the function of its
+/// name. Keeps data that do not depend on the view: mip levels, smooth normals, shadow casters, the studio; and each
+/// light's shadow map while the light sees the same. From the second picture of a size on, opaque scenes need no
+/// allocation, except for Shadows::rays, Blend::srgb, a shown environment, or materials and meshes without normals that
+/// come into sight. Memory: the last picture; a third of the visible texels; 12 bytes a triangle of meshes without
+/// normals; up to 8.25 MiB for each of up to 17 shadow maps; half a megabyte a thread; where needed, surfaces of the
+/// opaque part of a scene with glass, and an index for rays. Not for several threads at once.
+/// with glass, and an index for rays. Not for several threads at once.
 class Shader {
  public:
-  /// Borrows the surfaces and their scene, which must stay as they are, but for what Surfaces::move() moves: each call
-  /// shows it where it is. O(instances + materials).
+  /// Borrows the surfaces and their scene, which must not change except by Surfaces::move(). Each call shows moved
+  /// instances in their new places. O(instances + materials).
   explicit Shader(const Surfaces& surfaces);
   ~Shader();
   Shader(Shader&&) noexcept;
@@ -286,17 +286,17 @@ class Shader {
   Shader(const Shader&) = delete;
   Shader& operator=(const Shader&) = delete;
 
-  /// The result stays as it is until the next shade() or take().
+  /// The result is valid until the next shade() or take().
   const Image& shade(const ShadeInput& input, const ShadeOptions& options = {}, const Execution& execution = {});
   const Image& shade(const ScanInput& input, const ShadeOptions& options = {}, const Execution& execution = {});
-  /// The result stays as it is until the next shade_bitmap() or take_bitmap().
+  /// The result is valid until the next shade_bitmap() or take_bitmap().
   const Bitmap& shade_bitmap(const ShadeInput& input, const ShadeOptions& options = {},
                              const Execution& execution = {});
   [[nodiscard]] DeepImage shade_deep(const ShadeInput& input, const ShadeOptions& options = {},
                                      const Execution& execution = {});
   [[nodiscard]] Image normal_image(const Visible& visible, const Execution& execution = {});
 
-  /// Move the last result out; the next one is allocated.
+  /// Moves the last result out; the next call allocates a new one.
   [[nodiscard]] Image take();
   [[nodiscard]] Bitmap take_bitmap();
 
@@ -306,11 +306,12 @@ class Shader {
   std::unique_ptr<State> state_;
 };
 
-/// A picture of a scan, with the materials, lights and shadows of other pictures; once per pixel and primitive, and
-/// averaged over the samples of the scan's camera. The key light is that of a pinhole in the same pose; the map of its
-/// shadows holds what the scan sees. Textures are as sharp as the distance between neighbouring rays asks for. Where
-/// materials are blended, or the opacity is below 1, the rays go on behind what they met first. `depth` is the range.
-/// \throws Error bad_argument for a scan or options that do not fit. O(rays).
+/// A picture of a scan, with the same materials, lights and shadows as other pictures. Each primitive is shaded once
+/// per pixel; the pixel is the mean over the samples of the scan's camera. The key light is that of a pinhole camera in
+/// the same pose, and its shadow map holds what the scan sees. Textures are filtered by the distance between
+/// neighbouring rays. Behind blended materials, or with `opacity` below 1, the rays continue. Shading::depth shows the
+/// range.
+/// O(rays). \throws Error bad_argument for a scan or options that do not fit.
 [[nodiscard]] Image shade(const Surfaces& surfaces, const ScanInput& input, const ShadeOptions& options = {},
                           const Execution& execution = {});
 [[nodiscard]] Image shade(const Surfaces& surfaces, const RangeScan& scan, const ShadeOptions& options = {},

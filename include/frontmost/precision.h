@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a depth buffer can tell apart: as a function of distance, and in a picture.
+// The precision of a depth buffer: as a function of distance, and in a picture.
 //
 //    near                                                          far
 //     | | | |  |  |   |    |     |       |            |             |
 //                                        <------------>  the gap at this distance
 //
-// The values of a fixed-point format lie close together before the eye, and ever farther apart behind.
-// Two surfaces that are nearer to each other than the gap may be stored as one value; then the order of drawing decides
-// which is seen, and they are said to fight.
+// Values of a fixed-point format lie close together near the eye, and farther apart with growing distance. Two surfaces
+// closer to each other than the gap may be stored as the same value. The order of drawing then decides which surface is
+// seen: the surfaces fight (z-fighting).
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@
 
 namespace frontmost {
 
-/// All that the precision of a depth buffer depends on.
+/// Everything that determines the precision of a depth buffer.
 struct DepthSetup {
   ClipDistances clip;
   DepthFormat format = DepthFormat::d24;
@@ -32,133 +32,136 @@ struct DepthSetup {
   bool orthographic = false;  ///< depth is affine in distance, not in its reciprocal
 };
 
-/// The smallest gap that the format resolves: of what lies exactly at `distance`, a surface at least so much farther
-/// away is stored as another value. One full step of the format, carried back to distances: about distance^2 (far -
-/// near) / (far near (2^n - 1)) for integers, at most 2^-23 of the distance for reversed floats. Infinite where nothing
-/// beyond is told apart from infinity. Float buffers are never finer than the float keys from which depths are made:
-/// 2^-24 to 2^-23 of the distance. \throws Error bad_argument unless near <= distance <= far, and for planes that
-/// make_projection() refuses.
+/// The resolvable gap: a surface exactly at `distance` and one at least this much farther away are stored as different
+/// values. The gap is one full step of the format, converted to distance. For integers it is about distance^2 (far -
+/// near) / (far near (2^n - 1)), for reversed floats at most 2^-23 of the distance. Float buffers are never finer than
+/// the float keys from which depths are made: 2^-24 to 2^-23 of the distance. Infinite if no farther distance differs
+/// from infinity.
+/// \throws Error bad_argument unless near <= distance <= far, and for planes that make_projection() refuses.
 [[nodiscard]] double resolvable_gap(const DepthSetup& setup, double distance);
 
-/// What positions and transforms add to it, of surfaces that face the picture. World positions are floats, and so are
-/// those relative to the eye, the rows of the transform and what is made of them: of corners at most `reach` away from
-/// the eye and from the world's origin, every distance is off by up to 9 * 2^-24 * reach, and by 2 * 2^-24 of itself as
-/// a key; that of both surfaces. Without `reach` it is twice the distance, or in parallel projection twice the planes'.
-/// Surfaces that do not face the picture are snapped to 1/256 pixel besides: each of two adds what its depth changes
-/// over 1/512 pixel along x and along y. \throws as above.
+/// The additional gap due to rounding of positions and transforms, for two surfaces that face the picture. Positions,
+/// coordinates relative to the eye, and the transform are floats. With vertices at most `reach` away from the eye and
+/// from the world's origin, each distance is wrong by up to 9 * 2^-24 * reach, plus 2 * 2^-24 of itself as a key; the
+/// gap is twice that. `reach` defaults to twice the distance, or, in parallel projection, twice the distance of the
+/// planes. Snapping to 1/256 pixel also moves surfaces that do not face the picture: each adds the change of its depth
+/// over 1/512 pixel along x and along y. \throws Error as resolvable_gap() does.
 [[nodiscard]] double rounding_gap(const DepthSetup& setup, double distance, std::optional<double> reach = {});
 
-/// Both together: the gap behind `distance` that every picture resolves at every pixel. \throws as above.
+/// The sum of both gaps: two surfaces this far apart, the nearer at `distance`, are resolved at every pixel of every
+/// picture. \throws Error as resolvable_gap() does.
 [[nodiscard]] double certain_gap(const DepthSetup& setup, double distance, std::optional<double> reach = {});
 
-/// How much of the format's values lie between the near plane and `distance`, 0 to 1.
+/// The share of the format's values between the near plane and `distance`, 0 to 1.
 [[nodiscard]] double share_of_values(const DepthSetup& setup, double distance);
 
-/// The smallest near distance with which `gap` is resolved at `distance`, other planes and format as in `setup`;
-/// 0: any near plane does. None: none does. Reversed floats hardly depend on the near plane, so there the answer is 0
-/// or none. \throws as above, and for a gap that is not positive.
+/// The smallest near distance with which `gap` is resolved at `distance`, for the far plane and format of `setup`. 0:
+/// any near plane resolves the gap. None: no near plane does. Reversed floats hardly depend on the near plane, so their
+/// result is 0 or none. \throws Error as resolvable_gap() does, and for a gap that is not positive.
 [[nodiscard]] std::optional<double> near_for_gap(const DepthSetup& setup, double distance, double gap);
 
-/// Distances for a table: the planes, and 1, 2, 5, 10, 20... between them; for an infinite far plane up to 10^6 times
-/// the near distance.
+/// Distances for a table: the near plane, then 1, 2, 5, 10, 20..., then the far plane. An infinite far plane counts as
+/// 10^6 times the near distance.
 [[nodiscard]] std::vector<double> round_distances(const ClipDistances& clip);
 
-/// What is nearest at every sample, decided without rounding. Covered by the same triangles as zbuffer(), from the same
-/// snapped corners; but the depth of a triangle is that of the plane through its corners in world space, where the
-/// sample's ray meets it, limited to the depths of its corners. The corners are floats, the ray's origin and direction
-/// doubles; from there on nothing is rounded, as long as coordinates are 0 or between 2^-100 and 2^100.
+/// The nearest triangle at every sample, found without rounding. Coverage is that of zbuffer(), from the same snapped
+/// vertices. The depth is that of the triangle's plane in world space where the sample's ray meets it, limited to the
+/// depths of the triangle's vertices. Vertices are floats, the ray's origin and direction are doubles; nothing else is
+/// rounded if coordinates are 0 or between 2^-100 and 2^100.
 struct ExactVisible {
   View view;
-  Buffer<PrimitiveId> primitives;  ///< the lowest id of the nearest, in the order of Visible
-  Buffer<std::uint8_t> tied;       ///< 1 where another triangle is exactly as near
+  Buffer<PrimitiveId> primitives;  ///< in the order of Visible; of equally near triangles the lowest id
+  Buffer<std::uint8_t> tied;       ///< 1 if another triangle is exactly as near
 };
 
-/// O(triangles + covered samples); samples where doubles cannot decide cost microseconds each. The same on every
-/// machine. \throws Error as validate(view) does, and limit_exceeded for more than 2^29 steps, 128 more for each
-/// sample and 1,024 for each triangle; a triangle at a sample is one step, or 64 where doubles cannot decide.
+/// Finds the nearest triangle at every sample; the result is the same on every machine. O(triangles + covered samples);
+/// a sample that doubles cannot decide takes microseconds.
+/// \throws Error as validate(view) does; limit_exceeded for more than 2^29 steps, 128 more for each sample and 1,024
+/// for each triangle. A triangle at a sample is one step, or 64 if doubles cannot decide.
 [[nodiscard]] ExactVisible find_exact_visible(const Surfaces& surfaces, const View& view,
                                               const Execution& execution = {});
 
-/// Two objects of which one is seen where the other is nearer.
+/// Samples at which one object is seen although another one is nearer.
 struct FightingPair {
-  std::uint32_t seen = no_index;    ///< instance; no_index: nothing is seen there
-  std::uint32_t nearer = no_index;  ///< instance; may be the same
+  std::uint32_t seen = no_index;    ///< an instance; no_index: nothing is seen
+  std::uint32_t nearer = no_index;  ///< an instance, perhaps the same one
   std::uint64_t samples = 0;
-  double farthest = 0;  ///< the most that what is seen lies behind what is nearer
+  double farthest = 0;  ///< greatest distance of the seen surface behind the nearest one
 };
 
-/// Where an answer shows a surface that is not the nearest.
+/// The samples at which an answer does not show the nearest surface.
 struct DepthFights {
   View view;
-  std::uint64_t covered = 0;        ///< samples where there is something to see
-  std::uint64_t wrong = 0;          ///< where something strictly farther, or nothing, is seen
-  std::uint64_t tied = 0;           ///< where several surfaces are exactly nearest, and no answer is wrong
+  std::uint64_t covered = 0;        ///< samples with a surface
+  std::uint64_t wrong = 0;          ///< samples that show a strictly farther surface, or nothing
+  std::uint64_t tied = 0;           ///< samples with several exactly nearest surfaces, any of which is right
   std::vector<FightingPair> pairs;  ///< most samples first
-  /// By sample: how far what is seen lies behind the nearest, as a share of the nearest's distance; 0 where the answer
-  /// is right, +inf where nothing is seen.
+  /// By sample: distance of the seen surface behind the nearest one, divided by the nearest distance. 0 if the answer
+  /// is right, +inf if nothing is seen.
   Buffer<float> errors;
 };
 
 /// Compares an answer, such as a DepthBuffer's, with the exact one. O(samples).
-/// \throws Error bad_argument when the two are of different views.
+/// \throws Error bad_argument if the two are of different views.
 [[nodiscard]] DepthFights find_depth_fights(const Surfaces& surfaces, const ExactVisible& exact, const Visible& answer,
                                             const Execution& execution = {});
 
-/// The fights in colour, from violet (a millionth of the distance) over red to yellow (a tenth), light blue where
-/// nothing is seen, over `backdrop` in dim grey: R, G, B, A. First samples only.
-/// \throws Error bad_argument when the backdrop has another size or no R, G, B.
+/// A picture of the fights, with channels R, G, B, A, over a dimmed grey `backdrop`. Colours go from violet (an error
+/// of a millionth of the distance) over red to yellow (a tenth); light blue: nothing is seen. Shows the first sample of
+/// each pixel. \throws Error bad_argument if the backdrop has another size or lacks R, G, B.
 [[nodiscard]] Image fight_image(const DepthFights& fights, const Image& backdrop);
 
-// Which faces a depth buffer cannot tell apart, where, and what ends it.
+// Areas at risk: which faces a depth buffer cannot tell apart, where, and what prevents it.
 //
 //            the screen                      along the line of sight
 //      +-----------+                            first
-//      |  first    |                              \        at risk is where both faces are, and lie nearer to
-//      |     +-----+-----+                     ----\----   each other than the format and what rounding adds can
-//      |     |/////|     |   ///// at risk          \      tell apart: a convex area, for keys are affine over
-//      +-----+-----+     |                           \     the screen
+//      |  first    |                              \        The area at risk holds the points where both faces are,
+//      |     +-----+-----+                     ----\----   and are closer to each other than the format and rounding
+//      |     |/////|     |   ///// at risk          \      can tell apart. The area is convex, since keys are affine
+//      +-----+-----+     |                           \     over the screen.
 //            |    second |                          second
 //            +-----------+
 //
-// Samples of one picture show where this picture is wrong (find_depth_fights); the areas show where a
-// picture from a little farther left would be. Every sample that is wrong or tied lies in an area.
+// The samples of find_depth_fights() show where one picture is wrong. The areas also show where a picture from a
+// slightly different eye would be wrong. Every wrong or tied sample lies in an area.
 
-/// Why a depth buffer may show the wrong one of two faces, the first that holds.
+/// Why a depth buffer may show the wrong one of two faces: the first reason that holds.
 enum class FightKind : std::uint8_t {
-  one_plane,  ///< all corners lie in one plane, exactly: no format tells the faces apart
-  fold,       ///< the faces share a corner, and come together there
-  close,      ///< they pass through each other, or lie closer than the format tells apart
-  clear,      ///< one face alone, which is stored as what the buffer was cleared to, so that nothing is seen
+  one_plane,  ///< all vertices lie exactly in one plane: no format can tell the faces apart
+  fold,       ///< the faces share a vertex, and approach each other there
+  close,      ///< the faces intersect, or lie closer than the format can resolve
+  clear,      ///< a single face, stored as the clear value: nothing is seen
 };
 
-/// Two faces, and one area in which they are at risk. A face that is clipped by the near plane or by the guard band is
-/// several triangles on the screen, and may have as many areas.
+/// Two faces and one area in which they are at risk. A face that the near plane or the guard band clips becomes several
+/// triangles on the screen, and may have several areas.
 struct FightingFaces {
-  PrimitiveId first = no_primitive, second = no_primitive;  ///< first < second; of `clear` there is no second
+  PrimitiveId first = no_primitive, second = no_primitive;  ///< first < second; `clear` has no second
   FightKind kind = FightKind::close;
-  double area = 0;  ///< in pixels squared, within the picture
-  /// The share of it at whose samples nothing stands before both; of large areas, at some thousands of them.
+  double area = 0;  ///< square pixels, within the picture
+  /// The part of `area` at whose samples nothing is seen in front of both faces; estimated from thousands of samples if
+  /// the area is large.
   double visible_area = 0;
-  double distance = 0;                               ///< planar depth of the area's nearest point
-  std::uint32_t corner_begin = 0, corner_count = 0;  ///< in FightAreas::corners
+  double distance = 0;                               ///< planar depth of the nearest point of the area
+  std::uint32_t corner_begin = 0, corner_count = 0;  ///< range of FightAreas::corners
 };
 
-/// All areas of one kind of the faces of two objects.
+/// All areas of one kind between the faces of two objects.
 struct FightingObjects {
-  std::uint32_t first = no_index, second = no_index;  ///< instances, first <= second; of `clear` there is no second
+  std::uint32_t first = no_index, second = no_index;  ///< instances, first <= second; `clear` has no second
   FightKind kind = FightKind::close;
   std::uint64_t areas = 0;
-  double area = 0;          ///< of their union, in pixels squared; measured along lines at least 1/16 pixel apart
-  double visible_area = 0;  ///< likewise
-  double distance = 0;      ///< planar depth of their nearest point
-  double gap = 0;           ///< resolvable_gap() there: the smallest that the format tells apart
+  double area = 0;          ///< of the union, in square pixels; measured along lines at least 1/16 pixel apart
+  double visible_area = 0;  ///< of the union, in square pixels: see FightingFaces
+  double distance = 0;      ///< planar depth of the nearest point
+  double gap = 0;           ///< resolvable_gap() at that depth
 };
 
 struct FightAreas {
   View view;
   DepthSetup setup;
-  std::vector<FightingFaces> faces;      ///< by their ids
-  std::vector<glm::dvec2> corners;       ///< of all areas: convex, on the screen, in pixels
+  std::vector<FightingFaces> faces;      ///< in the order of their ids
+  std::vector<glm::dvec2> corners;       ///< corners of all areas, which are convex polygons; pixels of the screen
   std::vector<FightingObjects> objects;  ///< the greatest visible area first; folds last
 
   [[nodiscard]] std::span<const glm::dvec2> polygon(const FightingFaces& fight) const {
@@ -166,54 +169,68 @@ struct FightAreas {
   }
 };
 
-/// The faces that a depth buffer of this format may show wrongly in the view; culling counts, holes do not. What lies
-/// behind all that is seen at the samples around it is left out. O(triangles + pairs of faces whose rectangles and
-/// ranges of depth overlap + samples): an area asks some thousand samples at most, but all of its own where none of
-/// those sees it. The same for any number of threads. \throws Error bad_argument as validate(view) does; limit_exceeded
-/// where more than 2^22 areas are found, 2^24 pairs of faces lie close to each other, 2^28 would have to be looked at,
-/// or 2^30 samples of areas and 64 for each of the picture, as where thousands lie in one place.
+/// Finds the faces that a depth buffer of this format may show wrongly in the view. Considers culling, but not holes;
+/// leaves out faces behind everything that is seen at the samples around them. The result is the same for any number of
+/// threads. O(triangles + pairs of faces whose rectangles and depth ranges overlap + samples). An area takes some
+/// thousand samples, or all of its own if none of these sees it.
+/// \throws Error bad_argument as validate(view) does; limit_exceeded for more than 2^22 areas, 2^24 pairs of faces
+/// close to each other, 2^28 pairs to be examined, or 2^30 samples of areas and 64 for each sample of the picture.
 [[nodiscard]] FightAreas find_fighting_faces(const Surfaces& surfaces, const View& view, DepthFormat format,
                                              bool reversed = false, const Execution& execution = {});
 
-/// Another depth buffer for the same view, and what drawing with it gave.
+/// Another depth buffer for the same view, and its number of wrong samples.
 struct FightRemedy {
   DepthSetup setup;
-  std::uint64_t wrong = 0;  ///< samples: DepthFights::wrong
+  std::uint64_t wrong = 0;  ///< DepthFights::wrong
 };
 
-/// Draws the view with what usually helps: planes that leave out no face of the picture; 24 bits; floats reversed; the
-/// last with the former's planes. \returns what was drawn that has fewer wrong samples than the setup itself. Costs up
-/// to five pictures. \throws Error bad_argument when `exact` is of another view.
+/// Draws the view with the usual remedies: near and far planes close around the faces of the picture; 24 bits; reversed
+/// floats; reversed floats with the close planes. \returns the remedies that leave fewer wrong samples than `setup`.
+/// Costs up to five pictures. \throws Error bad_argument if `exact` is of another view.
 [[nodiscard]] std::vector<FightRemedy> try_remedies(const Surfaces& surfaces, const ExactVisible& exact,
                                                     const DepthSetup& setup, const Execution& execution = {});
 
-/// A polygon offset for one object of a pair.
+/// A polygon offset for the second object of a pair.
 struct OffsetRemedy {
-  std::uint32_t instance = no_index;  ///< the second of the pair
+  std::uint32_t instance = no_index;  ///< the second object of the pair
   PolygonOffset offset;
 };
 
-/// The least offset, in units of powers of two up to 2^16, with which the pair's second object is seen at every sample
-/// of their areas where either of them is nearest; found by drawing. None where no such offset is enough, and for an
-/// object beside itself or the clear value. Costs up to 17 pictures. Precondition: `exact` and `fights` are of the same
-/// view, and the pair is of `fights`.
+/// The least offset, in units of powers of two up to 2^16, that makes the pair's second object seen at every sample of
+/// their areas where either object is nearest. Found by drawing up to 17 pictures. None if no such offset suffices, and
+/// for an object with itself or with the clear value. Precondition: `exact` and `fights` are of the same view, and
+/// `pair` is one of `fights`.
 [[nodiscard]] std::optional<OffsetRemedy> find_offset(const Surfaces& surfaces, const ExactVisible& exact,
                                                       const FightAreas& fights, const FightingObjects& pair,
                                                       const Execution& execution = {});
 
-// Why two methods see different things at a sample, and whether both may be right.
+// Agreement: why two methods see different things at a sample, and whether both may be right.
 //
-// The z-buffer snaps corners to 1/256 pixel, rays snap nothing, and the A-buffer answers in layers. So along edges and
-// where surfaces nearly coincide their answers differ, and an exact comparison of pictures would prove nothing. Here
-// every sample that differs is put to exact arithmetic: either it is shown why both answers are possible, or one of
-// them is wrong.
+// The z-buffer snaps vertices to 1/256 pixel, ray casting snaps nothing, and the A-buffer answers in layers. Their
+// answers therefore differ along edges and where surfaces nearly coincide, and comparing pictures exactly would prove
+// nothing. Exact arithmetic decides each sample that differs: either both answers are possible, or one of them is
+// wrong.
+//
+// All methods place vertices within 1/128 pixel of the truth, so a sample stands for the square of +-1/128 pixel around
+// it. An answer is possible if
+// - the triangle that it shows meets the square, or it shows nothing; and
+// - no triangle that contains the square, and is not culled, is surely nearer. (Where an answer shows nothing, no
+//   triangle may contain the square.)
+// A triangle is surely nearer if its least key over the square exceeds the other's greatest key by more than float
+// rounding. The rounding is 20 * 2^-24 of the key, plus 6 * 2^-24 of the key times the greatest ratio of distance to
+// depth of a vertex within the guard band. In parallel projection it is 20 * 2^-24 of the greatest key, plus 6 * 2^-24
+// of the distance from the eye to the farthest vertex.
+//
+// Two possible answers differ by `depth` if both triangles contain the square, else by `edge`; the cuts of the near and
+// far planes count as edges. Any other difference is `unexplained`. So is a key, at any sample, that its triangle does
+// not have within the square, up to rounding.
 
-/// Why two answers part at a sample.
+/// Why two answers differ at a sample.
 enum class Difference : std::uint8_t {
-  none,         ///< they do not
+  none,         ///< the answers agree
   edge,         ///< an edge of a triangle passes within 1/128 pixel
-  depth,        ///< all that is shown covers the sample surely, at depths closer than can be told apart
-  translucent,  ///< one shows what lies behind a translucent triangle that the other shows
+  depth,        ///< both triangles surely cover the sample, at depths too close to be told apart
+  translucent,  ///< one answer shows a surface behind a translucent triangle that the other one shows
   unexplained,  ///< one of the answers is wrong
 };
 /// "edge", "depth" and so on.
@@ -222,7 +239,7 @@ enum class Difference : std::uint8_t {
 /// How far two answers agree.
 struct Agreement {
   View view;
-  /// Samples by Difference; `none` counts those where both show the same, at a right depth.
+  /// Number of samples by Difference; `none`: both show the same triangle, at a right depth.
   std::array<std::uint64_t, 5> counts{};
   Buffer<Difference> differences;  ///< in the order of Visible
 
@@ -230,30 +247,17 @@ struct Agreement {
   [[nodiscard]] std::uint64_t differing() const;
 };
 
-/// Compares two answers, and puts every sample where they part to exact arithmetic. Methods place corners on the screen
-/// in their own way, all within 1/128 pixel of the truth, so about a sample lies the square of +-1/128 pixel in which
-/// they may be looking. An answer is possible when
-/// - what it shows meets that square, or it shows nothing;
-/// - no triangle of the scene that contains the whole square, and is not left out by View::culling, is surely nearer
-///   (for nothing: none contains it). Surely nearer: its least key over the square exceeds the other's greatest by more
-///   than float arithmetic makes of them: 20 roundings, 2^-24 each, of the key itself, and 6 times as many as the
-///   corner farthest aside is farther from the eye than deep (beside the guard band nothing counts; in parallel
-///   projection 20 roundings of the greatest key, and 6 of the distance from the eye to the farthest corner).
-/// Two possible answers part for the reason `depth` where both triangles contain the square, otherwise for `edge` (the
-/// rim that the near and far plane cut counts as one). Any other difference is `unexplained`; and so is a key, of
-/// either answer and at any sample, that its triangle does not have in the square, with the same allowance.
-///
-/// Corners are the floats of Surfaces::corners(), rays the doubles of the view; from there on signs are exact, as long
-/// as coordinates are 0 or between 2^-100 and 2^100.
+/// Compares two answers, and decides each sample at which they differ by exact arithmetic. \returns the reason for each
+/// sample; `unexplained` means that an answer is wrong. Vertices are the floats of Surfaces::corners(), rays the
+/// doubles of the view. Signs are exact if coordinates are 0 or between 2^-100 and 2^100.
 /// O(samples + triangles + differing samples * triangles over them), in parallel.
-/// \throws Error bad_argument when the two are of different views.
+/// \throws Error bad_argument if the two are of different views.
 [[nodiscard]] Agreement check_agreement(const Surfaces& surfaces, const Visible& a, const Visible& b,
                                         const Execution& execution = {});
 
-/// Adds what shows through, for methods that answer in layers: of the samples that agree, those where `behind` shows
-/// something become `translucent` where the material of what `front` shows lets light through (alpha mode blend), and
-/// `unexplained` where it is opaque. O(samples).
-/// \throws Error bad_argument when they are of different views.
+/// Adds the reason `translucent`, for methods that answer in layers. Considers the samples that agree and where
+/// `behind` shows something: they become `translucent` if Material::is_see_through() holds for what `front` shows, else
+/// `unexplained`. O(samples). \throws Error bad_argument if the layers are of different views.
 void see_through(Agreement& agreement, const Surfaces& surfaces, const Visible& front, const Visible& behind);
 
 }  // namespace frontmost

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray casting: visibility by asking, for every sample, which triangle its ray meets first. The same index answers
-// single questions: what is met along a ray, whether two points see each other, and what a light reaches.
+// Ray casting: finds visible triangles by asking, for every sample, which triangle its ray meets first. The same index
+// answers single questions: what a ray meets, whether two points see each other, which points a light reaches.
 //
 //   RayIndex           a hierarchy of boxes             views     raycast(), RayCaster
 //      [            ]  boxes of boxes                   rays      closest_hit(), all_hits()
@@ -21,16 +21,17 @@ namespace frontmost {
 
 struct RayTree;  // src/methods/raycast/index/ray_tree.h
 
-/// A hierarchy of boxes over the triangles of `Surfaces`, for any number of views and queries. Holds world-space
-/// corners of its own, so the surfaces may go; the ids are theirs. Safe to share between threads, but for refit().
+/// A hierarchy of boxes over the triangles of Surfaces, for any number of views and queries. It copies the world-space
+/// vertices, so the surfaces may be destroyed; ids remain those of the surfaces. Threads may share an index, except
+/// during refit() and follow().
 ///
-/// Sixteen triangles a leaf, dealt out by median splits of runs of the surfaces' spatial order; sixteen boxes a node,
-/// split by the surface area heuristic
-/// (J. Goldsmith, J. Salmon. Automatic Creation of Object Hierarchies for Ray Tracing. 1987; binned as in I. Wald.
-/// On fast Construction of SAH-based Bounding Volume Hierarchies. 2007).
+/// A leaf holds sixteen triangles, chosen by median splits of runs of the surfaces' spatial order. A node holds sixteen
+/// boxes, split by the surface area heuristic (J. Goldsmith, J. Salmon. Automatic Creation of Object Hierarchies for
+/// Ray Tracing. 1987; binned as in I. Wald. On fast Construction of SAH-based Bounding Volume Hierarchies. 2007).
 class RayIndex {
  public:
-  /// O(n log n) for n triangles, in parallel; about 45 bytes a triangle kept. The same for any number of threads.
+  /// O(n log n) for n triangles, in parallel; keeps about 45 bytes a triangle. The index is the same for any number of
+  /// threads.
   explicit RayIndex(const Surfaces& surfaces, const Execution& execution = {});
   ~RayIndex();
   RayIndex(RayIndex&&) noexcept;
@@ -38,22 +39,23 @@ class RayIndex {
   RayIndex(const RayIndex&) = delete;
   RayIndex& operator=(const RayIndex&) = delete;
 
-  /// Follows the triangles to where they are in `surfaces`: those of the same scene after its vertices or instances
-  /// have moved. Answers are to the bit those of a new index; what is kept is the order of triangles and boxes, so that
-  /// queries grow slower the less of the old neighbourhoods is left. O(n) in parallel, about a third of the time of a
-  /// new index, which is made where `surfaces` has triangles to meet that this one does not hold. Ended by an error or
-  /// by cancelling, the index is empty.
+  /// Updates the index after vertices or instances of the scene have moved; `surfaces` are of the same scene. Answers
+  /// are to the bit those of a new index. The grouping of triangles and boxes stays, so queries grow slower as old
+  /// neighbours part. O(n) in parallel, about a third of the time of a new index. A new index is built instead if other
+  /// triangles can be met than before, or if the index holds thousands of coincident triangles. After an error or a
+  /// cancelled call the index is empty.
   void refit(const Surfaces& surfaces, const Execution& execution = {});
 
-  /// Follows one instance to where Surfaces::move() has put it: the surfaces are those that the index was made of, or
-  /// of the same scene. Answers are to the bit those of a new index, and queries grow slower as after refit().
-  /// O(triangles of the instance log n), and O(n) the first time. Made anew where refit() would be, and where corners
-  /// become finite. \throws Error bad_argument for an instance that is not there.
+  /// Updates the index after Surfaces::move() has moved one instance; `surfaces` are those of the index, or of the same
+  /// scene. Answers are to the bit those of a new index; queries grow slower as after refit(). O(triangles of the
+  /// instance log n), and O(n) the first time. A new index is built where refit() would build one, and if vertices
+  /// become finite.
+  /// \throws Error bad_argument for a missing instance.
   void follow(const Surfaces& surfaces, std::uint32_t instance, const Execution& execution = {});
 
-  /// Triangles that a ray can meet: those with finite corners, no two the same in their meshes.
+  /// Number of triangles that a ray can meet: vertices are finite, and no two of them are the same in the mesh.
   [[nodiscard]] std::uint32_t triangle_count() const;
-  /// World-space bounds of these triangles; empty without any.
+  /// World-space bounds of these triangles; empty if there are none.
   [[nodiscard]] const Box& bounds() const;
   [[nodiscard]] std::size_t byte_count() const;
 
@@ -62,20 +64,19 @@ class RayIndex {
   std::unique_ptr<RayTree> tree_;
 };
 
-/// The front-most triangle at every sample, by the ray from the eye through it (parallel projection: along the viewing
-/// axis). Nothing is snapped: corners are where floats put them, and whether a ray passes an edge on its left or right
-/// is decided exactly on those floats. A ray through an edge or corner meets every triangle that has it, so no ray
-/// leaks between neighbours; at equal keys the lower id wins. Near and far are tested at every sample.
-/// The result is the same to the bit for any number of threads and any instruction set.
-/// (S. Woop, C. Benthin, I. Wald. Watertight Ray/Triangle Intersection. 2013. A. Reshetov, A. Soupikov, J. Hurley.
-/// Multi-Level Ray Tracing Algorithm. 2005.)
+/// The front-most triangle at every sample, by its ray from the eye (parallel projection: along the viewing axis).
+/// Vertices are not snapped: on which side a ray passes an edge is decided exactly on their floats. A ray through an
+/// edge or vertex meets every triangle that has it, so no ray leaks between neighbours; at equal keys the lower id
+/// wins. Near and far are tested at every sample. The result is the same to the bit for any number of threads and any
+/// instruction set. (S. Woop, C. Benthin, I. Wald. Watertight Ray/Triangle Intersection. 2013. A. Reshetov, A.
+/// Soupikov, J. Hurley. Multi-Level Ray Tracing Algorithm. 2005.)
 /// \throws Error as validate(view) does.
 [[nodiscard]] Visible raycast(const RayIndex& index, const View& view, const Execution& execution = {});
-/// The same with an index made for this one view.
+/// Builds an index for this one view and casts with it.
 [[nodiscard]] Visible raycast(const Surfaces& surfaces, const View& view, const Execution& execution = {});
 
-/// The same for repeated views: casts after the first reuse the memory of those before. Not for several threads at
-/// once; each draw() uses the threads it is given.
+/// Ray casting for repeated views, which reuses memory from cast to cast. A RayCaster may not be used by several
+/// threads at once; each draw() runs on the threads it is given.
 class RayCaster {
  public:
   RayCaster();
@@ -85,10 +86,10 @@ class RayCaster {
   RayCaster(const RayCaster&) = delete;
   RayCaster& operator=(const RayCaster&) = delete;
 
-  /// What raycast() gives. The result stays as it is until the next draw() or take(); after an error it is unspecified.
+  /// \returns what raycast() returns, valid until the next draw() or take(); unspecified after an error.
   /// \throws Error as validate(view) does.
   const Visible& draw(const RayIndex& index, const View& view, const Execution& execution = {});
-  /// Moves the last result out; the next draw() allocates another.
+  /// Moves the last result out. The next draw() allocates another one.
   [[nodiscard]] Visible take();
 
  private:
@@ -96,140 +97,138 @@ class RayCaster {
   std::unique_ptr<State> state_;
 };
 
-// Rays and segments are in world space, which is about Scene::origin: points in the coordinates of a file that lies far
-// from zero have it taken off first, in doubles.
+// Rays and segments are in world space, relative to Scene::origin. Subtract the origin, in doubles, from points in
+// coordinates of the file.
 
-/// Points origin + t * direction for t > 0; the direction has any length.
+/// The points origin + t * direction for t > 0. The direction may have any length.
 struct Ray {
   glm::vec3 origin{0}, direction{0, 0, -1};
 };
 
-/// The points between two: from + t * (to - from) for 0 < t < 1.
+/// The points between two others: from + t * (to - from) for 0 < t < 1.
 struct Segment {
   glm::vec3 from{0}, to{0};
 };
 
-/// Where a surface is met.
+/// A point at which a ray or segment meets a surface.
 struct RayHit {
   PrimitiveId primitive = no_primitive;  ///< no_primitive: nothing is met
   double t = std::numeric_limits<double>::infinity();
-  bool is_front = false;  ///< met from the side that the mesh's corners run counter-clockwise on; see is_mirrored()
+  bool is_front = false;  ///< met from the side on which the mesh's vertices run counter-clockwise; see is_mirrored()
 
   [[nodiscard]] explicit operator bool() const { return primitive != no_primitive; }
 };
 
-// Queries see both sides of every triangle, and are decided exactly on the floats of the query and of the corners,
-// without any tolerance. A surface is met where it is passed through: a triangle that contains an end of the segment
-// or the origin of the ray is not met there, nor is one that lies along the line. A line through an edge or a corner
-// meets every triangle that has it, so nothing slips through a closed surface. What lies between two points does not
-// depend on which is asked from, but for the rims of holes, which are looked up at the rounded place. Only t is
-// rounded, to doubles; at equal t the lower id wins.
-// Queries with a coordinate that is not finite, rays without a direction and segments from a point to itself meet
-// nothing, and are clear. O(log n) each in ordinary scenes.
+// Queries see both sides of every triangle. They are decided exactly on the floats of query and vertices, without
+// tolerance. A query meets a triangle if it passes through it. It does not meet a triangle that contains the ray's
+// origin or an end of the segment, or that lies along the line. A line through an edge or vertex meets every triangle
+// that has it, so nothing slips through a closed surface. Swapping the ends of a segment changes nothing, except at the
+// rims of holes, which are looked up at the rounded point. Only t is rounded, to doubles; at equal t the lower id wins.
+// Queries with non-finite coordinates, rays without direction and segments of length 0 meet nothing and are clear.
+// O(log n) each in ordinary scenes.
 
-/// The nearest surface along a ray; between two points, the nearest to `from`.
+/// The nearest surface along a ray, or along a segment from its start.
 [[nodiscard]] RayHit closest_hit(const RayIndex& index, const Ray& ray);
 [[nodiscard]] RayHit closest_hit(const RayIndex& index, const Segment& segment);
-/// Every surface along a ray, nearest first.
+/// All surfaces along a ray, nearest first.
 [[nodiscard]] std::vector<RayHit> all_hits(const RayIndex& index, const Ray& ray);
-/// True when no surface is met between two points: the line of sight. Quicker than closest_hit().
+/// True if a segment meets no surface, so its ends see each other. Faster than closest_hit().
 [[nodiscard]] bool is_clear(const RayIndex& index, const Segment& segment);
 
-/// The same for many, on all threads; the answers do not depend on how many.
-/// \throws Error bad_argument when there are not as many answers as queries.
+/// The nearest surface of each query, on all threads; answers do not depend on their number.
+/// \throws Error bad_argument unless there are as many answers as queries.
 void closest_hits(const RayIndex& index, std::span<const Ray> rays, std::span<RayHit> answers,
                   const Execution& execution = {});
 void closest_hits(const RayIndex& index, std::span<const Segment> segments, std::span<RayHit> answers,
                   const Execution& execution = {});
-/// 1 where the segment is clear, 0 where it is blocked.
+/// 1 if the segment is clear, 0 if it is blocked.
+/// \throws Error as closest_hits() does.
 void are_clear(const RayIndex& index, std::span<const Segment> segments, std::span<std::uint8_t> answers,
                const Execution& execution = {});
 
-/// A point of a triangle, without rounding: the mean of its corners by weights, moved by `lift`. The number that this
-/// stands for lies in the triangle's plane, which a point of floats seldom does.
+/// An exact point of a triangle: the mean of its vertices by weights, moved by `lift`. The mean is not rounded and lies
+/// in the triangle's plane, where a point of floats seldom lies.
 struct TrianglePoint {
-  PrimitiveId primitive = no_primitive;  ///< its triangle, where the index holds it
+  PrimitiveId primitive = no_primitive;  ///< the triangle's id, if the index holds the triangle
   std::array<glm::vec3, 3> corners{};
-  glm::vec3 weights{1, 1, 1};  ///< of any sum; none negative, and not all zero
+  glm::vec3 weights{1, 1, 1};  ///< with any sum; none negative, and not all zero
   glm::vec3 lift{0};
 };
 
-/// Which points of surfaces a light at infinity reaches: 1 lit, 0 in shadow. Decided exactly and without tolerance: a
-/// point is in shadow when the ray from it towards the light passes through a triangle, front or back, other than its
-/// own and those with the same three corners. Triangles that contain the point are not passed through, so none of those
-/// that meet in an edge or corner throws a shadow on itself by rounding. Points near each other, in the order given,
-/// are asked together, and quicker for it. Values that are not finite, and a light without direction: lit.
-/// \throws Error bad_argument when there are not as many answers as points.
+/// Finds the points that a light at infinity reaches: 1 lit, 0 in shadow. A point is in shadow if the ray from it
+/// towards the light passes through a triangle, front or back. The point's own triangle, triangles with the same three
+/// vertices and triangles that contain the point do not count, so no neighbour casts a false shadow. The answer is
+/// exact, without tolerance. Neighbouring points are answered faster if they follow one another. Points with non-finite
+/// values are lit, and so are all if the light has no direction.
+/// \throws Error bad_argument unless there are as many answers as points.
 void are_lit(const RayIndex& index, std::span<const TrianglePoint> points, const glm::vec3& to_light,
              std::span<std::uint8_t> answers, const Execution& execution = {});
 
-// Cameras that only rays can serve: all around in one picture, and the patterns of laser scanners.
+// Cameras that only rays can serve: panoramas, fisheyes, and the patterns of laser scanners.
 //
-// Directions are those of eye space, as for every camera: the eye looks down -z, y up, x right. An azimuth is counted
-// from straight ahead to the right, an elevation from the horizon upwards: azimuth a and elevation e are the direction
-// (sin a cos e, sin e, -cos a cos e). Pixel (x, y) asks at its centre, (x + 0.5, y + 0.5), rows from the top; with more
-// samples at their places within the pixel, which are those of a View.
+// Directions are in eye space, as for every camera: x right, y up, the eye looks down -z. The azimuth counts from
+// straight ahead to the right, the elevation from the horizon upwards. Azimuth a and elevation e are the direction (sin
+// a cos e, sin e, -cos a cos e). Pixel (x, y) has its ray at its centre, (x + 0.5, y + 0.5), rows from the top. Several
+// samples have their rays at a View's sample positions within the pixel.
 
-/// Equirectangular: azimuth and elevation are affine over the picture. The left side is -180 degrees, straight behind;
-/// a quarter of the width is the left, the middle straight ahead; the top is straight up. Twice as wide as high gives
-/// pixels that are square along the horizon.
+/// An equirectangular picture: azimuth and elevation are affine over it. The left side is -180 degrees, straight
+/// behind; a quarter of the width is the left, the middle is straight ahead; the top is straight up. Pixels are square
+/// along the horizon if the picture is twice as wide as high.
 struct Panorama {
   int width = 2048, height = 1024;  ///< pixels, 1 to 16384 each
 };
 
-/// Equidistant: the angle from the viewing axis is proportional to the distance from the picture's middle, and is
-/// fov / 2 where the circle touches the nearer sides. Pixels beyond the circle see nothing.
-/// (K. Miyamoto. Fish Eye Lens. 1964.)
+/// An equidistant fisheye: the angle from the viewing axis is proportional to the distance from the picture's middle.
+/// The angle is fov / 2 on the circle that touches the nearer sides. Pixels beyond the circle see nothing. (K.
+/// Miyamoto. Fish Eye Lens. 1964.)
 struct Fisheye {
   int width = 1024, height = 1024;      ///< pixels, 1 to 16384 each
-  double fov = 3.14159265358979323846;  ///< radians, above 0; at most a full turn, where the rim is straight behind
+  double fov = 3.14159265358979323846;  ///< radians, above 0, at most a full turn; then the rim is straight behind
 };
 
-/// A scanner that turns about its up axis: column k of n looks at azimuth first + k (last - first) / (n - 1), so that
-/// both ends are looked at, and at the first alone where n is 1. A full turn (to 1e-9) does not repeat its first ray:
-/// there column k is at first + k (last - first) / n. Where `last` is below `first` it turns to the left. Row r is ring
-/// r.
+/// A scanner that turns about its up axis. Column k of n has azimuth first + k (last - first) / (n - 1), so both ends
+/// are included; a single column has azimuth `first`. A full turn (to 1e-9) does not repeat its first ray: its column k
+/// has azimuth first + k (last - first) / n. The scanner turns left if `last` is below `first`. Row r is ring r.
 struct Lidar {
-  std::vector<double> elevations;  ///< of each ring, in radians, -pi/2 to pi/2
-  int steps = 1024;                ///< azimuths, at least 1
-  /// Radians to the right of ahead, -2 pi to 2 pi, at most a full turn apart.
+  std::vector<double> elevations;  ///< of the rings, in radians, -pi/2 to pi/2
+  int steps = 1024;                ///< number of azimuths, at least 1
+  /// Radians to the right of straight ahead, -2 pi to 2 pi, at most a full turn apart.
   double first_azimuth = 0, last_azimuth = 2 * 3.14159265358979323846;
 };
 
-/// Any rays from one point, as a single row: other lenses, risley scanners, sampling patterns.
+/// Any rays from one point, in a single row: other lenses, Risley scanners, sampling patterns.
 struct RayPattern {
-  std::vector<glm::vec3> directions;  ///< in eye space, of any length; zero or not finite sees nothing
+  std::vector<glm::vec3> directions;  ///< in eye space, of any length; zero or non-finite ones see nothing
 };
 
-/// Where the rays start, and how they spread. The eye and the rays' directions are rounded to floats.
+/// The origin of the rays and their directions, both rounded to floats.
 struct RayCamera {
   std::variant<Panorama, Fisheye, Lidar, RayPattern> model;
-  glm::dmat4 world_from_eye{1.0};  ///< a rotation and a translation, about Scene::origin as a View's is
-  int samples = 1;                 ///< of panoramas and fisheyes, per pixel: 1, 2, 4, 8 or 16, as sample_offsets()
-  /// Least and greatest range, both allowed. What is met elsewhere counts as nothing, and still hides what is behind
-  /// it.
+  glm::dmat4 world_from_eye{1.0};  ///< a rotation and a translation, relative to Scene::origin as in a View
+  int samples = 1;                 ///< panoramas and fisheyes, per pixel: 1, 2, 4, 8 or 16, as in sample_offsets()
+  /// Least and greatest range, both inclusive. A surface elsewhere counts as nothing, but hides surfaces behind it.
   double nearest = 0, farthest = std::numeric_limits<double>::infinity();
 };
 
-/// Elevations of `rings` rings, evenly from `highest` down to `lowest`; the middle of both for a single ring.
+/// Elevations of `rings` rings, evenly spaced from `highest` down to `lowest`; their mean for a single ring.
 /// \throws Error bad_argument unless rings >= 1 and lowest <= highest.
 [[nodiscard]] std::vector<double> ring_elevations(int rings, double lowest, double highest);
 
 /// \throws Error bad_argument, limit_exceeded (more than most_samples rays in all) or singular_camera.
 void validate(const RayCamera& camera);
 
-/// Columns and rows of the rays: pixels; steps and rings; the length of the pattern and 1.
+/// Columns and rows of the rays: width and height; steps and rings; length of the pattern and 1.
 [[nodiscard]] glm::ivec2 grid_of(const RayCamera& camera);
 
-/// The ray of a pixel's sample, in world space; of unit length (to rounding), or zero where it sees nothing; a
-/// pattern's directions keep their length. The same bits on every machine. Precondition: the camera is valid, the pixel
-/// in its grid, and the sample one of its.
+/// The ray of a pixel's sample, in world space, the same bits on every machine. Its direction has unit length (to
+/// rounding), or the pattern's length, or is zero if the sample sees nothing. Precondition: the camera is valid, and
+/// pixel and sample exist.
 [[nodiscard]] Ray ray_of(const RayCamera& camera, int x, int y, int sample = 0);
 
-/// What the rays of a camera meet. Planes are ordered [sample][y][x], top row first.
+/// The surfaces that the rays of a camera meet. Planes are ordered [sample][y][x], top row first.
 struct RangeScan {
   RayCamera camera;
-  int width = 0, height = 0;       ///< as grid_of(camera)
+  int width = 0, height = 0;       ///< grid_of(camera)
   Buffer<PrimitiveId> primitives;  ///< no_primitive where nothing is met
   Buffer<float> ranges;            ///< distance from the eye along the ray, in scene units; +inf where nothing is met
 
@@ -238,24 +237,24 @@ struct RangeScan {
   }
 };
 
-/// The nearest surface along every ray, as closest_hits() answers, where its range is one that the camera allows: both
-/// sides of every triangle are seen. The same bits for any number of threads and any instruction set. O(log n) a ray.
-/// Neighbours on the grid are cast together where they look nearly the same way, five to fifteen times as fast as one
-/// by one. (I. Wald, P. Slusallek, C. Benthin, M. Wagner. Interactive Rendering with Coherent Ray Tracing. 2001.)
+/// The nearest surface along every ray, as closest_hits() finds it, if its range is one that the camera allows. Both
+/// sides of every triangle are seen. The result is the same to the bit for any number of threads and any instruction
+/// set. O(log n) a ray. Neighbours on the grid with nearly the same direction are cast together, five to fifteen times
+/// as fast as one by one. (I. Wald, P. Slusallek, C. Benthin, M. Wagner. Interactive Rendering with Coherent Ray
+/// Tracing. 2001.)
 /// \throws Error as validate(camera) does.
 [[nodiscard]] RangeScan scan(const RayIndex& index, const RayCamera& camera, const Execution& execution = {});
 
-/// Where the ray of a pixel's sample meets the surface, in world space. Precondition: something is met there.
+/// The point where a sample's ray meets the surface, in world space. Precondition: the ray meets a surface.
 [[nodiscard]] glm::dvec3 point_of(const RangeScan& scan, int x, int y, int sample = 0);
 
-/// Of every sample, in their order: distances along the viewing axis, as a pinhole camera in that pose would give them;
-/// +inf where nothing is met, and for rays that do not lead ahead, at 90 degrees from the axis and more, for which
-/// there is no such distance.
+/// Planar depth of every sample, in the scan's order, as a pinhole camera in that pose would find it. +inf where
+/// nothing is met, and for rays at 90 degrees or more from the viewing axis, which have no such distance.
 [[nodiscard]] Buffer<float> planar_depths(const RangeScan& scan, const Execution& execution = {});
 
-/// Of every sample, in their order: the angle between its ray and the normal of the triangle that it meets, in degrees:
-/// 0 head-on, nearly 90 where it grazes; from either side. NaN where nothing is met. Precondition: the scan is one of
-/// these surfaces, as they still are.
+/// Angle of incidence of every sample, in the scan's order, in degrees between its ray and the normal of the triangle
+/// that it meets. 0 head-on, nearly 90 if the ray grazes the triangle, from either side; NaN where nothing is met.
+/// Precondition: the scan is of these surfaces, unchanged since.
 [[nodiscard]] Buffer<float> incidence_angles(const RangeScan& scan, const Surfaces& surfaces,
                                              const Execution& execution = {});
 

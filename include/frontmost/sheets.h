@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawings on paper: figures (pictures of polygons), pages in millimetres and their files, lettering, and whole sheets.
+// Drawings on paper: figures (vector pictures of polygons), pages in millimetres and their files, lettering, and
+// sheets.
 //
 //   draw_figure() --> Figure ----+
 //   draw_sheet() --> Sheet ------+--> Page --save()--> SVG, PDF, DXF, JSON
 //   paths of one's own ----------+
 //
-// A Figure is for vector files what an Image is for files of pixels.
+// A Figure is the vector counterpart of an Image. It keeps millions of polygons in three arrays; the elements of each
+// array name a range of the next one:
 //
-// A million polygons are three arrays, each of which names a run of the next:
-//
-//   shapes   | shape 0           | shape 1 | ...    filled one after the other, each with one colour
+//   shapes   | shape 0           | shape 1 | ...    filled in this order, each with one colour
 //   rings    | ring 0  | ring 1  | ring 2  | ...    the outlines of a shape: its rim, its holes, its other parts
 //   corners  | a b c d | e f g   | h i j k | ...    the corners of a ring, which closes by itself
 #pragma once
@@ -30,24 +30,24 @@
 
 namespace frontmost {
 
-/// A closed path of a figure: `corner_count` of Figure::corners from `first_corner` on.
+/// A closed path of a figure: `corner_count` elements of Figure::corners from `first_corner` on.
 struct FigureRing {
   std::size_t first_corner = 0;
   std::uint32_t corner_count = 0;
 };
-/// What is filled with one colour by the nonzero rule: `ring_count` of Figure::rings from `first_ring` on.
+/// A region filled with one colour by the nonzero rule: `ring_count` elements of Figure::rings from `first_ring` on.
 struct FigureShape {
   glm::u8vec4 color{0};
   std::uint32_t ring_count = 0;
   std::size_t first_ring = 0;
-  /// Rising. Translucent shapes with the same number are filled without their opacity, which they share, one after the
-  /// other on clear ground; the whole is then laid on with it.
+  /// Number of the blend group, ascending. The translucent shapes of one blend group have the same opacity. They are
+  /// filled opaquely, one after the other, on a transparent ground; the result is then blended with that opacity.
   std::uint32_t sheet = 0;
 };
-/// A picture of polygons: paths to be filled one after the other. Pixels of the view, x right, y down.
+/// A picture of polygons: paths to be filled in order. Pixels of the view, x right, y down.
 struct Figure {
   View view;
-  std::string title;                    ///< what files call it; any text
+  std::string title;                    ///< title of the file, any text
   std::optional<glm::vec3> background;  ///< sRGB, 0 to 1; none: transparent
   std::vector<FigureShape> shapes;
   std::vector<FigureRing> rings;
@@ -55,44 +55,42 @@ struct Figure {
 };
 
 struct FigureOptions {
-  /// Shading, shadows, opacity and the background count; see-through does not: figures are translucent where the scene
-  /// is.
+  /// Shading, shadows, opacity and background count. Layers do not: figures are translucent where the scene is.
   ShadeOptions shade;
-  /// Steps of 8-bit sRGB, 0 to 255, by which the colour of a polygon may differ from what is seen there. Where it
-  /// varies by more it is cut. 255: a triangle has the colour of its middle, and is never cut for it.
+  /// Steps of 8-bit sRGB, 0 to 255: greatest difference between the colour of a polygon and the surface's. Polygons are
+  /// cut until it holds. 255: a triangle has the colour of its middle and is never cut.
   double tolerance = 6;
-  /// True: what is hidden is left out. False: all polygons are there in the order of painting, one over the other.
+  /// True: hidden polygons are left out. False: all polygons are kept, in painting order.
   bool visible_only = true;
-  /// Neighbours of one colour become one shape, where no later polygon covers any of them.
+  /// True: adjacent polygons of one colour become one shape, if no later polygon covers any of them.
   bool merges_neighbours = false;
-  /// More polygons are an error.
+  /// A figure with more polygons is an error.
   std::size_t most_polygons = 2'000'000;
 };
 
-/// A picture of polygons, with the colours that shade() gives the same view, textures, shadows and smooth normals
-/// included; of alpha mode MASK holes are left out. The order is the painter's, exact where surfaces pass through each
-/// other. Against the hairlines that viewers leave between neighbours, polygons reach up to 4 pixels under what is
-/// painted over them (the print trade's trapping). What is visible has one sample a pixel.
+/// A picture of polygons with the colours of shade() for the same view, including textures, shadows and smooth normals;
+/// holes of alpha mode MASK are cut out. Polygons are in painting order, exact where surfaces pass through each other.
+/// Each polygon extends up to 4 pixels under those painted over it (trapping, as printers call it), so viewers show no
+/// hairlines between neighbours. `visible` has one sample a pixel.
 /// O(n log n) in the number of polygons, and the pixels that they cover. The same for any number of threads.
 /// (M. Newell, R. Newell, T. Sancha. A Solution to the Hidden Surface Problem. 1972.)
-/// \throws Error bad_argument for a Visible of more samples, options out of range; unsupported for an environment that
-/// is to be shown; limit_exceeded for more polygons than FigureOptions::most_polygons, or triangles that pass through
-/// each other, or overlap, too often.
+/// \throws Error bad_argument for several samples a pixel or options out of range; unsupported for a shown environment;
+/// limit_exceeded for more than FigureOptions::most_polygons, or too many intersections or overlaps of triangles.
 [[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const ShadeInput& input, const FigureOptions& options = {},
                                  const Execution& execution = {});
 [[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const Visible& visible, const FigureOptions& options = {},
                                  const Execution& execution = {});
-/// The same of a view, which need not have one sample. \throws Error as validate(view) does, too.
+/// Draws a view, with any number of samples. \throws Error also as validate(view) does.
 [[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const View& view, const FigureOptions& options = {},
                                  const Execution& execution = {});
-/// The same with what a shader has made ready of its surfaces.
+/// Draws a figure with what a shader has prepared for its surfaces.
 [[nodiscard]] Figure draw_figure(Shader& shader, const ShadeInput& input, const FigureOptions& options = {},
                                  const Execution& execution = {});
 
 // Pages: pen lines and filled polygons in millimetres, written as SVG, PDF, DXF or JSON.
 //
-// A page has x to the right and y down, from its top left corner. What comes first lies below what comes later. Colours
-// are sRGB, as those files have them.
+// A page has x to the right and y down, from its top left corner. Later elements lie over earlier ones. Colours are
+// sRGB, as in the files.
 
 /// sRGB and opacity, 0 to 255 each; not premultiplied.
 struct PageColor {
@@ -100,33 +98,34 @@ struct PageColor {
   friend bool operator==(const PageColor&, const PageColor&) = default;
 };
 
-/// How lines are drawn: with round ends and corners.
+/// How lines are drawn. Ends and corners are round.
 struct Pen {
   double width = 0.25;  ///< millimetres, 0 to 1000; 0 draws nothing
   PageColor color;
-  /// Millimetres that are drawn, left out, drawn and so on; an even count, empty: no gaps. Every path begins anew.
+  /// Millimetres drawn, left out, drawn and so on; an even count. Empty: a solid line. Each path restarts the pattern.
   std::vector<double> dashes{};
 };
 
-/// Consecutive points of a group, joined in their order. One point alone is a dot.
+/// Consecutive points of a group, joined in order. A single point is a dot.
 struct PagePath {
   std::uint32_t first = 0, count = 0;
-  bool is_closed = false;  ///< the last point is joined to the first
-  /// Belongs to the path before it, of the same group, and is filled as it is: one of its holes, or more of it.
+  bool is_closed = false;  ///< the last point is joined to the first one
+  /// True: the path belongs to the path before it, of the same group, and is filled together with it: a hole, or
+  /// another part.
   bool is_part = false;
 };
 
-/// Paths that are drawn with one pen, one after the other. Millions of paths are better in one group than in many.
+/// Paths drawn with one pen, one after the other. One group of millions of paths is faster than many groups.
 struct PageGroup {
-  std::string name;  ///< of the object, any text
+  std::string name;  ///< name of the object, any text
   Pen pen;
   std::vector<glm::dvec2> points{};  ///< millimetres
-  /// Empty: all joins are straight. Otherwise one for each point, of the join that begins there: the tangent of a
-  /// quarter of the angle that an arc turns through, positive from +x towards +y; 0 straight, 1 a half circle.
+  /// Empty: all joins are straight. Otherwise one for each point, for the join that begins there: the tangent of a
+  /// quarter of the arc's angle, positive from +x towards +y; 0: straight, 1: a half circle.
   std::vector<double> bulges{};
   std::vector<PagePath> paths{};
   std::vector<PageColor> fills{};  ///< empty: nothing is filled; otherwise one for each path (nonzero winding rule)
-  /// Of all of the group together, 0 to 255: it is drawn on clear ground, and then laid on with it.
+  /// Opacity of the group as a whole, 0 to 255: the group is drawn on a transparent ground and then blended.
   std::uint8_t opacity = 255;
 
   /// Appends a path without arcs.
@@ -134,7 +133,7 @@ struct PageGroup {
 };
 
 struct PageLayer {
-  std::string name;  ///< plotters choose layers by the number that a name begins with: "1 hidden"
+  std::string name;  ///< plotters choose layers by the number at the beginning of the name: "1 hidden"
   std::vector<PageGroup> groups{};
 };
 
@@ -144,128 +143,131 @@ struct Page {
   std::vector<PageLayer> layers{};
 };
 
-/// The same page with every dash of its pens as a path, for plotters, which follow paths and know no dashes. Patterns
-/// run along whole paths; from corner to corner, of 25 degrees and more, they are stretched so that both ends are drawn
-/// (ISO 128-2). What is filled stays. O(points + dashes).
-/// \throws Error as validate() does, limit_exceeded for more than 20 million dashes, and cancelled.
+/// Turns each dash of a page into a path of its own, for plotters, which know no dashes. Patterns run along whole
+/// paths. Between corners of 25 degrees or more they are stretched so that both ends are drawn (ISO 128-2). Fills are
+/// unchanged. O(points + dashes). \throws Error as validate() does, limit_exceeded for more than 20 million dashes, and
+/// cancelled.
 [[nodiscard]] Page with_real_dashes(Page page, const Execution& execution = {});
 
 enum class PageFormat : std::uint8_t { svg, pdf, dxf, json };
 
-/// \throws Error bad_argument or limit_exceeded, naming layer and group: sizes out of range; points that are not
-/// finite or further than 1000 m away; bulges beyond 10; paths of points that are not there; lists that do not match.
+/// \throws Error bad_argument or limit_exceeded, naming layer and group: sizes out of range; points that are not finite
+/// or more than 1000 m away; bulges beyond 10; paths of missing points; lists of different lengths.
 void validate(const Page& page);
 
-/// The format that a file's suffix names; none where it names no format of pages.
+/// The page format that a file's suffix names; none for other suffixes.
 [[nodiscard]] std::optional<PageFormat> page_format(const std::string& path);
 
-/// Writes a page; whole or not at all, as images. Coordinates are rounded to 0.001 mm, so that paths that share a point
-/// share it in the file. The bytes depend on the page alone (PDF: and the version of zlib).
-///
-/// SVG: size in millimetres, one user unit to the millimetre; layers and groups are named as Inkscape does it, paths of
-/// one pen share elements; without style sheets, clip paths, masks or transforms. PDF 1.5: layers as optional content,
-/// groups with an opacity as transparency groups, compressed; 1.6 where a side is over 5080 mm, scaled by a user unit.
-/// DXF (AutoCAD release 12), lines only: LINE, POLYLINE, ARC, CIRCLE and POINT with line types, y up from the page's
-/// lower left corner; it has no widths, and no groups: each is a layer named by layer and group, "2_VISIBLE-WHEEL", or
-/// all of a layer are one where there are a thousand or more. Line types and colours are those of layers: that of the
-/// pen, and where it is black one by the digit that the page's layer begins its name with. Line types are HIDDEN,
-/// CENTER and PHANTOM for one, two and more dashes in a period, with "2" or "X2" behind the name of much shorter or
-/// longer ones; pens that share a name have the dashes of the first. $INSUNITS says millimetres. Such names keep
-/// letters, digits and - alone, 31 at most. JSON: all of the page, as it is. Characters that a format does not allow
-/// are replaced in names. Memory is constant beside the page's own. \throws Error as validate() does; bad_argument
-/// without a format; unsupported for fills in DXF; file_unwritable.
+// How pages become files:
+//
+//   SVG    Sizes in millimetres, one user unit to the millimetre. Layers and groups are named as in Inkscape; paths of
+//          one pen share elements. No style sheets, clip paths, masks or transforms.
+//   PDF    Version 1.5, compressed. Layers are optional content, groups with an opacity transparency groups. Version
+//          1.6 with a scaled user unit if a side exceeds 5080 mm.
+//   DXF    AutoCAD release 12, in millimetres ($INSUNITS), y up from the page's lower left corner. Lines only: LINE,
+//          POLYLINE, ARC, CIRCLE and POINT, without widths. Each group is a layer, "2_VISIBLE-WHEEL" after layer and
+//          group; from a thousand groups on, each page layer is one. Names have at most 31 letters, digits and -. A
+//          layer has the pen's colour; a black pen's depends on the digit that begins the page layer's name. Line types
+//          are HIDDEN, CENTER and PHANTOM for one, two and more dashes in a period, with "2" or "X2" appended if much
+//          shorter or longer; pens that share a name get the first pen's dashes.
+//   JSON   All of the page, unchanged.
+
+/// Writes a page, whole or not at all. Coordinates are rounded to 0.001 mm, so paths that share a point share it in the
+/// file. Names lose characters that the format does not allow. The bytes depend on the page alone (in PDF also on the
+/// version of zlib). Memory is constant beside the page's. \throws Error as validate() does; bad_argument without a
+/// format; unsupported for fills in DXF; file_unwritable.
 void save(const Page& page, const std::string& path, std::optional<PageFormat> format = std::nullopt,
           const Execution& execution = {});
 
-/// Several pages in one file, which may differ in size. Layers of one name are switched on and off together; the file's
-/// title is that of the first page. \throws Error as the other save(); bad_argument without a page; unsupported for
-/// several in another format than PDF.
+/// Writes several pages, which may differ in size, into one PDF. Layers of one name are switched together; the title is
+/// that of the first page. \throws Error as for one page; bad_argument without a page; unsupported for several pages in
+/// other formats.
 void save(std::span<const Page> pages, const std::string& path, std::optional<PageFormat> format = std::nullopt,
           const Execution& execution = {});
 
-/// How a plotter would draw a page, in millimetres and numbers.
+/// The way of a plotter's pen over a page, in millimetres, and the number of elements.
 struct PenTravel {
-  double down = 0;  ///< drawn
-  double up = 0;    ///< moved between paths, from the page's corner on
+  double down = 0;  ///< length of drawn lines
+  double up = 0;    ///< length of moves between paths, beginning at the page's corner
   std::size_t paths = 0, points = 0, arcs = 0;
 };
 [[nodiscard]] PenTravel travel_of(const Page& page);
 
-/// A figure as a page of its size, where a pixel is 1/96 inch, as style sheets have it.
+/// A figure as a page of its size; a pixel is 1/96 inch, as in style sheets.
 [[nodiscard]] Page page_of(const Figure& figure);
-/// Writes a figure, as SVG or PDF by the name. \throws Error as save() of pages does.
+/// Writes a figure, as SVG or PDF by the suffix. \throws Error as save() of pages does.
 void save(const Figure& figure, const std::string& path, std::optional<PageFormat> format = std::nullopt,
           const Execution& execution = {});
 
 // Lettering: text as strokes of one pen, the same in every format and on every machine.
 //
-// Formats of pages have fonts of their own, which look otherwise in every viewer, and plotters have none. So a text
-// becomes paths of lines and arcs, and is placed by one of nine points of the box around its capitals:
+// Fonts of page formats look different in every viewer, and plotters have none. Text therefore becomes paths of lines
+// and arcs. It is placed by one of nine points of the box around its capitals:
 //
 //   left         centre         right
-//    x-------------x-------------x     top: the upper edge of capitals
+//    x-------------x-------------x     top: upper edge of capitals
 //    |  A  4      1 2 . 5    m m  |     middle
-//    x-------------x-------------x     bottom: the line on which letters stand
+//    x-------------x-------------x     bottom: base line
 
-/// Which part of a text lies at its place: its beginning, its middle or its end.
+/// The part of a text that lies at its place: its beginning, its middle or its end.
 enum class TextAlign : std::uint8_t { left, centre, right };
-/// Likewise of its height: the lower edge of capitals, their middle or their upper edge.
+/// The height of a text that lies at its place: the lower edge of capitals, their middle or their upper edge.
 enum class TextLine : std::uint8_t { bottom, middle, top };
 
 struct TextStyle {
-  double height = 3.5;  ///< millimetres, of capitals and figures with their pen: 1.8, 2.5, 3.5, 5, 7, 10, 14 or 20
-  double angle = 0;     ///< radians that the text is turned about its place, counter-clockwise for who reads the page
+  double height = 3.5;  ///< millimetres, of capitals and digits with their pen: 1.8, 2.5, 3.5, 5, 7, 10, 14 or 20
+  double angle = 0;     ///< radians by which the text is turned about its place, counter-clockwise for the reader
   TextAlign align = TextAlign::left;
   TextLine line = TextLine::bottom;
 };
 
-/// What ISO 3098 type B letters are drawn with: a tenth of their height.
+/// The pen for letters of this height after ISO 3098 type B: a tenth of the height.
 [[nodiscard]] Pen text_pen(double height);
 
-/// Appends `text`, in UTF-8, as paths of lines and arcs: upright letters after ISO 3098-1 type B, small ones 7/10 as
-/// high as capitals, descending 3/10 below. `group` should have text_pen() of the same height. There are ASCII, Latin-1
-/// with its signs of diameter, degree, plus-minus and times, the letters of Central and Northern Europe, quotes, dashes
-/// and a few signs of drawings; all else, bytes that are not UTF-8 and control characters too, is a box as high as a
-/// capital. Blanks have no path. O(text).
+/// Appends `text`, in UTF-8, as paths of lines and arcs: upright letters after ISO 3098-1 type B. Small letters are
+/// 7/10 as high as capitals and descend 3/10 below. `group` should have text_pen() of the same height. Available are
+/// ASCII, Latin-1 with the signs for diameter, degree, plus-minus and times, letters of Central and Northern Europe,
+/// quotes, dashes and some signs of drawings. Anything else, including invalid UTF-8 and control characters, is a box
+/// as high as a capital. Blanks have no path. O(text).
 void add_text(PageGroup& group, std::string_view text, const glm::dvec2& at, const TextStyle& style = {});
 
-/// Millimetres from the left edge of the first character to the right edge of the last, with their pen; 0 without any.
+/// Millimetres from the left edge of the first character to the right edge of the last one, with their pen; 0 without
+/// any.
 [[nodiscard]] double text_width(std::string_view text, double height = 3.5);
 
-// Views of a sheet: strokes, hatching and centre lines in their places on a page, with pens as drawing standards have
-// them.
+// Views of a sheet: strokes, hatching and centre lines at their places on a page, with the pens of drawing standards.
 //
 //   Drawing --chain_strokes()--> Strokes ----+
 //   hatch(), stipple(), centre_lines_of() ----+--> SheetView --page_of()--> Page --save()--> file
 //                                                  a place and a scale
 //
-// draw_sheet() does all of it; these are the steps, for those who lay out pages of their own.
+// draw_sheet() performs all of these steps; call them yourself to lay out pages of your own.
 
-/// Pens by what they draw.
+/// Pens by the kind of line.
 struct LinePens {
-  Pen outline{0.5, {}};  ///< where the scene ends, seen
-  Pen seen{0.5, {}};     ///< all other lines that are seen
-  Pen crease{0.5, {}};   ///< of those, creases; by themselves where strokes were made by kind
+  Pen outline{0.5, {}};  ///< seen edges that bound the scene
+  Pen seen{0.5, {}};     ///< all other seen lines
+  Pen crease{0.5, {}};   ///< seen creases, if strokes were made by kind
   Pen hidden{0.25, {}, {3, 0.75}};
   Pen hatching{0.18, {}};
-  Pen stippling{0.3, {}};  ///< its width is that of the dots
-  /// Long dashes and dots. Each line has an odd number of dashes, made longer or shorter so that it begins, ends and
-  /// has its middle in one; a short one is whole.
+  Pen stippling{0.3, {}};  ///< its width is the diameter of dots
+  /// Long dashes and dots. A line has an odd number of long dashes, stretched so that it begins, ends and has its
+  /// middle in one. A short line is solid.
   Pen centre{0.25, {}, {6, 1, 0.1, 1}};
 };
-/// ISO 128: what is seen 0.5 mm, hidden lines 0.25 mm in dashes of 3 mm with gaps of 0.75 mm, centre lines 0.25 mm in
-/// dashes of about 6 mm with a dot between two.
+/// Pens of ISO 128: seen lines 0.5 mm; hidden lines 0.25 mm in dashes of 3 mm with gaps of 0.75 mm; centre lines 0.25
+/// mm in dashes of about 6 mm with a dot between two.
 [[nodiscard]] LinePens technical_pens();
-/// For people: an outline of 0.7 mm, contours within it of 0.35 mm, creases of 0.18 mm, hidden lines of 0.13 mm.
+/// Pens for illustrations: outline 0.7 mm, contours within it 0.35 mm, creases 0.18 mm, hidden lines 0.13 mm.
 [[nodiscard]] LinePens figure_pens();
-/// Hidden lines that are thin (0.13 mm) instead of dashed.
+/// A pen for hidden lines that are thin (0.13 mm) instead of dashed.
 [[nodiscard]] Pen thin_pen();
 
-/// One view of a sheet.
+/// A view with its place on a page.
 struct SheetView {
-  std::string name;  ///< in front of objects' names; may be empty
+  std::string name;  ///< prefix of objects' names; may be empty
   Strokes strokes;
-  glm::dvec2 origin{0};  ///< millimetres: where the view's pixel (0, 0) begins
+  glm::dvec2 origin{0};  ///< millimetres: place of the view's pixel (0, 0) on the page
   double millimetres_per_pixel = 1;
   std::vector<HatchLine> hatching{};
   std::vector<Stipple> stippling{};
@@ -274,180 +276,176 @@ struct SheetView {
   [[nodiscard]] glm::dvec2 on_page(const glm::dvec2& pixel) const { return origin + millimetres_per_pixel * pixel; }
 };
 
-/// A page with the layers "5 stippling", "4 hatching", "6 centre lines", "1 hidden", "2 visible" and "3 outline", those
-/// that have lines, the lowest first. Each has a group for every view and object, named as they are; in the order of
-/// the strokes and of the hatching. Centre lines have groups by their dashes, without names.
+/// A page with the layers "5 stippling", "4 hatching", "6 centre lines", "1 hidden", "2 visible" and "3 outline", in
+/// this order, lowest first, without empty ones. A layer has a named group for every view and object, in the order of
+/// the strokes and of the hatching. Centre lines are grouped by their dashes, without names.
 [[nodiscard]] Page page_of(const Surfaces& surfaces, std::span<const SheetView> views, const LinePens& pens,
                            const glm::dvec2& size);
 
-/// What the parts of a drawing cover, hidden ones only where asked for: low and high corner, in pixels. Low is greater
-/// than high where there is nothing.
+/// Bounds of the parts of a drawing, in pixels. Empty: `low` is greater than `high`.
 struct DrawingBounds {
   glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
   [[nodiscard]] bool is_empty() const { return !(low.x <= high.x && low.y <= high.y); }
 };
 [[nodiscard]] DrawingBounds bounds_of(const Drawing& drawing, bool with_hidden);
 
-// Drawings on paper by one call: the views of a model on a sheet, at a scale, with sections, dimensions and title
-// block.
+// Sheets: the views of a model on paper by one call, at a scale, with sections, dimensions and title block.
 //
 //    +--------------------------------------+
-//    |   front         left                 |     First-angle projection: what is seen from the left stands to the
-//    |                                      |     right of the front view, and what is seen from above below it.
-//    |   top           three-quarter        |     Third angle is the other way round.
+//    |   front         left                 |     First-angle projection: the view from the left stands to the right
+//    |                                      |     of the front view, and the view from above stands below it.
+//    |   top           three-quarter        |     Third-angle projection is the other way round.
 //    |               +----------------------+
 //    |               |     title block      |
 //    +---------------+----------------------+
 
-/// A sheet of paper, before it is known how large the drawing on it is.
+/// The paper of a sheet.
 struct Paper {
   glm::dvec2 size{210, 297};  ///< millimetres, 1 to 100000 each
-  bool may_turn = true;       ///< the sides change places where that suits the drawing better
-  bool fits_drawing = false;  ///< as large as the drawing and its margins; the size does not count
+  bool may_turn = true;       ///< true: the sides change places if that suits the drawing better
+  bool fits_drawing = false;  ///< true: as large as the drawing and its margins; `size` is ignored
 };
 
-/// The paper of a name: "a0" to "a6", "letter", "legal" or "tabloid", in small letters or capitals. With "-portrait" or
-/// "-landscape" behind the name it does not turn. \throws Error bad_argument for any other name.
+/// The paper of a name: "a0" to "a6", "letter", "legal" or "tabloid", in small letters or capitals. The suffix
+/// "-portrait" or "-landscape" fixes its orientation. \throws Error bad_argument for any other name.
 [[nodiscard]] Paper named_paper(std::string_view name);
-/// The name of paper of that size in millimetres, whichever way it lies: "A3"; "420 x 200" where it has none.
+/// The name of paper of that size in millimetres, in either orientation: "A3"; "420 x 200" if it has none.
 [[nodiscard]] std::string paper_name(const glm::dvec2& size);
 
 /// A scale as drawings write it: "1:5", "2:1", "1:3.2".
 [[nodiscard]] std::string scale_text(double scale);
-/// The largest scale of ISO 5455 (1, 2 and 5 times powers of ten, and their reciprocals) that is not above `most`: from
-/// 5e9:1 to 1:1e10; `most` itself where that is below them.
+/// The largest scale of ISO 5455 (1, 2 and 5 times powers of ten, and their reciprocals) up to `most`, from 5e9:1 to
+/// 1:1e10; `most` itself if that is smaller than all of them.
 [[nodiscard]] double standard_scale(double most);
 
-/// Where views stand about the front one; its symbol (ISO 5456-2) stands in the title block.
+/// Where views stand around the front view. The title block shows the symbol of the method (ISO 5456-2).
 enum class ProjectionMethod : std::uint8_t { none, first_angle, third_angle };
 
-/// What the fields of a title block say, in UTF-8; empty ones stay empty. Text too long for its field at 1.8 mm is
+/// Contents of the fields of a title block, in UTF-8; empty fields stay empty. Text too long for its field at 1.8 mm is
 /// written smaller.
 struct TitleBlock {
-  std::string title{};   ///< in up to two lines
-  std::string number{};  ///< of the drawing
+  std::string title{};   ///< up to two lines
+  std::string number{};  ///< number of the drawing
   std::string author{}, date{}, owner{};
-  std::string scale{};  ///< as "1:2"
-  std::string unit{};   ///< of what is written on the drawing, as "mm"
-  std::string paper{};  ///< as "A3"
+  std::string scale{};  ///< for example "1:2"
+  std::string unit{};   ///< unit of the numbers on the drawing, for example "mm"
+  std::string paper{};  ///< for example "A3"
   ProjectionMethod projection = ProjectionMethod::none;
   int sheet = 1, sheets = 1;
 };
 
-/// "front", "back", ..., "three-quarter".
+/// Name of a view: "front", "back", ..., "three-quarter".
 [[nodiscard]] std::string_view view_name(NamedView view);
 
-/// How edges are drawn that are out of sight.
+/// How hidden edges are drawn.
 enum class HiddenLines : std::uint8_t { none, dashed, thin };
 
-/// technical: all that is seen with one pen, as drawing standards have it (technical_pens()). figure: for people, an
-/// outline heavier than contours, and those heavier than creases (figure_pens()).
+/// technical: all seen lines with one pen, after drawing standards (technical_pens()). figure: for illustrations,
+/// outlines heavier than contours, and contours heavier than creases (figure_pens()).
 enum class DrawingStyle : std::uint8_t { technical, figure };
 
-/// What a view shows of the model cut by a plane across its sight, without what lies before the plane.
+/// A view of the model cut by a plane across the viewing direction, without the part in front of the plane.
 struct SectionView {
-  NamedView direction = NamedView::front;  ///< of the six along the axes
-  /// Where the plane is along that axis, in the coordinates of the file. None: in the middle of the model.
+  NamedView direction = NamedView::front;  ///< one of the six along the axes
+  /// Coordinate of the plane along that axis, as in the file. None: the middle of the model.
   std::optional<double> at = std::nullopt;
 };
 
-/// Millimetres are those of the paper.
+/// Options of sheets. Millimetres are on paper.
 struct SheetOptions {
-  // What the sheet shows, in parallel projection at one scale. Views in line with each other stand in line.
-  std::vector<NamedView> views{};  ///< each once; iso or three_quarter, which have one place
-  /// Named A-A, B-B and so on in their order; at most 24. The first view that sees a plane from its edge marks it.
+  // The views of the sheet, in parallel projection at one scale. Views are aligned with their neighbours.
+  std::vector<NamedView> views{};  ///< each at most once; at most one of iso and three_quarter, which share a place
+  /// At most 24, named A-A, B-B and so on in their order. The first view that sees a plane edge-on marks it.
   std::vector<SectionView> sections{};
-  ProjectionMethod projection = ProjectionMethod::first_angle;  ///< where views stand about the front one
-  /// Overall sizes, and diameters, as ISO 129 has them; needs views.
+  ProjectionMethod projection = ProjectionMethod::first_angle;  ///< where views stand around the front view
+  /// True: overall sizes, and diameters, after ISO 129; needs views.
   bool dimensions = false;
 
   // How lines are drawn.
   HiddenLines hidden = HiddenLines::none;
-  /// The views that show hidden lines. None: all but those at an angle. Sections never do.
+  /// Views that show hidden lines. None: all but iso and three_quarter. Sections never show them.
   std::optional<std::vector<NamedView>> hidden_views = std::nullopt;
   DrawingStyle style = DrawingStyle::technical;
-  /// Millimetres, 0.01 to 10: of the lines that are seen; others and dashes are wider by as much. None: as `style`
-  /// says.
+  /// Millimetres, 0.01 to 10: width of seen lines; other widths and dashes scale with it. None: the pens of `style`.
   std::optional<double> pen = std::nullopt;
-  std::optional<double> crease_angle = std::nullopt;  ///< radians, as LineOptions has it
-  /// Millimetres, 0 to 10, as StrokeOptions::shortest. None: 0.5 for plotters, 0 otherwise.
+  std::optional<double> crease_angle = std::nullopt;  ///< radians, see LineOptions
+  /// Millimetres, 0 to 10, see StrokeOptions::shortest. None: 0.5 for plotters, otherwise 0.
   std::optional<double> shortest_stroke = std::nullopt;
   std::optional<bool> centre_lines = std::nullopt;  ///< none: on technical sheets of named views
-  /// For pen plotters: long strokes whatever object they belong to, ordered to spare lifts of the pen. Dashes become
-  /// lines of their own by with_real_dashes().
+  /// True, for pen plotters: strokes continue from object to object, ordered to spare lifts of the pen.
+  /// Use with_real_dashes() to make each dash a line.
   bool plot = false;
 
   // Paper and scale.
-  /// None: A4; with a scale as large as the drawing, or the smallest of A4 to A0 that has room for it and a title
-  /// block.
+  /// None: A4; with `scale`, as large as the drawing, or the smallest of A4 to A0 with room for a title block as well.
   std::optional<Paper> page = std::nullopt;
   double margin = 10;  ///< millimetres, 0 to 1000, at each side
-  /// Length on paper to that of the model, 1e-12 to 1e12. None: the largest that the page has room for.
+  /// Length on paper divided by that of the model, 1e-12 to 1e12. None: the largest that fits the page.
   std::optional<double> scale = std::nullopt;
-  /// That largest scale is one of ISO 5455. None: on sheets of named views.
+  /// True: if `scale` is none, the scale is one of ISO 5455. None: true on sheets of named views.
   std::optional<bool> standard_scale = std::nullopt;
-  /// What the model's numbers are, in place of what its file says. None: as SceneSource says, else 1.
+  /// The unit of the model's numbers, in place of the file's. None: SceneSource::metres_per_unit, or else 1.
   std::optional<double> millimetres_per_unit = std::nullopt;
-  /// What dimensions and the title block say: inches with three decimals, or millimetres with two. None: inches where
-  /// the model's numbers are inches.
+  /// Unit of dimensions and title block: inches with three decimals, or millimetres with two. None: inches if the
+  /// model's unit is the inch.
   std::optional<bool> in_inches = std::nullopt;
   /// A frame with this title block. Scale, unit, paper and projection are filled in.
   std::optional<TitleBlock> title_block = std::nullopt;
 
-  // What is dark, as hatch() and stipple() find it; not together with sections.
-  std::optional<double> hatch = std::nullopt;      ///< millimetres from line to line, 0.2 to 50
-  std::optional<double> stipple = std::nullopt;    ///< millimetres from dot to dot, 0.2 to 10
-  double hatch_angle = std::numbers::pi / 4;       ///< radians, counter-clockwise from level
-  std::optional<glm::dvec3> light = std::nullopt;  ///< towards it: to the right, upwards and to the viewer
+  // Dark surfaces, by hatch() and stipple(); not together with sections.
+  std::optional<double> hatch = std::nullopt;      ///< millimetres between lines, 0.2 to 50
+  std::optional<double> stipple = std::nullopt;    ///< millimetres between dots, 0.2 to 10
+  double hatch_angle = std::numbers::pi / 4;       ///< radians, counter-clockwise from horizontal
+  std::optional<glm::dvec3> light = std::nullopt;  ///< direction towards the light: right, up, towards the viewer
   bool casts_shadows = true;
 
   // The camera.
-  /// Pixels of a view, 0.001 to 1000: how far triangles of curved surfaces may be from them. None: 0.2, or more where
-  /// that would take millions of triangles.
+  /// Pixels of a view, 0.001 to 1000: greatest distance of triangles from curved surfaces. None: 0.2, or more if that
+  /// would take millions of triangles.
   std::optional<double> tessellation_error = std::nullopt;
-  /// Of named views: planes in place of those that enclose the model.
+  /// For named views: clipping planes in place of those that enclose the model.
   std::optional<double> near = std::nullopt, far = std::nullopt;
-  /// Of a given view: its whole picture is fitted to the page, and not what it shows.
+  /// For a given view. True: the page shows the view's whole picture. False: it is fitted to the lines.
   bool keeps_picture = false;
 };
 
-/// A view with what was drawn of it.
+/// A drawn view of a sheet.
 struct DrawnView {
-  std::string name;  ///< "front"; of a section "A-A"; empty where the view was given
-  /// What the numbers of triangles in `drawing` mean: the surfaces that were given, which must still be there, or
-  /// others that were made for a view of curved or cut ones.
+  std::string name;  ///< for example "front"; "A-A" for a section; empty if the view was given
+  /// The surfaces whose triangles `drawing` refers to: the caller's, which must still exist, or surfaces that were made
+  /// for a view of curved or cut ones.
   std::shared_ptr<const Surfaces> surfaces;
-  std::shared_ptr<const Section> section;  ///< null where nothing was cut
+  std::shared_ptr<const Section> section;  ///< null if nothing was cut
   Drawing drawing;
   bool shows_hidden = false;
-  SheetView placed;  ///< its lines, in their places on the page
+  SheetView placed;  ///< the lines at their places on the page
 };
 
 struct Sheet {
   Page page;
   std::optional<double> scale;   ///< none in perspective
-  std::vector<DrawnView> views;  ///< whole ones, then sections, in their order
-  bool is_empty = false;         ///< no line of the model is on it
-  std::size_t left_out = 0;      ///< diameters for which there was no room
-  std::size_t undrawn = 0;       ///< diameters of cylinders that are seen along their axes, but not drawn: hidden
-  std::size_t prisms = 0;        ///< diameters of cylinders of 7 to 17 sides, which count as polygons
+  std::vector<DrawnView> views;  ///< whole views, then sections, in their order
+  bool is_empty = false;         ///< no line of the model is on the sheet
+  std::size_t left_out = 0;      ///< number of diameters without room
+  std::size_t undrawn = 0;       ///< number of diameters of cylinders seen along their axes, but hidden and not drawn
+  std::size_t prisms = 0;        ///< number of diameters of cylinders of 7 to 17 sides, which count as polygons
 };
 
-/// \throws Error bad_argument for values out of range and what excludes or needs another; the message begins with the
-/// name of the field.
+/// \throws Error bad_argument for values out of range, and for options that exclude or need each other. The message
+/// begins with the name of the field.
 void validate(const SheetOptions& options);
 
-/// Draws the named views and sections of `options` on one page. Layers are those of page_of(), then "9 sections",
-/// "7 dimensions" and "8 frame". Tells a watch its steps: "views", "rounds", "layout", "tones" and "page", beside those
-/// of what it calls. The same bytes for any number of threads.
+/// Draws the named views and sections of `options` on one page. Layers are those of page_of(), then "9 sections", "7
+/// dimensions" and "8 frame". A watch sees the stages "views", "rounds", "layout", "tones" and "page", and those of the
+/// functions called. The bytes are the same for any number of threads.
 /// \throws Error as validate() does, and for options without a view; bad_argument for a plane that misses the model;
-/// limit_exceeded for what has no room on the page, saying what would; and as draw_lines(), hatch(), stipple() and
+/// limit_exceeded if the page is too small, with a hint at what would fit; as draw_lines(), hatch(), stipple() and
 /// tessellate() do.
 [[nodiscard]] Sheet draw_sheet(const Surfaces& surfaces, const SheetOptions& options, const Execution& execution = {});
 
-/// Draws one view on a page of its own, also in perspective, where nothing has a scale. Lines are as fine as the pixels
-/// of the view: 3840 x 2160 of them suffice for all paper.
-/// \throws Error as draw_sheet() does; bad_argument for what named views alone have, and for a scale or centre lines in
+/// Draws one view on a page of its own; a view in perspective has no scale. Lines are as fine as the view's pixels:
+/// 3840 x 2160 suffice for all paper.
+/// \throws Error as draw_sheet() does; bad_argument for options of named views, and for a scale or centre lines in
 /// perspective.
 [[nodiscard]] Sheet draw_view(const Surfaces& surfaces, const View& view, const SheetOptions& options = {},
                               const Execution& execution = {});

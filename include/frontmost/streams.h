@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams: models of any length, drawn without ever being in memory as a whole.
+// Streams: models of any length, drawn without holding them in memory as a whole.
 //
-//   file --a piece of triangles--> drawn into the views, merged, forgotten --the next piece--> ...
+//   file --a piece of triangles--> drawn into the views, merged, dropped --the next piece--> ...
 //                                         |
 //                                         +-- triangles that are seen so far are kept --> Excerpt, a small scene
 //
-// The minimum over (depth, primitive id) does not care in which order triangles come, so pieces give to the bit what
-// the whole model gives. What is seen in the end is at most a triangle for each sample; shading, maps and reports take
-// those for the model.
+// The minimum over (depth, primitive id) does not depend on the order of triangles, so pieces give to the bit the
+// answer of the whole model. In the end at most one triangle per sample is seen. Shading, maps and reports work on
+// these triangles in place of the model.
 #pragma once
 
 #include <array>
@@ -26,37 +26,38 @@
 
 namespace frontmost {
 
-/// The processes, on one machine or many, that stream one model together, each a part of it: MPI's ranks, or whatever
-/// else does these three things. All of them call the same ones in the same order, as their Streams do; a call ends
-/// when what it needs has come from the others. What one throws goes through.
+/// The processes that stream one model together, each a part of it, on one machine or many: MPI's ranks, or anything
+/// else with these three operations. All ranks call the same operations in the same order, as their Streams do. A call
+/// ends when all that it needs has come from the others. Exceptions of an operation are passed on.
 class Ranks {
  public:
   using Message = std::vector<std::byte>;
 
   virtual ~Ranks() = default;
-  /// From 0 to count() - 1. Rank 0 has the results.
+  /// The rank of this process, 0 to count() - 1. Rank 0 gets the results.
   [[nodiscard]] virtual int number() const = 0;
   [[nodiscard]] virtual int count() const = 0;
-  /// Every value becomes the greatest that any rank has in its place. As many on all ranks.
+  /// Replaces every value by the greatest that any rank has at its index. All ranks have the same number of values.
   virtual void keep_greatest(std::span<std::uint64_t> values) = 0;
-  /// \returns on rank 0 what every rank has handed in, by its number; on others nothing.
+  /// \returns on rank 0 the messages of all ranks, by rank; nothing on other ranks.
   virtual std::vector<Message> gather(Message message) = 0;
-  /// \returns on all ranks what rank 0 has handed in.
+  /// \returns on all ranks the message of rank 0.
   virtual Message broadcast(Message message) = 0;
 };
 
 struct StreamOptions {
   LoadOptions load;
-  /// Read, drawn and forgotten together, 1 to 2^24. Never changes a result.
+  /// Size of a piece, 1 to 2^24. It never changes a result.
   std::uint32_t triangles_at_once = 1u << 19;
-  /// With whom the model is streamed; borrowed, and it must outlive the stream. Null: this process has all of it.
+  /// Ranks that stream the model together; borrowed, must outlive the stream. Null: this process streams all of it.
   Ranks* ranks = nullptr;
-  /// By file, the rank that alone reads its triangles. -1, or beyond the end: all ranks, whose pieces take turns.
+  /// For each file, the rank that alone reads its triangles. -1, or no entry: all ranks read it, taking turns by
+  /// pieces.
   std::vector<int> readers = {};
 };
 
-/// What some views show of a stream: a scene of the triangles that are seen, and of those that their smooth normals
-/// need. Whatever takes surfaces and a Visible gives for it what it gives for the whole model.
+/// The part of a stream that some views show: a scene of the visible triangles, and of those that their smooth normals
+/// need. Functions of surfaces and a Visible return for an Excerpt what they return for the whole model.
 class Excerpt {
  public:
   Excerpt();
@@ -65,13 +66,13 @@ class Excerpt {
   Excerpt& operator=(Excerpt&&) noexcept;
 
   [[nodiscard]] const Surfaces& surfaces() const;
-  /// One for each view. Their ids are those of surfaces().
+  /// One Visible per view, with ids of surfaces().
   std::vector<Visible> visible;
-  /// For ShadeInput::seen_by_light, if it was asked for; of the first view.
+  /// Value for ShadeInput::seen_by_light, for the first view; set if StreamNeeds::key_light asked for it.
   std::optional<Visible> seen_by_light;
-  /// The numbers of the triangles in the stream, by id of surfaces(); ascending.
+  /// Numbers of the triangles in the stream, by id of surfaces(); ascending.
   std::vector<PrimitiveId> stream_ids;
-  /// The same with ids of the stream: to the bit what zbuffer() shows of the whole model.
+  /// `of_excerpt` with ids of the stream: to the bit zbuffer()'s answer for the whole model.
   [[nodiscard]] Visible in_stream(Visible of_excerpt) const;
 
  private:
@@ -80,59 +81,58 @@ class Excerpt {
   std::unique_ptr<const Parts> parts_;
 };
 
-/// Corners of triangles.
+/// Vertices of triangles, three each.
 using CornerSpan = std::span<const std::array<glm::vec3, 3>>;
 
-/// What is to be known of a stream beside what is visible.
+/// Facts needed besides the visible triangles.
 struct StreamNeeds {
-  bool key_light = false;       ///< what throws shadows in the first view: for pictures that are lit. A second pass
-  bool smooth_normals = false;  ///< the neighbours of triangles that are seen: where meshes have no normals. The same
-  LightOptions light = {};      ///< of the picture: where its key light is
-  /// Called with triangles as long as nothing is seen in the first view: with all of them when it stays blank, so that
-  /// it can be said why. By several threads at once. No pass of its own.
+  bool key_light = false;  ///< triangles that cast shadows in the first view, for lit pictures; takes a second pass
+  bool smooth_normals = false;  ///< neighbours of visible triangles, for meshes without normals; takes a second pass
+  LightOptions light = {};      ///< those of the picture, which place the key light
+  /// Called with triangles while nothing is seen in the first view. A view that stays blank gets all of them, to find
+  /// the reason. Several threads may call it at once. It takes no pass of its own.
   std::function<void(CornerSpan)> unseen = nullptr;
 };
 
-/// Binary STL and PLY files, each an object, as if their scenes stood in one, in this order. Memory: some pieces at a
-/// time, at most 512 MiB or one piece, whichever is more; and for each sample of the views 8 bytes, and of the
-/// triangles seen about 60 bytes each, 100 while an Excerpt is made. Vertices of PLY files are mapped, and count
-/// as the system's cache; those of a PLY from a pipe are kept, up to 512 MiB.
+/// Streams binary STL and PLY files, each as an object, as if they formed one scene in this order. Memory: some pieces
+/// at a time, at most 512 MiB or one piece, if that is more; 8 bytes per sample of the views; about 60 bytes per
+/// visible triangle, 100 while an Excerpt is made. Vertices of PLY files are memory-mapped, and count as the system's
+/// cache; those of a PLY from a pipe are kept, up to 512 MiB.
 ///
-/// Where ranks stream a model together, each makes a Stream of the same files in the same order, and calls the same
-/// functions. Each opens all of the files, and reads of binary STL files its own triangles alone, of PLY files that all
-/// of them read all faces, but its own vertices. Results are to the bit those of one process that has all files.
+/// Ranks that stream a model together make Streams of the same files in the same order, and call the same functions.
+/// Every rank opens all files. From a shared binary STL file it reads only its own triangles; from a shared PLY file
+/// all faces, but only its own vertices. Results are to the bit those of one process with all files.
 class Stream {
  public:
   /// Opens the files; "-" is standard input, which can be read only once.
-  /// \throws Error as load() does; unsupported for text, other formats, and triangle strips or several elements of
-  /// vertices or faces in PLY, and among ranks for what is no ordinary file; limit_exceeded for more than 2^32 - 2
-  /// triangles in all.
+  /// \throws Error as load() does; unsupported for text, other formats, triangle strips or several vertex or face
+  /// elements in PLY, and with ranks for anything but ordinary files; limit_exceeded for more than 2^32 - 2 triangles
+  /// in all.
   explicit Stream(const std::vector<std::string>& paths, const StreamOptions& options = {},
                   const Execution& execution = {});
   ~Stream();
   Stream(Stream&&) noexcept;
   Stream& operator=(Stream&&) noexcept;
 
-  /// All but the triangles: objects, materials, textures, which way is up; warnings, complete after a pass. Its origin
-  /// is the first file's, as load() gives it, but zero of an STL file from a pipe; bounds, outline and views are about
-  /// it.
+  /// Everything but triangles: objects, materials, textures, up axis, and warnings, which are complete after a pass.
+  /// Bounds, outline and views are relative to its origin. That origin is the first file's, as load() sets it, but zero
+  /// for an STL file from a pipe.
   [[nodiscard]] const Scene& scene() const;
-  /// Whether the model can be read again. \see passes()
+  /// True if the model can be read again. \see passes()
   [[nodiscard]] bool can_repeat() const;
-  /// How often it was read.
+  /// Number of passes over the files so far.
   [[nodiscard]] int passes() const;
-  /// Of all triangles that were read; of those with finite corners. After a pass.
+  /// After a pass: the number of all triangles, and the bounds of those with finite vertices.
   [[nodiscard]] std::uint64_t triangle_count() const;
   [[nodiscard]] Box bounds() const;
 
-  /// A scene of points that stands for the model wherever only bounds and framing count: a view that looks the way of
-  /// `direction`, with the same field of view, is framed to the bit as it is for the whole model. The same on all
-  /// ranks. One pass.
+  /// A scene of points with the bounds and framing of the model. A view in the direction of `direction` and with its
+  /// field of view is framed to the bit as for the whole model. The scene is the same on all ranks. One pass.
   [[nodiscard]] Scene outline(const View& direction, double margin = 0.05, const Execution& execution = {});
 
-  /// What the views show. One pass, and another one where the needs ask for something that is seen. On ranks other than
-  /// the first an Excerpt without views and surfaces.
-  /// \throws Error as load() and zbuffer() do; unsupported where another pass is needed and can_repeat() is false.
+  /// Finds the triangles that the views show. One pass, and a second one if the needs ask for it and anything is seen.
+  /// Ranks other than 0 get an Excerpt without views and surfaces.
+  /// \throws Error as load() and zbuffer() do; unsupported if a second pass is needed and can_repeat() is false.
   [[nodiscard]] Excerpt look(const std::vector<View>& views, const StreamNeeds& needs = {},
                              const Execution& execution = {});
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views: projections, depth conventions, cameras, and the pixel grid that a visibility method answers for.
+// Views: projections, depth conventions, cameras, and the pixel grid that visibility methods answer for.
 //
-// Eye space looks down -z, y up, x right. Screen space is in pixels: x right, y down, origin at the top left corner,
-// pixel centres at +0.5. Depth given to users is -z_eye: planar distance, positive, in scene units.
+// Eye space: x right, y up, the eye looks down -z. Screen space, in pixels: x right, y down, origin at the top left
+// corner, pixel centres at +0.5. Depth is always given as -z_eye: planar distance, positive, in scene units.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -20,29 +20,29 @@ struct ClipDistances {
   double near = 0.1;
   double far = std::numeric_limits<double>::infinity();
 
-  /// From the negative eye-space z values that Gortler's book uses: at_z(-0.1, -50).
+  /// Clip distances from negative eye-space z values, as in Gortler's book: at_z(-0.1, -50).
   static ClipDistances at_z(double z_near, double z_far) { return {-z_near, -z_far}; }
 };
 
-/// A viewing volume: the rectangle [left, right] x [bottom, top] at unit distance before the eye (perspective), or in
-/// scene units at every distance (orthographic), between two planes.
+/// A viewing volume between the near and far planes. Its cross-section is the rectangle [left, right] x [bottom, top]:
+/// at unit distance before the eye in perspective, in scene units at every distance in orthographic projection.
 struct Projection {
   bool orthographic = false;
   double left = -1, right = 1, bottom = -1, top = 1;
   ClipDistances clip;
 };
 
-/// Perspective by the smaller field of view, in radians, of the two image directions. `aspect` is width / height.
-/// (S. Gortler, Foundations of 3D Computer Graphics, chapter 10.) The functions below throw Error bad_argument on
-/// non-finite, reversed or zero-sized values, and on near <= 0 in perspective or far <= near.
+/// Perspective with field of view `min_fov`, in radians, along the shorter side of the image. `aspect` is width /
+/// height. (S. Gortler, Foundations of 3D Computer Graphics, chapter 10.) This function and the next ones throw Error
+/// bad_argument on non-finite, reversed or zero-sized values, near <= 0 in perspective, and far <= near.
 [[nodiscard]] Projection make_projection(double min_fov, double aspect, const ClipDistances& clip);
-/// Perspective by frustum sides measured on the near plane, as glFrustum takes them.
+/// Perspective from the frustum's sides, measured on the near plane as in glFrustum.
 [[nodiscard]] Projection make_frustum(double left, double right, double bottom, double top, const ClipDistances& clip);
-/// Parallel projection of [left, right] x [bottom, top] in scene units.
+/// Parallel projection of [left, right] x [bottom, top], in scene units.
 [[nodiscard]] Projection make_orthographic(double left, double right, double bottom, double top,
                                            const ClipDistances& clip);
 
-/// Where the vision world puts the centre of the first pixel.
+/// Image coordinates that a calibration gives to the centre of the first pixel.
 enum class PixelRule : std::uint8_t {
   centre_at_half,     ///< (0.5, 0.5): OpenGL, Frontmost
   centre_at_integer,  ///< (0, 0): OpenCV, most calibration tools
@@ -55,10 +55,10 @@ struct Intrinsics {
 };
 [[nodiscard]] Projection make_projection(const Intrinsics& intrinsics, int width, int height,
                                          const ClipDistances& clip);
-/// The inverse. Precondition: perspective.
+/// The inverse of the function above. Precondition: perspective.
 [[nodiscard]] Intrinsics intrinsics_of(const Projection& projection, int width, int height, PixelRule rule);
 
-/// Which normalised depth the near and far planes map to: conventions as values.
+/// Normalised depths that the near and far planes are mapped to.
 struct DepthConvention {
   double at_near, at_far;
 };
@@ -67,57 +67,59 @@ inline constexpr DepthConvention opengl_depth{-1, 1};   ///< nearer is less; com
 inline constexpr DepthConvention zero_to_one_depth{0, 1};
 inline constexpr DepthConvention reversed_depth{1, 0};  ///< nearer is greater; exact with floats
 
-/// The 4x4 matrix to clip space. Infinite far planes are taken to their limit.
+/// The 4x4 matrix from eye space to clip space. For an infinite far plane it is the limit of the matrix.
 [[nodiscard]] glm::dmat4 clip_from_eye(const Projection& projection, const DepthConvention& depth = opengl_depth);
-/// Planar distance of a normalised depth, the inverse of the map above. Infinite far gives +inf at at_far.
+/// Planar distance of a normalised depth: the inverse of clip_from_eye(). Infinite far gives +inf at at_far.
 [[nodiscard]] double distance_of_depth(const Projection& projection, const DepthConvention& depth, double ndc_depth);
 
-/// A rigid pose from eye position, target and up. Up need not be perpendicular; where it is parallel to the viewing
-/// direction another axis is taken, deterministically.
-/// \throws Error singular_camera when eye and target coincide or are not finite.
+/// The rigid pose of an eye at `eye` that looks at `target`. `up` need not be perpendicular to the viewing direction;
+/// if parallel to it, another axis is used, always the same one.
+/// \throws Error singular_camera if eye and target coincide or are not finite.
 [[nodiscard]] glm::dmat4 look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up);
 
-/// How a 4x4 pose is meant.
+/// Axes and direction of a 4x4 pose.
 enum class PoseConvention : std::uint8_t {
-  opengl_camera_to_world,  ///< the house's: x right, y up, looks down -z
+  opengl_camera_to_world,  ///< Frontmost's own: x right, y up, looks down -z
   opengl_world_to_camera,
   opencv_camera_to_world,  ///< x right, y down, looks down +z
   opencv_world_to_camera,
-  robot_camera_to_world,  ///< of sensors on robots (REP 103): x ahead, y left, z up
+  robot_camera_to_world,  ///< sensors on robots (REP 103): x ahead, y left, z up
   robot_world_to_camera,
 };
-/// \throws Error singular_camera when the pose is not a rotation and a translation (to 1e-4).
+/// \throws Error singular_camera if the pose is not a rotation and a translation (to 1e-4).
 [[nodiscard]] glm::dmat4 world_from_eye(const glm::dmat4& pose, PoseConvention convention);
 [[nodiscard]] glm::dmat4 pose_of(const glm::dmat4& world_from_eye, PoseConvention convention);
 
-/// Which triangles are left out by the way they face. Counter-clockwise on the screen is front. A triangle that is
-/// seen edge-on (N.V = 0, zero area after snapping) faces nobody and covers nothing. `material`: those that face away
-/// and whose material is not Material::double_sided, as glTF says; shadows go through them where the light is behind
-/// them. The other modes leave shadows alone.
+/// Triangles that are left out because of the way they face. Counter-clockwise on the screen is front. A triangle that
+/// is seen edge-on (N.V = 0, zero area after snapping) has no facing and covers nothing. `material` leaves out back
+/// faces whose material is not Material::double_sided, as glTF specifies; light passes through such a triangle if it
+/// comes from behind it. The other modes do not change shadows.
 enum class Culling : std::uint8_t { none, back, front, both, material };
 
-/// Width * height * samples of a view is at most this: 16384 x 16384 pixels of one sample, 2 GiB of ids and keys.
+/// The greatest width * height * samples of a view: 16384 x 16384 pixels of one sample, 2 GiB of ids and keys.
 inline constexpr std::size_t most_samples = std::size_t(1) << 28;
 
-/// A camera and a pixel grid: all that decides what is visible, beside the surfaces.
+/// A camera and a pixel grid. The view and the surfaces together decide what is visible.
 struct View {
   int width = 0, height = 0;       ///< pixels, 1 to 16384 each
   int samples = 1;                 ///< per pixel: 1, 2, 4, 8 or 16; positions as in sample_offsets()
-  glm::dmat4 world_from_eye{1.0};  ///< about Scene::origin: an eye in the coordinates of a file is less by it
+  glm::dmat4 world_from_eye{1.0};  ///< relative to Scene::origin: subtract it from an eye in file coordinates
   Projection projection;
   Culling culling = Culling::none;
 
-  // Copies with one thing changed, to be chained:
+  // Copies with one change each, which can be chained:
   //   make_view(intrinsics, 640, 480).placed(pose, PoseConvention::opencv_world_to_camera).between(0.1, 10)
-  /// With this pose. \throws Error singular_camera as world_from_eye() does.
+  /// Copy with this pose.
+  /// \throws Error singular_camera as world_from_eye() does.
   [[nodiscard]] View placed(const glm::dmat4& pose, PoseConvention convention) const;
-  /// At `from`, turned towards `target`. \throws Error singular_camera as look_at() does.
+  /// Copy that looks from `from` at `target`.
+  /// \throws Error singular_camera as look_at() does.
   [[nodiscard]] View looking(const glm::dvec3& from, const glm::dvec3& target, const glm::dvec3& up) const;
-  /// With an eye that was told in the coordinates of a file, as a pose is, told about that scene's origin.
+  /// Copy relative to a scene's `origin`, for a view whose eye is in coordinates of the file.
   [[nodiscard]] View about(const glm::dvec3& origin) const;
-  /// With these near and far planes.
+  /// Copy with these near and far planes.
   [[nodiscard]] View between(double near, double far) const;
-  /// With the near and far planes that fit_clip() finds for `bounds` from where the eye is now.
+  /// Copy with the near and far planes that fit_clip() finds for `bounds` from the present eye.
   [[nodiscard]] View enclosing(const Box& bounds) const;
 
   [[nodiscard]] glm::dvec3 eye() const { return glm::dvec3(world_from_eye[3]); }
@@ -128,41 +130,40 @@ struct View {
   [[nodiscard]] std::size_t sample_count() const { return pixel_count() * std::size_t(samples); }
 };
 
-/// The view of a calibrated camera, at the origin, looking along -z, with one sample a pixel and the clip distances'
-/// defaults. \throws Error bad_argument as make_projection() does.
+/// The view of a calibrated camera at the origin, looking along -z, with one sample a pixel and default clip distances.
+/// \throws Error bad_argument as make_projection() does.
 [[nodiscard]] View make_view(const Intrinsics& intrinsics, int width, int height);
-/// The same by the smaller field of view, in radians.
+/// The view of a camera with field of view `min_fov`, in radians, along the shorter side; otherwise as above.
 [[nodiscard]] View make_view(double min_fov, int width, int height);
 
-/// \throws Error bad_argument, limit_exceeded or singular_camera, naming the field. Vertices are transformed in floats,
-/// so a view must lie within their range: near at least 1.2e-38 in perspective, the eye within 3.4e38 of the origin.
-/// Far planes beyond 8.5e37 in perspective count as that.
+/// Checks every field. Vertices are transformed in floats, so near must be at least 1.2e-38 in perspective, and the eye
+/// within 3.4e38 of the origin. In perspective a far plane beyond 8.5e37 counts as 8.5e37.
+/// \throws Error bad_argument, limit_exceeded or singular_camera, naming the field.
 void validate(const View& view);
 
-/// Sample positions within a pixel in 1/256 pixel from its top left corner: the standard rotated-grid patterns
-/// (Direct3D 11.1 functional specification, 16.1), whose entries are multiples of 1/16 pixel.
-/// One sample sits at the centre, (128, 128).
+/// Positions of the samples within a pixel, in 1/256 pixel from its top left corner. They are the standard rotated-grid
+/// patterns, with multiples of 1/16 pixel (Direct3D 11.1 functional specification, 16.1). A single sample lies at the
+/// centre, (128, 128).
 [[nodiscard]] std::span<const glm::ivec2> sample_offsets(int samples);
 
-/// The named directions. `front` looks at the model's front: along +y for z-up models, along -z for the others.
+/// Viewing directions by name. `front` looks along +y at z-up models, and along -z at all others.
 enum class NamedView : std::uint8_t { front, back, left, right, top, bottom, iso, three_quarter };
 
-/// What most of a scene's interest lies in, and what reaches far beyond that.
+/// The part of a scene that a picture is about, and the objects that reach far beyond it.
 struct Subject {
-  Box bounds;                           ///< of the former, in world space; empty where nothing can be seen
-  std::vector<std::uint32_t> left_out;  ///< numbers of the latter in Scene::instances, ascending; mostly none
+  Box bounds;                           ///< of the subject, in world space; empty if nothing can be seen
+  std::vector<std::uint32_t> left_out;  ///< objects beyond it, by number in Scene::instances, ascending; mostly none
 };
 
-/// The subject of a scene, by objects. An object's interest is the fourth root of the number of its triangles. The
-/// middle is, on each axis, the median of the objects' middles, weighted by their interest; an object reaches as far as
-/// the corner of its bounds that is farthest from there. Where some objects have three fifths of all interest, and
-/// every other one reaches eight times as far as all of them, or farther, the others are left out: a plane of two
-/// kilometres under a village, the dome of a sky, a screw that was lost far away. The fewest objects for which that
-/// holds are the subject. A scene of one object, or of objects without such a gap, is the subject as a whole. Of more
-/// than 4096 objects, every so many give the middle. O(objects): 30 ms for a million.
+/// Finds the subject of a scene. An object's interest is the fourth root of its number of triangles. The middle is, on
+/// each axis, the median of the objects' middles, weighted by interest. An object's reach is the distance from the
+/// middle to the farthest corner of its bounds. The subject is the smallest set of objects with three fifths of all
+/// interest whose greatest reach is at most an eighth of any other object's. The others, such as a ground plane of two
+/// kilometres, a sky dome or a lost screw, are left out. Without such a gap, all objects are the subject. Beyond 4096
+/// objects, the middle is found from a regular selection. O(objects): 30 ms for a million.
 [[nodiscard]] Subject find_subject(const Surfaces& surfaces);
 
-/// Which objects frame() shows whole.
+/// Objects that frame() shows whole.
 enum class FramedObjects : std::uint8_t {
   subject,  ///< those of find_subject(); others may reach out of the picture
   all,
@@ -171,75 +172,73 @@ enum class FramedObjects : std::uint8_t {
 struct FrameOptions {
   NamedView direction = NamedView::three_quarter;
   bool orthographic = false;
-  double min_fov = 0.5235987755982988;  ///< radians (30 degrees), of the smaller image side
-  double margin = 0.05;                 ///< of the picture on each side
+  double min_fov = 0.5235987755982988;  ///< field of view along the shorter side of the image, in radians (30 degrees)
+  double margin = 0.05;                 ///< on each side, as a part of the picture
   int samples = 1;
   Culling culling = Culling::none;
-  /// Looks along this, with that upwards, where set; instead of the named direction's. Any length but zero.
+  /// Viewing and upward direction; if set, they replace those of `direction`. Any length but zero.
   std::optional<glm::dvec3> forward = std::nullopt, up = std::nullopt;
-  /// This point is in the middle of the picture, where set; instead of the model. About Scene::origin, as the eye is.
+  /// Point in the middle of the picture, relative to Scene::origin; if set, it replaces the model's.
   std::optional<glm::dvec3> target = std::nullopt;
-  /// The pinhole camera, where set; instead of min_fov. Its image may lie off the axis. Not with `orthographic`.
+  /// Pinhole camera; if set, it replaces min_fov. Its image may lie off the axis. Not with `orthographic`.
   std::optional<Intrinsics> intrinsics = std::nullopt;
   FramedObjects objects = FramedObjects::subject;
 };
 
-/// A view that shows the subject of `surfaces`, mostly all of them, from as near as the margin allows. Near and far
-/// enclose everything, but in parallel projection what is left out of the subject and lies behind the eye, which then
-/// stands twice the subject's diagonal before its middle. Empty surfaces: a unit box about the origin. 1 to 3 ms for a
-/// million triangles.
-/// \throws Error bad_argument for options out of range; as look_at(), make_projection() and validate() do.
+/// A view that shows the subject of `surfaces`, mostly all objects, from as near as the margin allows. Near and far
+/// enclose everything. In parallel projection with objects left out, the eye stands twice the subject's diagonal before
+/// its middle, and left-out objects behind the eye are cut off. Empty surfaces are framed as a unit box about the
+/// origin. 1 to 3 ms for a million triangles.
+/// \throws Error bad_argument for options out of range, and as look_at(), make_projection() and validate() do.
 [[nodiscard]] View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& options = {});
-/// The same of a box, all of it: where no one has the whole model, but its bounds are known. `up` is the model's.
+/// A view that shows all of `bounds`, for models of which only the bounds are known. `up` is the model's up axis.
 [[nodiscard]] View frame(const Box& bounds, Axis up, int width, int height, const FrameOptions& options = {});
 
-/// Near and far planes that enclose what of `bounds` lies before the eye, with 1 % to spare, and near at least
-/// far / 10000 in perspective.
+/// Near and far planes that enclose the part of `bounds` before the eye, with 1 % to spare. In perspective near is at
+/// least far / 10000.
 [[nodiscard]] ClipDistances fit_clip(const Box& bounds, const glm::dmat4& world_from_eye, bool orthographic);
 
-// Curved surfaces as triangles, as fine as a view needs them: how the methods for triangles draw spheres and patches.
+// Tessellation: curved surfaces become triangles as fine as a view needs, for the methods that draw triangles.
 //
 //         ____
 //     .-~'    `~-.       the curved surface
-//   /--------------\     a side of a triangle between two of its points
+//   /--------------\     an edge of a triangle, between two points of the surface
 //          |
-//          at most so many pixels, as the eye sees them: near parts are cut finely, distant ones coarsely
+//          at most `pixels` apart in the picture: near parts are cut finely, distant ones coarsely
+//
+// Every patch becomes a grid of its own fineness, a power of two each way. Patches of a mesh share an edge if its four
+// control points are equal to the bit, in either order. Both patches then get the same points along the edge, so
+// nothing leaks between them. A sphere becomes a globe of rings. Vertices have the surface's normals and texture
+// coordinates.
 
-/// True when a mesh of the scene that is placed is curved.
+/// True if an instance of the scene has a curved mesh.
 [[nodiscard]] bool has_curved(const Scene& scene);
 
-/// The scene with its curved meshes cut into triangles anew, so fine that in `view` no point of a triangle is farther
-/// than `pixels` from the point of the curved surface that it stands for; so every outline is where it should be to
-/// that many pixels. The bound is proven from second derivatives, and mostly two to four times too large; snapping of
-/// corners to 1/256 pixel comes on top of it. What lies before the near plane does not count, and is cut coarsely.
-/// (D. Filip, R. Magedson, R. Markot. Surface algorithms using bounds on derivatives. 1986.)
-///
-/// Every patch is a grid of its own fineness, a power of two each way. Patches of a mesh that share a whole edge, its
-/// four control points to the bit in either order, are given the same points along it: nothing leaks between them.
-/// Corners have the normals and texture coordinates of the surface. A sphere is a globe of rings.
-///
-/// Instances stay as they are, but for the number of their mesh: those that need another fineness have their own. The
-/// meshes stay curved, and Mesh::face_ids says which curved primitive a triangle comes from; other meshes stay as they
-/// are. O(size of the scene + triangles made).
+/// \returns the scene with its curved meshes cut into new triangles. In `view`, a point of a triangle is at most
+/// `pixels` away from its point of the curved surface. So outlines are right to `pixels`, plus snapping to 1/256 pixel.
+/// The bound is proven from second derivatives; the true error is mostly two to four times smaller. Parts before the
+/// near plane are cut coarsely. Instances that need different fineness get different meshes. Meshes stay curved;
+/// Mesh::face_ids names each triangle's curved primitive. O(size of the scene + triangles made).
 /// \throws Error bad_argument unless pixels > 0; limit_exceeded beyond 2^26 triangles made, naming instance and mesh;
-/// and as validate() does of scene and view.
+/// and as validate() does. (D. Filip, R. Magedson, R. Markot. Surface algorithms using bounds on derivatives. 1986.)
 [[nodiscard]] Scene tessellate(const Scene& scene, const View& view, double pixels);
 
-// Visible: what every method answers, one primitive and one depth for every sample of a view.
+// Visible: the answer of every method, with one primitive and one depth for every sample of a view.
 //
 //   primitives, keys   | sample 0 of all pixels          | sample 1 of all pixels          | ...
 //                      | row 0       | row 1       | ... | row 0       | row 1       | ... |
 //                        x = 0, 1, ...
 //
-// Sample 0 alone is thus a plane of its own, as maps want it. What is visible is the minimum over (depth, primitive
-// id), so that parts of a scene can be answered one by one, in any order and on any machine, and merged.
+// Sample 0 of all pixels is a plane of its own, from which maps are made. The visible primitive is the minimum over
+// (depth, primitive id). Parts of a scene can therefore be answered one by one, in any order and on any machine, and
+// merged.
 
-/// The front-most primitive at every sample, and how deep it is. Planes are ordered [sample][y][x], top row first.
+/// The front-most primitive at every sample, and its depth. Planes are ordered [sample][y][x], top row first.
 struct Visible {
   View view;
   Buffer<PrimitiveId> primitives;  ///< no_primitive where nothing is seen
-  /// The depth that was compared: near / distance in perspective, (far - distance) / (far - near) in parallel
-  /// projection, as a float in [0, 1], greater is nearer; 0 where nothing is seen.
+  /// The compared depth, a float in [0, 1]; greater is nearer; 0 where nothing is seen. Perspective: near / distance;
+  /// parallel projection: (far - distance) / (far - near).
   Buffer<float> keys;
 
   [[nodiscard]] std::size_t index(int x, int y, int sample = 0) const {
@@ -253,59 +252,61 @@ struct Visible {
 /// Planar depth at every sample, in the order of Visible; +inf where nothing is seen.
 [[nodiscard]] Buffer<float> depths_of(const Visible& visible);
 
-/// A Visible of `view` in which nothing is seen: what merging begins with. \throws Error as validate(view) does.
+/// A Visible of `view` in which nothing is seen, to begin merging with.
+/// \throws Error as validate(view) does.
 [[nodiscard]] Visible nothing_visible(const View& view);
 
-/// Lays what another part of a scene shows over `into`: at every sample the greater key stays, at equal keys the lower
-/// id. That is commutative, associative and idempotent, so parts may come in any order and from any machine, and all of
-/// them merged are to the bit what the whole scene shows. `first_id` is added to the ids of `other`: the place of its
-/// first triangle among those of the whole. O(samples), in parallel.
-/// \throws Error bad_argument unless both have the same view; limit_exceeded where an id would reach no_primitive, and
+/// Merges `other`, the answer for another part of a scene, into `into`. At every sample the greater key wins; at equal
+/// keys the lower id. Merging is commutative, associative and idempotent, so parts may come in any order and from any
+/// machine. All parts merged equal the whole scene's answer to the bit. `first_id` is added to the ids of `other`: the
+/// whole scene's id of the part's first triangle. O(samples), in parallel.
+/// \throws Error bad_argument unless both have the same view; limit_exceeded if an id would reach no_primitive, and
 /// then `into` is merged in part.
 void merge(Visible& into, const Visible& other, PrimitiveId first_id = 0, const Execution& execution = {});
 
-/// Every sample as one number, of which the greater is what merge() keeps: the bits of the key in the upper half, those
-/// of the id inverted in the lower; 0 where nothing is seen. So whatever knows the maximum of uint64, such as MPI_MAX,
-/// merges parts that lie on different machines. `first_id` is added to ids, as by merge(). O(samples), in parallel.
-/// \throws Error bad_argument for planes that are not of the size of their view; limit_exceeded where an id would reach
+/// Packs every sample into one number, of which merge() keeps the greater. The upper half is the key's bits, the lower
+/// half the inverted id; 0 where nothing is seen. A maximum of uint64, such as MPI_MAX, thus merges parts on different
+/// machines. `first_id` is added to ids, as in merge(). O(samples), in parallel.
+/// \throws Error bad_argument if the planes do not have the size of their view; limit_exceeded if an id would reach
 /// no_primitive.
 [[nodiscard]] Buffer<std::uint64_t> pack(const Visible& visible, PrimitiveId first_id = 0,
                                          const Execution& execution = {});
-/// The way back. \throws Error bad_argument unless there is a number for every sample of the view, and every key is in
-/// [0, 1]; as validate(view) does.
+/// The inverse of pack().
+/// \throws Error bad_argument unless there is one number for every sample of the view and every key is in [0, 1]; and
+/// as validate(view) does.
 [[nodiscard]] Visible unpack(const View& view, std::span<const std::uint64_t> packed, const Execution& execution = {});
 
-/// A hash of ids and depths: equal for equal answers, on every machine and for any number of threads. FNV-1a over
-/// the two planes, sample by sample. O(samples), on one thread.
+/// A hash of size, ids and keys: equal answers have equal hashes on every machine and for any number of threads. FNV-1a
+/// on words of 64 bits, one per sample. O(samples), on one thread.
 [[nodiscard]] std::uint64_t content_hash(const Visible& visible);
 
-// VisiblePixels: what a view of several samples shows, kept once wherever all samples of a pixel see the same.
+// VisiblePixels: the answer for a view of several samples, stored once for a pixel whose samples all see the same.
 //
-//   first        | row 0     | row 1     | ...     what sample 0 of every pixel sees: primitive and key
+//   first        | row 0     | row 1     | ...     sample 0 of every pixel: primitive and key
 //   mixed        0 0 0 1 1 0 0 ...                 a bit for each pixel whose samples see different primitives
-//   others             | 1, 2, 3 | 1, 2, 3 |       for those alone what samples 1 and up see, as `places` tells
+//   others             | 1, 2, 3 | 1, 2, 3 |       samples 1 and up of these pixels alone, found by `places`
 //
-// Of most pictures it is a fifth of what a Visible takes, so that it is written and read in a fifth of the time: what
-// colour needs, for which the depths of samples other than the first do not count.
+// VisiblePixels mostly take a fifth of the memory of a Visible, and a fifth of the time to write and read. They hold
+// what colours need: depths of samples other than the first are not kept.
 
 /// The front-most primitive at every sample of a view.
 struct VisiblePixels {
-  static constexpr int run = 16;  ///< pixels of a row, from a multiple of as many on, that share a number of `mixed`
+  static constexpr int run = 16;  ///< pixels of a row that share one entry of `mixed`, from a multiple of 16 on
 
-  View view;      ///< of all samples
-  Visible first;  ///< of sample 0, as planes of one sample
-  /// [y][x / run]: bit x % run is set where the samples of a pixel see different primitives.
+  View view;      ///< with all samples
+  Visible first;  ///< sample 0, as a Visible of one sample
+  /// [y][x / run]: bit x % run is set if the samples of the pixel see different primitives.
   Buffer<std::uint16_t> mixed;
-  /// [y][x / run]: where in `others` the first mixed pixel of the run is; undefined without one.
+  /// [y][x / run]: index in `others` of the first mixed pixel of the run; undefined if the run has none.
   Buffer<std::uint32_t> places;
-  /// Ids of samples 1 and up of one mixed pixel after another; the first `other_count` are used.
+  /// Ids of samples 1 and up, one mixed pixel after another; the first `other_count` are used.
   Buffer<PrimitiveId> others;
   std::size_t other_count = 0;
 
   [[nodiscard]] std::size_t runs_across() const { return std::size_t((view.width + run - 1) / run); }
 };
 
-/// The same of planes: runs follow each other as pixels do. O(samples).
+/// The pixels of a Visible; runs follow one another in the order of pixels. O(samples).
 [[nodiscard]] VisiblePixels pixels_of(const Visible& visible);
 
 }  // namespace frontmost

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A binary tree of planes as a lesson has it: each node is a triangle whose plane parts the others, and cuts what
-// reaches across it. The library's own (PaintMethod::bsp) makes another choice of planes, and the same picture.
+// A lesson's tree of planes (BSP): each node is a triangle whose plane separates the others and cuts those that cross
+// it. The library's own (PaintMethod::bsp) chooses other planes, and gives the same picture.
 #include <frontmost/painter.h>
 #include <frontmost/zbuffer.h>
 
@@ -17,20 +17,20 @@ struct BspPlane {
   [[nodiscard]] double side(const glm::dvec3& point) const { return glm::dot(normal, point) - offset; }
 };
 
-/// A triangle, or a convex piece of one, in the world. A side goes from its corner to the next.
+/// A triangle, or a convex piece of one, in world space. An edge goes from its corner to the next.
 struct BspPiece {
   struct Corner {
     glm::dvec3 at{0};
-    bool is_cut = false;  ///< the side is none of the triangle's
+    bool is_cut = false;  ///< the edge comes from a cut
   };
   PrimitiveId id = no_primitive;
-  BspPlane plane;  ///< the triangle's: corners of a piece may lie on one line, or nearly so
+  BspPlane plane;  ///< the triangle's plane: corners of a piece may be collinear, or nearly so
   std::vector<Corner> corners;
 };
 
 struct BspNode {
   BspPlane plane;
-  std::vector<BspPiece> pieces;  ///< in the plane; that of the lowest id comes last
+  std::vector<BspPiece> pieces;  ///< pieces in the plane; the one with the lowest id is last
   int parent = -1, before = -1, behind = -1;
   int level = 0;
 };
@@ -45,7 +45,7 @@ class BspTree {
       for (const glm::vec3& corner : corners) piece.corners.push_back({glm::dvec3(corner), false});
       const glm::dvec3 a(corners[0]), b(corners[1]), c(corners[2]), normal = glm::cross(b - a, c - a);
       const double length = glm::length(normal);
-      // What has no width is not seen, and has no plane: all others would seem to lie in it.
+      // Triangles without width are invisible and have no plane; all others would seem to lie in it.
       if (length <= least_ * std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)})) continue;
       piece.plane = {normal / length, glm::dot(normal, a) / length};
       pieces.push_back(std::move(piece));
@@ -55,7 +55,7 @@ class BspTree {
 
   [[nodiscard]] const std::vector<BspNode>& nodes() const { return nodes_; }
 
-  /// Nodes from back to front.
+  /// Appends the nodes from back to front.
   void walk(const glm::dvec3& eye, int number, std::vector<int>& order) const {
     if (number < 0) return;
     const BspNode& node = nodes_[std::size_t(number)];
@@ -66,7 +66,7 @@ class BspTree {
   }
 
  private:
-  /// Whether corners lie before a plane, and behind it.
+  /// Whether corners lie before a plane, and whether some lie behind it.
   [[nodiscard]] std::pair<bool, bool> sides_of(const BspPlane& plane, const BspPiece& piece) const {
     bool before = false, behind = false;
     for (const BspPiece::Corner& corner : piece.corners) {
@@ -76,7 +76,7 @@ class BspTree {
     return {before, behind};
   }
 
-  /// What of a piece lies on the side where `sign` times the distance is positive.
+  /// The part of a piece on the side where `sign` times the distance is positive.
   static BspPiece half_of(const BspPiece& piece, const BspPlane& plane, double sign) {
     BspPiece half{piece.id, piece.plane, {}};
     for (std::size_t i = 0; i < piece.corners.size(); ++i) {
@@ -91,7 +91,7 @@ class BspTree {
     return half;
   }
 
-  /// The piece whose plane cuts the fewest others.
+  /// The index of the piece whose plane cuts the fewest others.
   [[nodiscard]] std::size_t choose(const std::vector<BspPiece>& pieces) const {
     std::size_t best = 0, fewest = pieces.size();
     for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -143,7 +143,7 @@ void add_polygon(PaintOrder& order, const BspPiece& piece) {
     const glm::dvec3 &a = corners[i].at, &b = corners[(i + 1) % corners.size()].at;
     twice += a.x * b.y - a.y * b.x;
   }
-  if (twice > 0) {  // clockwise, as y goes down: sides then go to what was the corner before
+  if (twice > 0) {  // clockwise, as y points down; reversed, edges start at their other corner
     std::reverse(corners.begin(), corners.end());
     const bool first = corners.front().is_cut;
     for (std::size_t i = 0; i + 1 < corners.size(); ++i) corners[i].is_cut = corners[i + 1].is_cut;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clipping: a triangle against the planes of the viewing volume, one after the other, before anything is divided by w.
+// Clipping: a triangle is cut by the planes of the viewing volume, one after the other, before the division by w.
 #include <frontmost/report.h>
 #include <frontmost/zbuffer.h>
 
@@ -9,18 +9,18 @@
 namespace frontmost::web {
 namespace {
 
-/// A corner in the world and in clip space.
+/// A corner in world space and in clip space.
 struct ClipCorner {
   glm::dvec3 world{0};
   glm::dvec4 clip{0};
-  bool is_new = false;  ///< a plane made it
+  bool is_new = false;  ///< the corner comes from a cut
 };
 
-/// Each is positive inside: near, far, left, right, bottom, top.
+/// Clip planes, positive inside: near, far, left, right, bottom, top.
 constexpr std::array<std::array<double, 4>, 6> kPlanes = {
     {{0, 0, 1, 1}, {0, 0, -1, 1}, {1, 0, 0, 1}, {-1, 0, 0, 1}, {0, 1, 0, 1}, {0, -1, 0, 1}}};
 
-/// (I. Sutherland, G. Hodgman. Reentrant Polygon Clipping. 1974.)
+/// Clips a polygon by a plane (I. Sutherland, G. Hodgman. Reentrant Polygon Clipping. 1974.)
 std::vector<ClipCorner> clip(const std::vector<ClipCorner>& polygon, const std::array<double, 4>& plane) {
   const glm::dvec4 normal(plane[0], plane[1], plane[2], plane[3]);
   std::vector<ClipCorner> kept;
@@ -36,7 +36,7 @@ std::vector<ClipCorner> clip(const std::vector<ClipCorner>& polygon, const std::
   return kept;
 }
 
-/// After the division, in pixels; also where w is negative, which turns things around.
+/// The position after the division, in pixels. Negative w is allowed and mirrors the position.
 glm::dvec2 divided(const View& view, const glm::dvec4& clip) {
   return {(clip.x / clip.w + 1) / 2 * view.width, (1 - clip.y / clip.w) / 2 * view.height};
 }

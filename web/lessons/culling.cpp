@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why anything is hidden: triangles that turn away, lie outside of the view, or behind others.
+// Reasons why triangles are hidden: they face away, lie outside of the view, or behind others.
 #include <frontmost/report.h>
 #include <frontmost/zbuffer.h>
 
@@ -9,7 +9,7 @@ namespace frontmost::web {
 namespace {
 
 struct Facing {
-  double cosine = 0;  ///< of the angle between the normal and the way to the eye
+  double cosine = 0;  ///< of the angle between the normal and the direction to the eye
   glm::dvec3 middle{0}, normal{0};
 };
 
@@ -26,7 +26,7 @@ Facing facing_of(const Surfaces& surfaces, const View& view, PrimitiveId id) {
   return facing;
 }
 
-/// At how many pixels another triangle is seen.
+/// The number of pixels that show another triangle.
 std::size_t count_changes(const Visible& a, const Visible& b) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < a.primitives.size(); ++i) count += a.primitives[i] != b.primitives[i];
@@ -41,7 +41,7 @@ PlainJson places_json(const TrianglePlaces& places, std::size_t hidden) {
           {"seen", places.in_view - hidden}};
 }
 
-/// Where the triangles are of which no sample is seen, each by the first reason that holds.
+/// The centres of triangles without any visible sample, grouped by the first reason that applies.
 PlainJson reasons(const Surfaces& surfaces, View view) {
   view.culling = Culling::back;
   const Visible visible = zbuffer(surfaces, view);

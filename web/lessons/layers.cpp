@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The A-buffer's lesson: the fragments of a pixel with their masks, and all of them composited in true order beside the
-// order of the file.
+// The lesson on the A-buffer: the fragments of a pixel with their masks, composited by depth and in the file's order.
 #include <frontmost/abuffer.h>
 
 #include <algorithm>
@@ -18,7 +17,8 @@ int count_bits(std::uint64_t mask) {
   return count;
 }
 
-/// Nearest first: each hides its share of what is left. Colours are those of triangles, straight.
+/// Composites fragments, nearest first: each hides its share of the rest. Colours are those of triangles, with straight
+/// alpha.
 void composite(std::span<const Fragment> fragments, double opacity, const std::vector<std::uint8_t>& palette,
                std::uint8_t* rgba) {
   double left = 1, sum[3] = {};
@@ -32,7 +32,7 @@ void composite(std::span<const Fragment> fragments, double opacity, const std::v
   rgba[3] = std::uint8_t((1 - left) * 255 + 0.5);
 }
 
-/// The colour that each triangle has in other lessons, too.
+/// The colours that triangles have in other lessons, too.
 std::vector<std::uint8_t> palette_of(std::uint32_t triangles) {
   Visible each;
   each.primitives = Buffer<PrimitiveId>(triangles);
@@ -69,7 +69,7 @@ PlainJson layers_lesson(const PlainJson& question) {
   for (std::size_t i = 0; i < view.pixel_count(); ++i) {
     const auto list = lists.at(int(i % std::size_t(view.width)), int(i / std::size_t(view.width)));
     composite(list, opacity, palette, &sorted[4 * i]);
-    // What is drawn last lies on top, as without a depth buffer.
+    // Triangles drawn later lie on top, as without a depth buffer.
     by_file.assign(list.begin(), list.end());
     std::sort(by_file.begin(), by_file.end(),
               [](const Fragment& a, const Fragment& b) { return a.primitive > b.primitive; });

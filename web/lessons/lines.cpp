@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hidden lines: which edges are drawn and why, and where each of them goes out of sight: behind one surface, or two.
+// Hidden lines: which edges are drawn and why, and where each edge is hidden, by one surface or by two.
 #include <frontmost/lines.h>
 #include <frontmost/zbuffer.h>
 
@@ -10,13 +10,13 @@
 namespace frontmost::web {
 namespace {
 
-/// Shares of an edge that one triangle hides.
+/// The part of an edge that one triangle hides.
 struct HiddenSpan {
   PrimitiveId id = no_primitive;
   double begin = 0, end = 1;
 };
 
-/// Keeps what of an interval has a positive value, which changes evenly from one end of the edge to the other.
+/// Restricts an interval to the part where a value is positive. The value is linear between the ends of the edge.
 void keep_positive(HiddenSpan& interval, double at_from, double at_to) {
   if (at_from <= 0 && at_to <= 0) {
     interval.end = interval.begin;
@@ -27,16 +27,17 @@ void keep_positive(HiddenSpan& interval, double at_from, double at_to) {
   if (at_to <= 0) interval.end = std::min(interval.end, border);
 }
 
-/// What lies behind a triangle is a pyramid without its top: three planes through the eye, and that of the triangle.
+/// The part of an edge behind a triangle. The space behind it is bounded by three planes through the eye and the
+/// triangle's plane.
 HiddenSpan hidden_interval(const glm::dvec3& eye, const std::array<glm::vec3, 3>& corners, const DrawnEdge& edge) {
   HiddenSpan interval;
   const std::array<glm::dvec3, 3> p{glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])};
-  // The side of a plane on which a point lies, or the other one.
+  // Keeps the side of a plane on which a point lies, or the other side.
   const auto keep = [&](const glm::dvec3& on_plane, const glm::dvec3& normal, const glm::dvec3& point, bool same_side) {
     const double side = glm::dot(normal, point - on_plane), sign = (side > 0) == same_side ? 1 : -1;
     const double from = glm::dot(normal, edge.from - on_plane) * sign;
     const double to = glm::dot(normal, edge.to - on_plane) * sign;
-    // An edge in a plane, as of the triangles beside it, is not beyond it, whatever rounding says.
+    // An edge in the plane, such as one of a neighbouring triangle, does not count as behind it, in spite of rounding.
     const double least = 1e-6 * std::abs(side);
     keep_positive(interval, std::abs(from) < least ? 0 : from, std::abs(to) < least ? 0 : to);
   };

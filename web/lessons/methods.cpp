@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All methods on one view: how long each takes here, how much its answer holds, and at how many pixels it differs from
-// the z-buffer's.
+// All methods on one view: time, size of the answer, and number of pixels that differ from the z-buffer's.
 #include <frontmost/abuffer.h>
 #include <frontmost/lines.h>
 #include <frontmost/occlusion.h>
@@ -17,7 +16,7 @@
 namespace frontmost::web {
 namespace {
 
-/// The least of three runs, in milliseconds.
+/// The shortest time of three runs, in milliseconds.
 template <class Run>
 double time_of(const Run& run) {
   double least = std::numeric_limits<double>::infinity();
@@ -50,7 +49,7 @@ std::vector<PrimitiveId> kept_by(const Occlusion& occlusion, std::span<const Obj
   return kept;
 }
 
-/// Draws without what is culled, and gives the triangles their numbers back.
+/// Draws the kept triangles and restores their original numbers.
 Visible drawn_without_rest(const Surfaces& surfaces, const View& view, std::span<const PrimitiveId> kept) {
   const Scene scene = keep_faces(surfaces.scene(), kept);
   Visible visible = zbuffer(Surfaces(scene), view);
@@ -59,7 +58,7 @@ Visible drawn_without_rest(const Surfaces& surfaces, const View& view, std::span
   return visible;
 }
 
-/// Pieces of at most 128 triangles that are proved hidden, or lie outside.
+/// Clusters of at most 128 triangles that are proved hidden or outside.
 PlainJson occlusion_json(const LessonScene& stage, const View& view, const Visible& right) {
   std::optional<Occlusion> occlusion;
   PlainJson answer;
@@ -74,7 +73,8 @@ PlainJson occlusion_json(const LessonScene& stage, const View& view, const Visib
 
 }  // namespace
 
-/// {"scene", "camera" or size, "method"}: one at a time, so that the page can show each when it is there.
+/// Runs one method: {"scene", "camera" or size, "method"}. The page asks for each separately and can show each result
+/// at once.
 PlainJson methods_lesson(const PlainJson& question) {
   const LessonScene& stage = lesson_scene(question);
   const View view = lesson_view(stage, question);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tests of Newell, Newell and Sancha on one pair of triangles after the other, in their order, until one decides.
+// The tests of Newell, Newell and Sancha for each pair of triangles, in their order, until one decides.
 #include <frontmost/painter.h>
 #include <frontmost/zbuffer.h>
 
@@ -11,14 +11,14 @@
 namespace frontmost::web {
 namespace {
 
-/// A triangle as the eye has it.
+/// A triangle in eye coordinates, with its screen positions.
 struct NewellTriangle {
   PrimitiveId id = no_primitive;
   std::array<glm::dvec3, 3> world{};
   std::array<glm::dvec2, 3> screen{};
   double near = 0, far = 0;
   glm::dvec2 low{0}, high{0};
-  glm::dvec3 normal{0};  ///< towards the eye; 0 where it is seen from its edge
+  glm::dvec3 normal{0};  ///< towards the eye; 0 if seen edge-on
 
   [[nodiscard]] double side(const glm::dvec3& point) const { return glm::dot(normal, point - world[0]); }
 };
@@ -42,7 +42,7 @@ NewellTriangle seen_triangle(const Surfaces& surfaces, const View& view, Primiti
   return t;
 }
 
-/// Distances that rounding leaves of corners in a plane.
+/// Distance that rounding leaves for corners in a plane.
 constexpr double kNothing = 1e-6;
 
 bool is_behind(const NewellTriangle& p, const NewellTriangle& plane) {
@@ -52,7 +52,7 @@ bool is_before(const NewellTriangle& p, const NewellTriangle& plane) {
   return std::all_of(p.world.begin(), p.world.end(), [&](const glm::dvec3& at) { return plane.side(at) >= -kNothing; });
 }
 
-/// Whether a side of either has the other one beyond it.
+/// Whether an edge of either triangle has the other one on its outer side.
 bool are_apart(const NewellTriangle& p, const NewellTriangle& q) {
   for (const auto& [a, b] : {std::pair(&p, &q), std::pair(&q, &p)})
     for (std::size_t i = 0; i < 3; ++i) {
@@ -68,11 +68,11 @@ bool are_apart(const NewellTriangle& p, const NewellTriangle& q) {
 }
 
 struct NewellVerdict {
-  std::vector<bool> tests;  ///< of the five, and of the two with the roles exchanged; the last one decided if it holds
+  std::vector<bool> tests;  ///< the five tests, then two with exchanged roles; if the last one holds, it decided
   const char* first = "cut";
 };
 
-/// May P, which reaches farther away, be painted first?
+/// Whether P, which reaches farther away, may be painted first.
 NewellVerdict ask_pair(const NewellTriangle& p, const NewellTriangle& q) {
   NewellVerdict verdict;
   const auto holds = [&](bool test) {
@@ -97,7 +97,7 @@ PlainJson triangle_json(const NewellTriangle& t, const PlainJson& position) {
           {"position", position}};
 }
 
-/// Where the library paints each triangle; null where it cuts it.
+/// The library's painting position of each triangle; null if it cuts the triangle.
 std::vector<PlainJson> positions_of(const Surfaces& surfaces, const View& view) {
   const PaintOrder order = painter(surfaces, view);
   std::vector<PlainJson> positions(surfaces.primitive_count());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Occlusion culling: objects from the eye outwards, the cells that those so far cover, and what they prove hidden.
+// Occlusion culling: objects from the eye outwards, the cells covered so far, and the objects proved hidden.
 #include <frontmost/occlusion.h>
 #include <frontmost/zbuffer.h>
 
@@ -17,14 +17,15 @@ const char* name_of(ObjectSight sight) {
   return names[std::size_t(sight)];
 }
 
-/// What the sweep visits: what is culled together, and its box.
+/// A unit of culling that the sweep visits, with its box.
 struct SweptObject {
-  std::size_t number = 0;  ///< in the Occlusion
+  std::size_t number = 0;  ///< number in the Occlusion
   Box box;
-  double nearest = std::numeric_limits<double>::infinity();  ///< how far before the eye its nearest corner is
+  double nearest = std::numeric_limits<double>::infinity();  ///< distance of its nearest corner before the eye
 };
 
-/// Objects of the scene where there are some; else what hangs together; else clusters of neighbouring triangles.
+/// The unit of culling: objects of the scene if there are enough, else connected parts, else clusters of neighbouring
+/// triangles.
 ObjectUnit unit_of(const Surfaces& surfaces) {
   constexpr std::size_t some = 8;
   for (const ObjectUnit unit : {ObjectUnit::instances, ObjectUnit::parts})
@@ -49,7 +50,7 @@ std::vector<SweptObject> outwards(const Surfaces& surfaces, const Occlusion& occ
   return objects;
 }
 
-/// The scene with the triangles of these objects alone.
+/// A scene with only the triangles of these objects.
 Scene scene_of(const Scene& scene, const Occlusion& occlusion, std::span<const SweptObject> objects) {
   std::map<std::uint32_t, std::vector<std::uint32_t>> kept;
   for (const SweptObject& object : objects) {
@@ -73,7 +74,7 @@ Scene scene_of(const Scene& scene, const Occlusion& occlusion, std::span<const S
   return some;
 }
 
-/// For every cell of a picture whether a scene hides all that lies behind it there: asked of a point beyond everything.
+/// For each cell of a picture, whether the scene hides everything behind it. The test point lies beyond all surfaces.
 std::string covered_cells(const Scene& scene, ObjectUnit unit, const View& view, int cell) {
   const int across = (view.width + cell - 1) / cell, down = (view.height + cell - 1) / cell;
   std::string cells(std::size_t(across) * std::size_t(down), '0');
@@ -93,7 +94,7 @@ std::string covered_cells(const Scene& scene, ObjectUnit unit, const View& view,
   return cells;
 }
 
-/// Of every object whether a pixel shows it.
+/// For each object, whether a pixel shows it.
 std::vector<bool> seen_objects(const Surfaces& surfaces, const Occlusion& occlusion, const Visible& visible) {
   std::vector<std::size_t> object_of(surfaces.primitive_count());
   for (std::size_t number = 0; number < occlusion.object_count(); ++number)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The painter's lesson: polygons in the order in which a method paints them, and the pixels that it gets wrong.
+// The painter's lesson: polygons in the painting order of a method, and the wrong pixels.
 #include <frontmost/painter.h>
 #include <frontmost/zbuffer.h>
 

@@ -7,7 +7,7 @@
 namespace frontmost::web {
 namespace {
 
-/// (T. Möller, B. Trumbore. Fast, Minimum Storage Ray/Triangle Intersection. 1997.)
+/// The hit of a line with a triangle (T. Möller, B. Trumbore. Fast, Minimum Storage Ray/Triangle Intersection. 1997.)
 std::optional<PlainHit> meet(const SightLine& line, const std::array<glm::vec3, 3>& corners) {
   const glm::dvec3 a(corners[0]), ab = glm::dvec3(corners[1]) - a, ac = glm::dvec3(corners[2]) - a;
   const glm::dvec3 p = glm::cross(line.direction, ac);
@@ -20,7 +20,7 @@ std::optional<PlainHit> meet(const SightLine& line, const std::array<glm::vec3, 
   return PlainHit{no_primitive, t, {1 - u - v, u, v}};
 }
 
-/// Where a line enters a box; none where it passes by.
+/// The parameter at which a line enters a box; empty if it misses the box.
 std::optional<double> entry(const SightLine& line, const Box& box) {
   double in = 0, out = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -101,12 +101,12 @@ void PlainTree::ask_triangles(Walk& walk, const PlainNode& node) const {
   }
 }
 
-/// A box that the line enters.
+/// Visits a box that the line enters.
 void PlainTree::visit(Walk& walk, int number) const {
   const PlainNode& node = nodes_[std::size_t(number)];
   if (node.is_leaf()) return ask_triangles(walk, node);
   if (node.level == walk.level) {
-    // All triangles are asked. The rest of the tree says quicker what comes of it, and its work is not counted.
+    // All triangles are tested. The rest of the tree finds the answer faster; its work is not counted.
     PlainWork uncounted;
     Walk below{walk.line, std::numeric_limits<int>::max(), uncounted, nullptr, walk.nearest};
     for (const int child : node.children) visit(below, child);
@@ -125,7 +125,7 @@ void PlainTree::visit(Walk& walk, int number) const {
   const std::size_t nearer = entries[1] && (!entries[0] || *entries[1] < *entries[0]) ? 1 : 0;
   for (const std::size_t i : {nearer, 1 - nearer}) {
     if (!entries[i]) continue;
-    // What the nearer box held may lie before all of the other one.
+    // The hit in the nearer box may lie before all of the other box.
     if (*entries[i] > walk.nearest.t)
       walk.note({true, std::uint32_t(node.children[i]), PlainStep::Verdict::farther, *entries[i]});
     else

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hierarchy of boxes as a lesson has it: two children a node, single numbers, every step told. The library's RayIndex
-// has sixteen of everything, and answers the same.
+// A lesson's hierarchy of boxes: two children a node, scalar arithmetic, all steps recorded. The library's RayIndex has
+// sixteen of everything, and gives the same answers.
 #pragma once
 
 #include <frontmost/raycast.h>
@@ -13,7 +13,7 @@
 
 namespace frontmost::web {
 
-/// `count` triangles of PlainTree::order from `first` on; without children it is a leaf.
+/// A node with `count` triangles of PlainTree::order, from `first` on. A node without children is a leaf.
 struct PlainNode {
   Box box;
   std::uint32_t first = 0, count = 0;
@@ -23,23 +23,23 @@ struct PlainNode {
   [[nodiscard]] bool is_leaf() const { return children[0] < 0; }
 };
 
-/// Where a line meets a triangle: at origin + t * direction, which is the mean of its corners by weights.
+/// The hit of a line with a triangle, at origin + t * direction. `weights` are barycentric coordinates of the hit.
 struct PlainHit {
   PrimitiveId id = no_primitive;
   double t = std::numeric_limits<double>::infinity();
   glm::dvec3 weights{0};
 };
 
-/// What a walk asked, and what came of it.
+/// A test of a walk, with its result.
 struct PlainStep {
   enum class Verdict : std::uint8_t { met, missed, farther };
   bool is_box = true;
-  std::uint32_t number = 0;  ///< of a node, or of a triangle
+  std::uint32_t number = 0;  ///< number of the node or triangle
   Verdict verdict = Verdict::missed;
   double t = 0;
 };
 
-/// What a walk cost.
+/// The cost of a walk.
 struct PlainWork {
   std::uint64_t boxes = 0, triangles = 0;
 };
@@ -52,7 +52,8 @@ class PlainTree {
   [[nodiscard]] const std::vector<PlainNode>& nodes() const { return nodes_; }
   [[nodiscard]] int depth() const { return depth_; }
 
-  /// The nearest triangle along a line, the nearer box first. Nodes of `level` count as leaves. `steps` may be null.
+  /// The nearest triangle along a line, visiting the nearer box first. Nodes of `level` count as leaves. `steps` may be
+  /// null.
   [[nodiscard]] PlainHit nearest(const SightLine& line, int level, PlainWork& work,
                                  std::vector<PlainStep>* steps = nullptr) const;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Projection and depth: how depth runs along a segment on the screen, how fine formats tell depths apart, and what a
-// picture shows where they do not.
+// Projection and depth: depth along a segment on the screen, resolution of depth formats, and pictures beyond that
+// resolution.
 #include <frontmost/pictures.h>
 #include <frontmost/precision.h>
 #include <frontmost/zbuffer.h>
@@ -34,7 +34,7 @@ PlainJson segment(const PlainJson& question) {
   const Visible visible = zbuffer(surfaces, view);
   const Buffer<float> found = depths_of(visible);
   PlainJson depths = PlainJson::array(), linear = PlainJson::array(), screen = PlainJson::array();
-  // Where the ends are on the screen, at unit distance.
+  // Positions of the ends on the screen, at unit distance.
   const double from = double(a.x) / a.y, to = double(b.x) / b.y;
   for (int x = 0; x < width; ++x) {
     const double place = -half + 2 * half * (x + 0.5) / width, t = (place - from) / (to - from);
@@ -72,7 +72,7 @@ PlainJson gaps(const PlainJson& question) {
           {"share_of_first_tenth", share_of_values(d16, near + (far - near) / 10)}};
 }
 
-/// A road that runs to the horizon, and stripes that lie a gap above it.
+/// A road to the horizon, with stripes at a gap above it.
 PlainJson fight(const PlainJson& question) {
   static std::vector<std::uint8_t> rgba;
   const float gap = question.value("gap", 0.01f);
@@ -113,7 +113,7 @@ PlainJson fight(const PlainJson& question) {
           {"covered", fights.covered}};
 }
 
-/// A viewing volume that is pulled about: what it shows, and the volume with the scene from beside.
+/// A viewing volume that the user changes: its picture, and the volume with the scene from the side.
 PlainJson frustum(const PlainJson& question) {
   static Bitmap picture, aside;
   const LessonScene& stage = lesson_scene(question);

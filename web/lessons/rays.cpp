@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray casting: one ray through boxes and triangles, the ray from there to the light, and what every level of a tree of
-// boxes saves.
+// Ray casting: one ray through boxes and triangles, the ray from its hit to the light, and the savings of each level of
+// a tree of boxes.
 #include <frontmost/raycast.h>
 #include <frontmost/zbuffer.h>
 
@@ -35,7 +35,7 @@ PlainJson step_json(const Surfaces& surfaces, const PlainTree& tree, const View&
   return json;
 }
 
-/// Whether the light reaches where a ray ends, and what stands in its way.
+/// Whether the light reaches the end of a ray, and the obstacle if not.
 PlainJson light_json(const Surfaces& surfaces, const RayIndex& index, const View& beside, const SightLine& sight,
                      const PlainHit& hit) {
   const TrianglePoint point{hit.id, surfaces.corners(hit.id), glm::vec3(hit.weights)};
@@ -51,7 +51,7 @@ PlainJson light_json(const Surfaces& surfaces, const RayIndex& index, const View
   return json;
 }
 
-/// One ray of a picture, step by step, as it is seen from beside.
+/// One ray of a picture, step by step, seen from the side.
 PlainJson walk(const PlainJson& question) {
   static Bitmap picture, aside;
   const LessonScene& stage = lesson_scene(question);
@@ -90,7 +90,7 @@ PlainJson walk(const PlainJson& question) {
   return answer;
 }
 
-/// From dark to light, on a logarithmic scale.
+/// A colour from dark to light for a share of work on a logarithmic scale.
 void color_work(double share, std::uint8_t* rgba) {
   constexpr double stops[4][3] = {{24, 30, 60}, {47, 111, 159}, {240, 160, 106}, {255, 246, 220}};
   const double at = std::clamp(share, 0.0, 1.0) * 3;
@@ -100,7 +100,7 @@ void color_work(double share, std::uint8_t* rgba) {
   rgba[3] = 255;
 }
 
-/// All rays of a picture, where the tree is opened down to a level: how much each asks.
+/// The cost of all rays of a picture, for a tree that is opened down to a level.
 PlainJson levels(const PlainJson& question) {
   static Bitmap picture;
   static std::vector<std::uint8_t> heat;

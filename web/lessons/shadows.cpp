@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shadows: what a light sees, kept as a map of depths with texels and a bias, beside exact rays to the light.
+// Shadows: a map of depths seen from the light, with texels and a bias, compared with exact rays to the light.
 #include <frontmost/raycast.h>
 #include <frontmost/zbuffer.h>
 
@@ -11,7 +11,7 @@
 namespace frontmost::web {
 namespace {
 
-/// What the light sees from far away.
+/// The view from a distant light.
 struct LightMap {
   View view;
   Visible visible;
@@ -28,17 +28,17 @@ struct LightMap {
   }
 };
 
-/// A point that the eye sees, as the map and a ray judge it.
+/// A visible point, judged by the map and by a ray.
 struct Judged {
   bool faces_light = false;
   bool lit_by_map = false, lit_by_ray = false;
-  double cosine = 0;    ///< of normal and light
+  double cosine = 0;    ///< of the angle between normal and light
   double distance = 0;  ///< from the light's plane
-  float stored = 0;     ///< what the map holds there
+  float stored = 0;     ///< depth in the map
   glm::ivec2 texel{0};
 };
 
-/// Weights of a triangle's corners of which a point in its plane is the mean.
+/// Barycentric coordinates of a point in a triangle's plane.
 glm::vec3 weights_of(const std::array<glm::vec3, 3>& corners, const glm::dvec3& point) {
   const glm::dvec3 a(corners[0]), b(corners[1]), c(corners[2]), normal = glm::cross(b - a, c - a);
   const double u = glm::dot(glm::cross(c - b, point - b), normal);
@@ -54,7 +54,7 @@ class ShadowJudge {
 
   [[nodiscard]] const LightMap& map() const { return map_; }
 
-  /// Every pixel at which something is seen; the others stay as they are made.
+  /// Judges each pixel that sees something; others keep default values.
   [[nodiscard]] std::vector<Judged> judge(const Visible& visible) const {
     const Buffer<float> depths = depths_of(visible);
     std::vector<Judged> all(visible.primitives.size());
@@ -107,7 +107,7 @@ void color(const Judged& judged, bool is_lit, std::uint8_t* rgba) {
   rgba[3] = 255;
 }
 
-/// Near is bright.
+/// Greys of the map's depths; near is bright.
 std::vector<std::uint8_t> greys_of(const LightMap& map) {
   float low = std::numeric_limits<float>::infinity(), high = 0;
   for (const float depth : map.depths)

@@ -29,7 +29,7 @@ Mesh block(const char* name, const glm::vec3& low, const glm::vec3& high) {
   return mesh;
 }
 
-/// A U, drawn out: one body that hides parts of itself.
+/// An extruded U: one body that hides parts of itself.
 Scene concave_scene() {
   constexpr std::array<std::array<float, 2>, 8> outline = {
       {{-1.5f, -1}, {1.5f, -1}, {1.5f, 1}, {0.8f, 1}, {0.8f, -0.4f}, {-0.8f, -0.4f}, {-0.8f, 1}, {-1.5f, 1}}};
@@ -62,7 +62,7 @@ Scene cube_scene() {
   return scene;
 }
 
-/// Blocks on a floor, which throw shadows on each other.
+/// Blocks on a floor that throw shadows on each other.
 Scene blocks_scene() {
   Scene scene;
   scene.name = "blocks";
@@ -88,10 +88,10 @@ Scene town_scene() {
   return scene;
 }
 
-/// Directions are told for scenes whose y is up.
+/// Rotates a direction that assumes y up to the scene's up axis.
 glm::dvec3 turned_up(const glm::dvec3& d, Axis up) { return up == Axis::z ? glm::dvec3(d.x, -d.z, d.y) : d; }
 
-/// The triangles of a scene that reach furthest towards where most figures begin to look from, in their order.
+/// The triangles of a scene that reach farthest towards the usual first viewpoint of figures, in their order.
 Scene foremost_of(const LessonScene& stage, std::size_t most) {
   const Surfaces& surfaces = stage.surfaces;
   const glm::dvec3 towards = turned_up({0.6, 0.45, 0.8}, stage.scene.up);
@@ -121,7 +121,7 @@ Scene foremost_of(const LessonScene& stage, std::size_t most) {
   return part;
 }
 
-/// A scene, and the part of it that was asked for last.
+/// A scene, and the part of it that was requested last.
 struct StagedScene {
   explicit StagedScene(Scene&& scene) : whole(std::move(scene)) {}
   LessonScene whole;
@@ -197,7 +197,7 @@ std::vector<std::uint8_t> triangle_colors(const Visible& visible) {
   for (std::size_t i = 0; i < visible.primitives.size(); ++i) {
     const PrimitiveId id = visible.primitives[i];
     if (id == no_primitive) continue;
-    // A turn of the palette is a shade darker than the one before.
+    // Each repetition of the palette is darker than the one before.
     const int shade = 256 - 28 * int(id / colors.size() % 4);
     for (int c = 0; c < 3; ++c)
       rgba[4 * i + std::size_t(c)] = std::uint8_t(colors[id % colors.size()][c] * shade / 256);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The z-buffer's lesson: a DepthBuffer after every triangle, and what each triangle brings to every sample.
+// The lesson on the z-buffer: a DepthBuffer after each triangle, and the effect of each triangle on each sample.
 #include <frontmost/zbuffer.h>
 
 #include "web/lessons/lessons.h"
@@ -7,8 +7,7 @@
 namespace frontmost::web {
 namespace {
 
-/// A parallel view of 8 x 8 pixels, one unit each, whose depths run from 0 to 255: with 8 bits they are stored as they
-/// are.
+/// A parallel view of 8 x 8 pixels of one unit, with depths from 0 to 255, which 8 bits store unchanged.
 View eight_by_eight() {
   View view;
   view.width = view.height = 8;
@@ -17,7 +16,7 @@ View eight_by_eight() {
   return view;
 }
 
-/// The two triangles of the classic example, at the depths asked for.
+/// The two triangles of the classic example, at the given depths.
 Scene table_scene(float first, float second) {
   Scene scene;
   Mesh mesh;
@@ -69,7 +68,7 @@ PlainJson table(const PlainJson& question) {
   return {{"clear", stored_depth(DepthFormat::d8, clear_of(state))}, {"triangles", std::move(triangles)}};
 }
 
-/// Of every triangle that covers a pixel: its depth, what was stored, and what came of it.
+/// For each triangle that covers a pixel: its depth, the stored depth, and the result of the comparison.
 PlainJson comparisons(const LessonScene& stage, const View& view, const DepthState& state, const PlainJson& question) {
   constexpr PrimitiveId most_triangles = 400;
   const int x = question["pixel"].at(0), y = question["pixel"].at(1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses, shares, masks and depths as BOP's tools read them: in millimetres, for the coordinates that files have.
+// Poses, shares, masks and depths as BOP's tools read them: in millimetres, in the coordinates of the model files.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -10,7 +10,7 @@
 namespace frontmost::datasets {
 namespace {
 
-constexpr double tolerance_mm = 15;  // of bop_toolkit's tests of visibility
+constexpr double tolerance_mm = 15;  // the tolerance of bop_toolkit's visibility tests
 
 double millimetres_per_unit(const Scene& scene) { return 1000 * scene.source.metres_per_unit.value_or(0.001); }
 
@@ -24,7 +24,7 @@ Json rows_json(const glm::dmat3& m) {
   return json;
 }
 
-/// Of points that are told from an origin, as `m` is, a matrix for those that are told from zero.
+/// Converts a matrix for points relative to `origin` into one for points relative to zero.
 glm::dmat4 from_zero(glm::dmat4 m, const glm::dvec3& origin) {
   m[3] = m * glm::dvec4(-origin, 1);
   return m;
@@ -44,7 +44,7 @@ Json camera_json(const DatasetView& view, double millimetres, double depth_scale
           {"cam_t_w2c", vector_json(glm::dvec3(pose[3]) * millimetres)}};
 }
 
-/// The category's number; objects without a category are counted on from the highest of these, by mesh.
+/// The category's number. Objects without a category are numbered after the highest category, by mesh.
 std::uint64_t object_number(const Scene& scene, const Instance& instance) {
   if (instance.category != no_index) return scene.categories[instance.category].number;
   std::uint64_t highest = 0;
@@ -52,7 +52,8 @@ std::uint64_t object_number(const Scene& scene, const Instance& instance) {
   return highest + instance.mesh + 1;
 }
 
-/// \throws Error unsupported where an object is stretched or mirrored: BOP's poses turn and move.
+/// \throws Error unsupported for an object that is stretched or mirrored: BOP's poses hold rotation and translation
+/// alone.
 Json pose_json(const DatasetView& view, std::uint32_t object, double millimetres) {
   const Scene& scene = view.surfaces.scene();
   const Instance& instance = scene.instances[object];
@@ -71,12 +72,13 @@ Json pose_json(const DatasetView& view, std::uint32_t object, double millimetres
           {"obj_id", object_number(scene, instance)}};
 }
 
-/// As bop_toolkit has it: from the first pixel to the last, which is one less than their number.
+/// A box as in bop_toolkit: its size is the distance from the first pixel to the last, one less than the number of
+/// pixels.
 Json bop_box(const PixelBox& box, bool is_seen) {
   return is_seen ? Json::array({box.x, box.y, box.width - 1, box.height - 1}) : Json::array({-1, -1, -1, -1});
 }
 
-/// What is marked visible becomes what lies at most 15 mm behind what is seen, along the ray.
+/// Marks as visible the pixels whose object lies at most 15 mm behind the seen surface, along the ray.
 void mark_within_tolerance(const DatasetView& view, ObjectInFrame& object, const Image& seen,
                            const Execution& execution) {
   const Scene& scene = view.surfaces.scene();
@@ -124,7 +126,7 @@ Json info_json(const ObjectAccount& account, const PixelMask& mask) {
           {"bbox_visib", bop_box(seen.box, seen.count > 0)}};
 }
 
-/// Millimetres that a step of the file stands for: the least power of ten, from 0.1 on, with which all depths fit.
+/// Millimetres for one step of the depth file: the least power of ten, from 0.1 on, with which all depths fit.
 double depth_scale_of(const Image& depths, double millimetres) {
   double farthest = 0, scale = 0.1;
   for (const float depth : depths.channels[0].floats())

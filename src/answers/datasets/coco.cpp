@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// COCO's annotations as text, a line for each: those of many views are long, and a tree of values is ten times as long.
+// COCO's annotations as text, one line each. Annotations of many views are long, and a JSON tree takes ten times as
+// much memory.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 

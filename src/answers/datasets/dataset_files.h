@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The three kinds of files that DatasetWriter fills, each an object at a time.
+// The three kinds of files that DatasetWriter fills, one object at a time.
 //
 //   DatasetWriter::add() --every object in the picture--> CocoFile       text, kept
 //                                                     --> BopFolder      masks and depths, staged; poses, kept
@@ -25,20 +25,19 @@ struct ObjectInFrame {
   PixelMask mask;
 };
 
-/// As large as the picture, white where a pixel is in the part and black elsewhere.
+/// A picture of the view's size, white in the pixels of the part and black elsewhere.
 [[nodiscard]] Image mask_image(const PixelMask& mask, MaskPart part, const View& view);
 
-/// A number as file names have it: "000042".
+/// A number in file names: "000042".
 [[nodiscard]] std::string six_digits(std::size_t number);
 
-/// What the names of numbered files are: 000001.png, 000001_000002.png, or 000002_visible.png and
-/// 000001_000002_amodal.png.
+/// Patterns of numbered file names: 000001.png; 000001_000002.png; 000002_visible.png or 000001_000002_amodal.png.
 enum class FileNames : std::uint8_t { one_number, two_numbers, parts_of_masks };
 
-/// A folder of files, all of which are there after finish(), or none.
+/// A folder of files. After finish() all of them are there; without it, none.
 class DatasetFolder {
  public:
-  /// A folder in it that holds numbered files; the name is "" for the folder itself.
+  /// A subfolder of numbered files; the name "" stands for the folder itself.
   struct Within {
     std::string name;
     FileNames files;
@@ -63,12 +62,12 @@ class DatasetFolder {
   std::vector<std::string> names_;
 };
 
-/// Annotations of what is seen: https://cocodataset.org/#format-data, and beside them what is hidden.
+/// COCO annotations of visible parts (https://cocodataset.org/#format-data), with fields for hidden parts.
 class CocoFile {
  public:
   explicit CocoFile(bool with_polygons) : with_polygons_(with_polygons) {}
 
-  /// `left_out`, by instance. \throws Error bad_argument where two categories have one number.
+  /// `left_out` is by instance. \throws Error bad_argument for two categories of one number.
   void begin_view(const DatasetView& view, const std::string& picture, const std::vector<bool>& left_out);
   void add(const DatasetView& view, const ObjectInFrame& object);
   [[nodiscard]] std::string text() const;
@@ -78,9 +77,9 @@ class CocoFile {
 
   bool with_polygons_;
   std::map<std::uint32_t, std::string> categories_;  ///< by number
-  std::map<std::string, std::uint32_t> names_;       ///< of objects without a category, with the numbers they got
+  std::map<std::string, std::uint32_t> names_;       ///< objects without a category, and their numbers
   std::uint32_t last_ = 0;                           ///< the highest number
-  std::vector<std::uint32_t> order_;                 ///< of the numbers, as they came
+  std::vector<std::uint32_t> order_;                 ///< the numbers in the order of their arrival
   std::size_t image_count_ = 0, annotation_count_ = 0;
   std::string images_, annotations_;
 };
@@ -106,14 +105,14 @@ class BopFolder {
  private:
   DatasetFolder folder_;
   BopVisible visible_;
-  std::size_t view_ = 0, object_ = 0;  ///< the number of the view, and of the object in it
-  double millimetres_ = 1;             ///< a unit of the scene
-  Image distances_;                    ///< along the rays, of the view
-  std::string poses_, infos_;          ///< of the view
+  std::size_t view_ = 0, object_ = 0;  ///< number of the view, and of the object within the view
+  double millimetres_ = 1;             ///< millimetres in a unit of the scene
+  Image distances_;                    ///< distances along the rays of the view
+  std::string poses_, infos_;          ///< JSON of the view
   std::string cameras_, all_poses_, all_infos_;
 };
 
-/// Masks as pictures, what of each object is visible and all of it that lies within the frame.
+/// Masks as pictures: the visible part of each object, and the whole object within the frame.
 ///
 ///    000003_visible.png  000003_amodal.png                    of object 3
 ///    000012_000003_visible.png  000012_000003_amodal.png      of object 3 in view 12, if views are numbered

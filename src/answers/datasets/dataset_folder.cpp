@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of a data set on their way: written into a hidden folder first, and moved when all of them are whole.
+// Files of a data set: they are written into a hidden folder first, and moved when all of them are complete.
 #include <algorithm>
 #include <filesystem>
 #include <set>
@@ -36,7 +36,7 @@ bool has_name(std::string_view name, FileNames names) {
          std::all_of(parts.begin(), parts.begin() + std::ptrdiff_t(numbers), is_six_digits);
 }
 
-/// Removes numbered files of an earlier data set: readers would take them for this one's.
+/// Removes numbered files of an earlier data set, which readers would take for files of this one.
 void remove_stale(const fs::path& folder, const std::vector<DatasetFolder::Within>& within,
                   const std::vector<std::string>& names) {
   std::set<fs::path> written;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every object's mask is made once, and goes to all files.
+// The mask of every object is made once and written to all files.
 #include <algorithm>
 #include <iterator>
 
@@ -12,8 +12,8 @@ using namespace datasets;
 
 namespace {
 
-/// Which objects of a scene have one of these names, or a category of one of these names; by instance.
-/// O(instances * names). \throws Error bad_argument for a name that no object and no category has.
+/// The objects of a scene with one of these names, or with a category of one of these names; by instance. O(instances *
+/// names). \throws Error bad_argument for a name that no object and no category has.
 std::vector<bool> named_objects(const Scene& scene, const std::vector<std::string>& names) {
   std::vector<bool> named(scene.instances.size());
   for (const std::string& name : names) {

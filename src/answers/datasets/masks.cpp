@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Masks as pictures.
+// Masks as pictures, and the folder of masks.
 #include <algorithm>
 
 #include "datasets/dataset_files.h"

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// First every sample is looked at alone: do ids differ, are keys right. Then every triangle of the scene is held
-// against the samples that differ, whatever the methods made of it, for a surface that rules an answer out.
+// Each sample is examined alone first: do the ids differ, are the keys right? Then every triangle of the scene,
+// whatever the methods made of it, is compared with the samples that differ, to find a surface that rules an answer
+// out.
 //
 //   samples   --ids differ--> Contest: two claims --every triangle over them--> is a claim impossible?
 //                                                                                    neither: edge or depth
 //                                                                                    one:     unexplained
 //
-// All triangles must be asked; so the samples are kept by cells of 16 x 16 pixels, in which a triangle finds those that
-// it may cover. The two triangles of a contest are asked first. A triangle that misses a cell, or is nowhere in it
-// nearer than the farthest of the claims that are left there, has nothing to say in it.
+// All triangles must be compared. Differing samples are therefore kept in cells of 16 x 16 pixels, in which a triangle
+// finds the samples that it may cover. The two triangles of a contest come first. A triangle is skipped in a cell if it
+// misses the cell, or is everywhere in it farther than the farthest remaining claim.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -27,14 +28,14 @@ namespace frontmost {
 namespace {
 
 constexpr std::size_t kRowGrain = 8, kTriangleGrain = 256, kContestGrain = 1024;
-// Samples that differ are found by cells of this many pixels squared.
+// Side of the cells of differing samples, in pixels.
 constexpr int kCell = 16;
 
 bool are_finite(const std::array<glm::vec3, 3>& corners) {
   return is_finite(corners[0]) && is_finite(corners[1]) && is_finite(corners[2]);
 }
 
-/// Everything that is asked about one view of one scene.
+/// The input of a comparison: one view of one scene.
 struct Question {
   const Surfaces& surfaces;
   const View& view;
@@ -47,7 +48,7 @@ struct Question {
     const std::size_t pixel = sample % view.pixel_count(), width = std::size_t(view.width);
     return SampleSquare(rays, int(pixel % width), int(pixel / width), offsets[sample / view.pixel_count()]);
   }
-  /// None for ids that no triangle has, and for triangles that are never seen.
+  /// The triangle of an id. None for invalid ids, and for triangles that are never seen.
   [[nodiscard]] std::optional<ViewedTriangle> triangle(PrimitiveId id) const {
     if (id >= surfaces.primitive_count()) return std::nullopt;
     const std::array<glm::vec3, 3> corners = surfaces.corners(id);
@@ -59,7 +60,7 @@ struct Question {
     const bool is_front = (triangle.facing() < 0) != surfaces.is_mirrored(surfaces.source(id).instance);
     return !facing.keeps(id, is_front);
   }
-  /// Whether a triangle with holes lets the ray of a sample pass: asked as the methods ask.
+  /// Whether the ray of a sample passes through a hole of a triangle, decided as the methods decide it.
   [[nodiscard]] bool is_hole(PrimitiveId id, std::size_t sample) const {
     const Cutouts* const cutouts = placed_scene(surfaces).cutouts.get();
     if (!cutouts || !cutouts->has(id)) return false;
@@ -67,22 +68,22 @@ struct Question {
     const glm::ivec2 at = glm::ivec2(pixel % width, pixel / width) * kSubPixels + offsets[sample / view.pixel_count()];
     return ScreenCutout((*cutouts)[id], screen_rays).is_hole(at.x, at.y);
   }
-  /// As a method sees it: one that is left out is not there, except where it is so thin that snapping may turn it; nor
-  /// is one that has a hole.
+  /// How the square meets a triangle as a method sees it. A culled triangle counts as absent, unless it is so thin that
+  /// snapping may turn it over. A triangle with a hole at the sample counts as absent, too.
   [[nodiscard]] LineMeeting meeting(const ViewedTriangle& triangle, PrimitiveId id, const SampleSquare& square,
                                     std::size_t sample) const {
     const LineMeeting meeting = triangle.meeting(square);
     if (meeting != LineMeeting::misses && is_hole(id, sample)) return LineMeeting::misses;
     return meeting == LineMeeting::contains && is_culled(triangle, id) ? LineMeeting::misses : meeting;
   }
-  /// A key as nearness.
+  /// Converts a key to nearness.
   [[nodiscard]] double nearness_of(float key) const {
     if (view.projection.orthographic) return double(key) * (rays.far() - rays.near()) - rays.far();
     return double(key) / rays.near();
   }
 };
 
-/// Whether keys are right, triangle by triangle: neighbours mostly show the same.
+/// Checks keys. Keeps the last triangle, since neighbouring samples mostly show the same one.
 class KeyCheck {
  public:
   explicit KeyCheck(const Question& question) : question_(question) {}
@@ -106,26 +107,26 @@ class KeyCheck {
   PrimitiveId id_ = no_primitive;
 };
 
-/// What one answer shows at a sample that differs.
+/// The claim of one answer at a sample that differs.
 struct Claim {
   PrimitiveId id;
-  std::optional<ViewedTriangle> triangle;  ///< none: nothing
+  std::optional<ViewedTriangle> triangle;  ///< none: nothing is shown
   LineMeeting meeting = LineMeeting::contains;
-  /// At most what is_surely_nearer() asks of a triangle that is to be nearer.
+  /// Lower bound of the nearness that is_surely_nearer() requires of a nearer triangle.
   double nearness = -std::numeric_limits<double>::infinity();
 };
 
-/// A sample where the answers differ. Only `impossible` changes, and only ever to true.
+/// A sample where the answers differ, with the claims of both.
 struct Contest {
   std::size_t sample;
   SampleSquare square;
   std::array<Claim, 2> claims;
 };
 
-/// For both claims of every contest, whether the scene rules them out.
+/// For both claims of every contest: true if the scene rules the claim out. Values only change from false to true.
 using Verdicts = std::vector<std::array<std::atomic<bool>, 2>>;
 
-/// The samples that differ, to be found by their place.
+/// The samples that differ, by their position.
 class ContestMap {
  public:
   ContestMap(const Question& question, const std::vector<Contest>& contests, const Verdicts& impossible)
@@ -147,7 +148,7 @@ class ContestMap {
     }
   }
 
-  /// Visits the contests in the cells that a rectangle of the screen, in pixels, touches, but for those in which the
+  /// Visits the contests in the cells that a rectangle of the screen, in pixels, touches. Skips cells where the
   /// triangle is behind all claims.
   template <class Visit>
   void in_rect(const glm::dvec2& low, const glm::dvec2& high, const ViewedTriangle& triangle,
@@ -177,10 +178,10 @@ class ContestMap {
   const View& view_;
   int columns_, rows_;
   std::vector<std::size_t> starts_, numbers_;
-  std::vector<double> farthest_;  ///< by cell: the least nearness of a claim that is left
+  std::vector<double> farthest_;  ///< by cell: least nearness of the remaining claims
 };
 
-/// A rectangle of the screen, in pixels, that holds all of a triangle that may be seen.
+/// A rectangle of the screen, in pixels, around the visible part of a triangle.
 struct ScreenRect {
   glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
 };
@@ -194,14 +195,14 @@ class ScreenRects {
     std::array<glm::dvec3, 3> c;
     for (std::size_t i = 0; i < 3; ++i) c[i] = glm::dvec3(eye_from_world_ * glm::dvec4(corners[i], 1));
     ScreenRect rect;
-    const double near = -0.99 * clip_.near;  // generous: keys decide about the plane itself
+    const double near = -0.99 * clip_.near;  // with a margin: keys decide at the plane itself
     for (std::size_t i = 0; i < 3; ++i) {
       const glm::dvec3 &a = c[i], &b = c[(i + 1) % 3];
       if (view_.projection.orthographic || a.z <= near) include(a, rect);
       if (!view_.projection.orthographic && (a.z <= near) != (b.z <= near))
         include(a + (near - a.z) / (b.z - a.z) * (b - a), rect);
     }
-    // A pixel to spare, many times what doubles and the squares need.
+    // A margin of one pixel, many times what doubles and the squares need.
     return {rect.low - 1.0, rect.high + 1.0};
   }
 
@@ -220,7 +221,7 @@ class ScreenRects {
   ClipDistances clip_;
 };
 
-/// What triangle `id` says about a contest, if it surely is there.
+/// Rules out claims of a contest that triangle `id` contradicts, if the triangle surely covers the sample.
 void testify(const Question& question, PrimitiveId id, const ViewedTriangle& triangle, const Contest& contest,
              std::array<std::atomic<bool>, 2>& impossible) {
   const auto is_open = [&](std::size_t i) {
@@ -283,7 +284,7 @@ Difference verdict(const Contest& contest, const std::array<std::atomic<bool>, 2
   return all_contain ? Difference::depth : Difference::edge;
 }
 
-/// Marks samples whose ids differ as `edge` for now, and those with a wrong key as `unexplained`.
+/// Marks samples with different ids as `edge` for now, and samples with a wrong key as `unexplained`.
 void look_at_samples(const Question& question, const Visible& a, const Visible& b, const Execution& execution,
                      Agreement& result) {
   const std::size_t width = std::size_t(question.view.width), rows = question.view.sample_count() / width;
@@ -294,7 +295,7 @@ void look_at_samples(const Question& question, const Visible& a, const Visible& 
       const PrimitiveId ids[] = {a.primitives[i], b.primitives[i]};
       const float keys[] = {a.keys[i], b.keys[i]};
       difference = ids[0] == ids[1] ? Difference::none : Difference::edge;
-      // Most of most pictures.
+      // The most frequent case.
       if (ids[0] == no_primitive && ids[1] == no_primitive && keys[0] == 0 && keys[1] == 0) continue;
       const SampleSquare square = question.square(i);
       for (std::size_t k = 0; k < 2; ++k)

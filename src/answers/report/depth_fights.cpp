@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where an answer and the exact one differ, by how much, and between which objects.
+// Samples at which an answer differs from the exact one, by how much, and between which objects.
 //
-// An answer is wrong where what it shows lies strictly behind the nearest surface. Bounds in doubles tell that at once
-// for most samples that differ; where they overlap the exact depths do, so that surfaces which are exactly as near are
-// never called wrong.
+// An answer is wrong where it shows a surface strictly behind the nearest one. Bounds in doubles decide most differing
+// samples; where bounds overlap, exact depths decide. Surfaces that are exactly as near are therefore never called
+// wrong.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -25,17 +25,17 @@ class Judge {
  public:
   Judge(const Surfaces& surfaces, const View& view) : surfaces_(surfaces), rays_(view) {}
 
-  /// The error of showing `seen` where `nearest` is: as in DepthFights::errors, never 0 when it is wrong.
+  /// The error of showing `seen` where `nearest` is, as in DepthFights::errors; never 0 if the answer is wrong.
   [[nodiscard]] float error(PrimitiveId seen, PrimitiveId nearest, const SampleRay& ray) const {
     if (seen == nearest) return 0;
     if (seen == no_primitive || nearest == no_primitive) return kNothingSeen;
     const auto a = surfaces_.corners(seen), b = surfaces_.corners(nearest);
     const DepthBounds at_seen = BoundedPlane(a, rays_).at(ray), at_nearest = BoundedPlane(b, rays_).at(ray);
-    // Exact numbers cost far more than bounds; only what the bounds leave open is asked of them.
+    // Exact numbers cost far more than bounds, so they decide only what bounds leave open.
     const bool is_decided = at_seen.low > at_nearest.high;
     if (!is_decided && compare(ExactDepth(a, rays_, ray), ExactDepth(b, rays_, ray)) <= 0) return 0;
     const double behind = middle(at_seen) - middle(at_nearest);
-    // Orthographic views may have depths of 0.
+    // In orthographic views, depths may be 0.
     const auto share = float(behind / std::max(std::abs(middle(at_nearest)), 1e-300));
     return std::max(share, std::numeric_limits<float>::min());
   }
@@ -49,11 +49,11 @@ class Judge {
   SampleRays rays_;
 };
 
-/// Visits (index, ray) of every sample of a row of a plane.
+/// Visits (index, ray) of every sample in a row of a plane.
 template <class Visit>
 void for_each_sample(const View& view, const SampleRays& rays, std::size_t row, const Visit& visit) {
   const auto height = std::size_t(view.height), width = std::size_t(view.width);
-  // Planes of samples lie behind each other: rows go through all of them.
+  // Planes of samples follow each other in memory, and row numbers run through all of them.
   const glm::ivec2 offset = sample_offsets(view.samples)[row / height];
   for (std::size_t x = 0; x < width; ++x)
     visit(row * width + x, [&, x] { return rays.at(int(x), int(row % height), offset); });
@@ -95,7 +95,7 @@ DepthFights find_depth_fights(const Surfaces& surfaces, const ExactVisible& exac
       });
   });
 
-  // By one thread: what is wrong is rare, and the rest is a glance at an array.
+  // One thread suffices: wrong samples are rare, and all others only take a look at an array.
   std::map<std::pair<std::uint32_t, std::uint32_t>, FightingPair> pairs;
   const auto object = [&](PrimitiveId id) { return id == no_primitive ? no_index : surfaces.source(id).instance; };
   for (std::size_t row = 0; row < rows; ++row)
@@ -113,7 +113,7 @@ DepthFights find_depth_fights(const Surfaces& surfaces, const ExactVisible& exac
       if (seen == no_index || nearer == no_index) return;
       pair.farthest = std::max(pair.farthest, double(fights.errors[i]) * judge.distance(nearest, ray()));
     });
-  // Out of a map and stable: pairs with as many samples stand in the order of their objects, whatever the machine.
+  // From a map by a stable sort: pairs with equally many samples are ordered by their objects, on every machine.
   for (const auto& [key, pair] : pairs) fights.pairs.push_back(pair);
   std::stable_sort(fights.pairs.begin(), fights.pairs.end(),
                    [](const FightingPair& a, const FightingPair& b) { return a.samples > b.samples; });

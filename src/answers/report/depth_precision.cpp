@@ -25,7 +25,7 @@ void check(const DepthSetup& setup, double distance) {
     throw Error(ErrorCode::bad_argument, "distance", "must lie between near and far");
 }
 
-/// What z is divided by: 1 for an infinite far plane.
+/// The divisor of z: 1 for an infinite far plane.
 double span(const ClipDistances& clip) { return 1 - clip.near / clip.far; }
 
 double depth_of(const DepthSetup& setup, double distance) {
@@ -35,44 +35,44 @@ double depth_of(const DepthSetup& setup, double distance) {
   return std::max(z / span(setup.clip), 0.0);
 }
 
-/// The spacing of floats from `depth` on upwards.
+/// Spacing of floats above `depth`.
 double float_spacing(double depth) {
   constexpr int kLeast = -149;
   return std::ldexp(1.0, depth > 0 ? std::max(std::ilogb(depth) - 23, kLeast) : kLeast);
 }
 
-/// And downwards: half as much where `depth` is a power of two.
+/// Spacing of floats below `depth`: half as much if `depth` is a power of two.
 double spacing_below(double depth) { return float_spacing(depth * (1 - 1e-12)); }
 
-/// What two keys (see Visible in view.h) must differ by not to round to the same float. Depths are made from keys, so a
-/// float buffer whose own values are finer, next to zero, gains nothing by it.
+/// The difference from which two keys (see Visible in view.h) round to different floats. Depths are made from keys, so
+/// the finer values of a float buffer next to zero gain nothing.
 double key_step(double key) { return spacing_below(key); }
 
-/// A difference of z that two depths never share a value across, the first at `depth`, the second farther away.
+/// A difference of z with which two depths never share a value; the first depth is `depth`, the second is farther away.
 double full_step(const DepthSetup& setup, double depth) {
   if (setup.format != DepthFormat::f32) return 1 / double((std::uint32_t(1) << integer_bits(setup.format)) - 1);
   if (setup.reversed) return spacing_below(depth);
-  // Rounding separates what is a spacing apart where it is wider: farther away. No depth passes 1.
+  // Rounding separates depths one spacing apart; the wider spacing, farther away, counts. No depth exceeds 1.
   return spacing_below(std::min(depth + float_spacing(depth), 1.0));
 }
 
-/// The gap for a step of 1/d.
+/// The gap for a step of 1/d at a distance.
 double gap_of(double distance, double step) {
   const double left = 1 - distance * step;
   return left > 0 ? distance * distance * step / left : kInfinity;
 }
 
-/// How far corners reach where nobody says: in a picture of up to 120 degrees, twice as far as the surface is away; in
-/// parallel projection, twice as far as its planes.
+/// The default reach of vertices: twice the distance of the surface, enough for pictures of up to 120 degrees; in
+/// parallel projection, twice the distance of the planes.
 double reach_of(const DepthSetup& setup, double distance) {
   constexpr double kTimes = 2;
   return kTimes * (setup.orthographic ? std::max(std::abs(setup.clip.near), std::abs(setup.clip.far)) : distance);
 }
 
-/// How far off a distance may be before it is stored. A corner's differences to the eye, its row of the transform and
-/// their products are rounded once each, and so are the three sums; its world position was, and at the rim of the guard
-/// band it is cut, by two steps. Then the key is made: by a reciprocal and a product, or in parallel projection by the
-/// difference to the far plane and a product.
+/// The error of a distance before it is stored. Rounded once each: a vertex's differences to the eye, its row of the
+/// transform, their products, the three sums, and its world position. At the rim of the guard band the triangle is cut,
+/// which takes two steps. Making the key takes a reciprocal and a product; in parallel projection, the difference to
+/// the far plane and a product.
 double rounding(const DepthSetup& setup, double distance, double reach) {
   constexpr double kUnit = 0x1p-24;
   return kUnit * (9 * reach + 2 * (setup.orthographic ? setup.clip.far - distance : distance));
@@ -85,7 +85,7 @@ double bits_of(double depth) {
   return bits;
 }
 
-/// Floats that are not reversed: the gap only shrinks when the near plane goes away from the eye.
+/// For floats that are not reversed. The gap only shrinks as the near plane moves away from the eye.
 std::optional<double> bisected_near(DepthSetup setup, double distance, double gap) {
   double low = std::log(distance) - 70, high = std::log(distance);
   for (int i = 0; i < 200; ++i) {
@@ -116,12 +116,12 @@ double rounding_gap(const DepthSetup& setup, double distance, std::optional<doub
 
 double certain_gap(const DepthSetup& setup, double distance, std::optional<double> reach) {
   check(setup, distance);
-  // The nearer surface seems to be at its distance and its rounding, the farther one at its own less its own.
+  // In the worst case the nearer surface is moved away by its rounding, and the farther one towards the eye by its own.
   const auto of = [&](double at) { return rounding(setup, at, reach.value_or(reach_of(setup, at))); };
   const double stored = resolvable_gap(setup, std::min(distance + of(distance), setup.clip.far));
   const double gap = stored + 2 * of(distance);
   if (setup.orthographic || !std::isfinite(gap)) return gap;
-  // Its own grows with its distance.
+  // The rounding of the farther surface grows with its distance.
   return gap / (1 - (of(distance + 1) - of(distance)));
 }
 
@@ -143,7 +143,7 @@ std::optional<double> near_for_gap(const DepthSetup& setup, double distance, dou
     const double near = far - gap / full_step(setup, 0);
     return near <= distance ? std::optional(near) : std::nullopt;
   }
-  // The step of 1/d that may be taken; an infinite gap lets it reach infinity.
+  // The largest permitted step of 1/d. An infinite gap permits a step to infinity.
   const double step = std::isfinite(gap) ? gap / (distance * (distance + gap)) : 1 / distance;
   if (is_float && setup.reversed) {
     const bool always = std::ldexp(1 / distance - 1 / far, -23) <= step;
@@ -161,7 +161,7 @@ std::vector<double> round_distances(const ClipDistances& clip) {
   const double first = clip.near > 0 ? clip.near : (far - clip.near) * 1e-6;
   for (int exponent = int(std::floor(std::log10(first))); exponent <= 308 && distances.size() < 200; ++exponent) {
     for (const double digit : {1.0, 2.0, 5.0}) {
-      // One rounding, so that 0.2 is the 0.2 that everyone writes.
+      // One rounding, so that 0.2 is the usual double 0.2.
       const double distance = exponent < 0 ? digit / std::pow(10.0, -exponent) : digit * std::pow(10.0, exponent);
       if (distance > first * 1.0001 && distance < far * 0.9999) distances.push_back(distance);
     }

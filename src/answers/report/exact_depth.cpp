@@ -54,7 +54,8 @@ BoundedPlane::BoundedPlane(const std::array<glm::vec3, 3>& corners, const Sample
 bool BoundedPlane::find_depth(const SampleRay& ray, DepthBounds& bounds) const {
   const Bounded above = bounded_dot(normal_.value, normal_.error, corner_ - ray.origin);
   const Bounded below = bounded_dot(normal_.value, normal_.error, ray.direction);
-  // Seen nearly edge-on, or through the eye: no more is known than the corners' range. Written so that NaN is not.
+  // If the plane is seen nearly edge-on, or contains the eye, only the corners' range is known. The test is written so
+  // that NaN fails it.
   if (!(std::abs(below.value) > 4 * below.error)) return false;
   const double depth = above.value / below.value;
   const double error = (above.error + std::abs(depth) * below.error) / (std::abs(below.value) - below.error) +
@@ -99,17 +100,18 @@ ExactDepth::ExactDepth(const std::array<glm::vec3, 3>& corners, const SampleRays
   const ExactVector normal = cross(difference(b, a), difference(c, a));
   numerator_ = dot(normal, difference(a, ray.origin));
   denominator_ = dot(normal, exact(ray.direction));
-  // Above zero from here on: fractions are compared by multiplying both sides.
+  // The denominator is made positive, since fractions are compared by multiplying both sides.
   if (denominator_.sign() < 0) {
     numerator_ = -numerator_;
     denominator_ = -denominator_;
   }
   if (denominator_.sign() == 0) {
-    // Edge-on: the ray lies in the plane, or misses it. The nearest corner stands for it.
+    // Edge-on: the ray lies in the plane or misses it. The depth of the nearest corner is used.
     numerator_ = Expansion(-std::numeric_limits<float>::max());
     denominator_ = Expansion(1);
   }
-  // Within the corners' range, by the same rule as the bounds above, or the two would disagree about slivers.
+  // Limits the depth to the corners' range, by the same rule as the bounds above; otherwise both would disagree about
+  // slivers.
   Expansion nearest, farthest;
   for (int i = 0; i < 3; ++i) {
     const Expansion depth = dot(exact(rays.forward()), difference(glm::dvec3(corners[std::size_t(i)]), rays.eye()));
@@ -122,7 +124,7 @@ ExactDepth::ExactDepth(const std::array<glm::vec3, 3>& corners, const SampleRays
   limit(Expansion(rays.far()), -1);
 }
 
-/// From below (side 1) or from above (side -1).
+/// Limits the depth from below (side 1) or from above (side -1).
 void ExactDepth::limit(const Expansion& bound, int side) {
   if ((bound * denominator_ - numerator_).sign() != side) return;
   numerator_ = bound;

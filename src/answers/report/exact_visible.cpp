@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nearest triangle at every sample, exactly: bounds in doubles decide nearly everywhere, expansions the rest.
+// The exactly nearest triangle at every sample: bounds in doubles decide nearly everywhere, expansions the rest.
 //
-// Which triangles cover a sample is the z-buffer's question, and its answer is exact already: integers, and the top-
-// left rule. So its tiles and coverage are used as they are (zbuffer/place), and only the depths, which it rounds to
-// keys, are worked out anew.
+// The z-buffer's coverage is exact already, by integers and the top-left rule. Its tiles and coverage are therefore
+// reused (zbuffer/place); only depths, which it rounds to keys, are computed anew.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -20,20 +19,21 @@ namespace {
 
 using namespace zbuffer_detail;
 
-/// A triangle at a sample is one step of work where doubles decide. These are the steps of a triangle that is entered
-/// into a tile, of two planes that are compared exactly, and of two depths; a tile counts its steps so many at a time.
+/// A triangle at a sample is one step of work if doubles decide. The constants are the steps of entering a triangle
+/// into a tile, of comparing two planes exactly, and of comparing two depths; a tile reports its steps in portions of
+/// kStepsAtOnce.
 constexpr std::uint64_t kStepsOfTriangle = 16, kStepsOfPlanes = 16, kStepsOfDepths = 64, kStepsAtOnce = 1 << 14;
-/// More steps are an error: so many in all, and for each sample and triangle.
+/// Limits of the steps: in all, and more for each sample and triangle.
 constexpr std::uint64_t kMostSteps = std::uint64_t(1) << 29, kMostStepsOfSample = 128, kMostStepsOfTriangle = 1024;
 
-/// What is known of a triangle beside another one: in models with faces in one plane thousands of samples ask.
+/// Cached facts about a pair of triangles. In models with coplanar faces, thousands of samples need them.
 struct Rival {
   PrimitiveId beside = no_primitive, id = no_primitive;
-  bool shares_plane = false, has_one_depth = false;  // the latter of both
+  bool shares_plane = false, has_one_depth = false;  // has_one_depth: both triangles lie at one depth
   std::optional<BoundedPlane> plane;
 };
 
-/// The planes being filled, and per sample the bounds of the nearest so far.
+/// The planes being filled, and the bounds of the nearest depth so far, by sample.
 struct NearestBounds {
   const Surfaces& surfaces;
   const SampleRays rays;
@@ -65,7 +65,7 @@ class TileContest {
     }
     if (steps_ > kStepsAtOnce) tell();
   }
-  /// Counts the steps since the last call. \throws Error limit_exceeded, cancelled.
+  /// Reports the steps since the last call. \throws Error limit_exceeded, cancelled.
   void tell() {
     work_.add(std::exchange(steps_, 0), [&] {
       return "too many of " + std::to_string(field_.surfaces.primitive_count()) +
@@ -89,7 +89,7 @@ class TileContest {
     if (order > 0) return;
     if (order == 0) {
       answer.tied[i] = 1;
-      return;  // ids come in order
+      return;  // ids ascend, so the first one stays
     }
     answer.primitives[i] = id;
     answer.tied[i] = 0;
@@ -108,7 +108,7 @@ class TileContest {
                    ExactDepth(field_.surfaces.corners(b), field_.rays, ray));
   }
 
-  /// Of `b` beside `a`.
+  /// The cached facts about `b` relative to `a`.
   [[nodiscard]] const Rival& rival_of(PrimitiveId a, PrimitiveId b) {
     Rival& rival = rivals_[b % rivals_.size()];
     if (rival.beside == a && rival.id == b) return rival;
@@ -125,8 +125,8 @@ class TileContest {
   NearestBounds& field_;
   PixelRect tile_;
   WorkLimit& work_;
-  std::uint64_t steps_ = 0;       ///< that are not counted yet
-  std::array<Rival, 16> rivals_;  // by the last digits of their ids
+  std::uint64_t steps_ = 0;       ///< not yet reported
+  std::array<Rival, 16> rivals_;  // by the last bits of their ids
 };
 
 }  // namespace

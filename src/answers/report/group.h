@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Brings equal things together: the one tool behind welding, edges and duplicates.
+// Groups equal items: the one tool for welding vertices, and for finding edges and duplicates.
 //
-// Items are dealt into buckets by a hash of their key, each bucket within the cache once more by other bits of it, and
-// what then is together, some four items, is sorted. The hash only spreads the work: with keys chosen to collide
-// everything lands in one place, and it is still a sort, where a hash table would go quadratic.
+// Items are distributed to buckets by a hash of their key; within a bucket, in the cache, once more by other bits of
+// the hash; the groups of about four items that result are sorted. The hash only spreads the work: if keys were chosen
+// to collide, all items would be in one group and would still be sorted, where a hash table would become quadratic.
 #pragma once
 
 #include <algorithm>
@@ -16,10 +16,10 @@
 
 namespace frontmost {
 
-/// A key of 96 bits and 32 bits to carry along. Sorted by key, then by what is carried.
+/// A key of 96 bits with 32 carried bits. Ordered by key, then by the carried bits.
 struct Keyed {
-  std::uint64_t high;  ///< of the key
-  std::uint64_t low;   ///< 32 bits of key, 32 bits carried
+  std::uint64_t high;  ///< upper 64 bits of the key
+  std::uint64_t low;   ///< lower 32 bits of the key, 32 carried bits
 
   Keyed() = default;
   Keyed(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t carried)
@@ -34,11 +34,11 @@ namespace detail {
 inline constexpr std::size_t max_buckets = 1024;
 
 struct Dealt {
-  std::vector<std::size_t> starts;  // of each bucket, and the end of the last
+  std::vector<std::size_t> starts;  // beginning of each bucket, and the end of the last
   Buffer<Keyed> items;
 };
 
-/// Its upper 24 bits are good: 10 of them choose the bucket, the others the place in it.
+/// A hash of 24 bits: 10 of them choose the bucket, the others the place in the bucket.
 [[nodiscard]] inline std::uint32_t hash_of(const Keyed& item) {
   std::uint64_t mixed = (item.high ^ (item.low >> 32) * 0x9E3779B97F4A7C15u) * 0xD6E8FEB86659FD93u;
   mixed ^= mixed >> 32;
@@ -49,14 +49,14 @@ struct Dealt {
   return hash_of(item) & (bucket_count - 1);
 }
 
-/// A bucket's items with equal keys side by side and in order. A sort alone would take most of the time of all
-/// grouping, by branches that nobody can predict.
+/// A bucket's items in order, equal keys side by side. Sorting alone would take most of the time of grouping, because
+/// its branches cannot be predicted.
 [[nodiscard]] inline Buffer<Keyed> gathered(std::span<const Keyed> items) {
   constexpr std::size_t together = 4, most_places = std::size_t(1) << 14;
   std::size_t places = 1;
   while (places < most_places && places * together < items.size()) places *= 2;
   const auto place_of = [&](const Keyed& item) { return hash_of(item) / max_buckets & (places - 1); };
-  std::vector<std::uint32_t> ends(places, 0);  // starts, until the items are where they belong
+  std::vector<std::uint32_t> ends(places, 0);  // beginnings, until the items are filled in
   for (const Keyed& item : items) ++ends[place_of(item)];
   std::uint32_t total = 0;
   for (std::uint32_t& end : ends) total += std::exchange(end, total);
@@ -70,7 +70,7 @@ struct Dealt {
   return sorted;
 }
 
-// A counting sort by bucket: every chunk counts, then every chunk knows where its items go.
+// A counting sort by bucket: every chunk of items is counted, which tells each chunk where its items go.
 template <class Produce>
 Dealt deal(const Execution& execution, std::size_t count, const Produce& produce) {
   std::size_t buckets = 1;
@@ -104,9 +104,9 @@ Dealt deal(const Execution& execution, std::size_t count, const Produce& produce
 
 }  // namespace detail
 
-/// Calls `visit(group, sums)` once for every group of items with the same key, the carried numbers ascending, from
-/// several threads and in any order. `produce(i, item)` makes the item of each i < count, or returns false for none;
-/// it is called twice. \returns all `sums` (default-constructed, any number of them) added by `+=`.
+/// Calls `visit(group, sums)` once for every group of items with the same key, carried numbers ascending, from several
+/// threads and in any order. `produce(i, item)` makes the item of each i < count, or returns false for none; it is
+/// called twice. \returns all `sums` (default-constructed, any number of them) added by `+=`.
 template <class Sums, class Produce, class Visit>
 Sums for_each_group(const Execution& execution, std::size_t count, const Produce& produce, const Visit& visit) {
   detail::Dealt dealt = detail::deal(execution, count, produce);

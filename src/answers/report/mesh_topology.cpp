@@ -5,8 +5,8 @@
 //   half-edges --sorted by their two points--> groups: one is a boundary, two are joined, more are not manifold
 //   joined triangles --union-find--> shells; joined corners --union-find--> pieces
 //
-// Groups come from sorted keys and sets are named by their least member, so no result depends on which thread came
-// first. The genus follows from Euler's formula where the mesh is closed and every edge has two triangles.
+// Groups come from sorted keys, and sets are named by their least member, so no result depends on the order of threads.
+// The genus follows from Euler's formula if the mesh is closed and every edge has two triangles.
 #include "report/mesh_topology.h"
 
 #include <cmath>
@@ -19,7 +19,7 @@
 namespace frontmost {
 namespace {
 
-constexpr std::size_t kMaxTriangles = std::size_t(1) << 29;  // so that a half-edge's number leaves a bit free
+constexpr std::size_t kMaxTriangles = std::size_t(1) << 29;  // leaves a free bit beside a half-edge's number
 constexpr std::size_t kGrain = std::size_t(1) << 14;
 constexpr std::uint32_t kUnpaired = no_index;
 
@@ -41,7 +41,7 @@ struct EdgeCounts {
   }
 };
 
-// The mesh after welding. A half-edge is 3 * triangle + k, from corner k to the next.
+// The mesh after welding. Half-edge 3 * triangle + k runs from corner k to the next one.
 class MeshTopology {
  public:
   MeshTopology(const Mesh& mesh, const Execution& execution)
@@ -67,7 +67,7 @@ class MeshTopology {
   [[nodiscard]] Topology examine() {
     Topology topology;
     Oddities& odd = topology.odd;
-    std::uint64_t surface = 0;  // triangles with three different corners
+    std::uint64_t surface = 0;  // number of triangles with three different corners
     for (const Kind kind : kinds_) {
       odd.non_finite_triangles += kind == Kind::non_finite;
       odd.degenerate_triangles += kind == Kind::repeated || kind == Kind::flat;
@@ -116,7 +116,7 @@ class MeshTopology {
         .value;
   }
 
-  // Counts edges by their triangles, joins the triangles of each, and pairs the half-edges that run against each other.
+  // Counts edges by their number of triangles, joins the triangles of each edge, and pairs opposite half-edges.
   EdgeCounts join_edges() {
     constexpr std::uint32_t kBackward = 1u << 31;
     twins_.assign(3 * corners_.size(), kUnpaired);
@@ -143,15 +143,16 @@ class MeshTopology {
     return for_each_group<EdgeCounts>(execution_, twins_.size(), produce, visit);
   }
 
-  // Fans of triangles about a vertex. One a vertex, but where two fans touch in a point: there the surface passes
-  // twice, and counting the vertex once would make a handle of it. Precondition: every half-edge has its twin.
+  // The number of fans of triangles around vertices. A vertex has one fan, unless two fans touch in a point; the
+  // surface passes that point twice, and counting it once would turn it into a handle. Precondition: every half-edge
+  // has its twin.
   [[nodiscard]] std::uint64_t count_fans() const {
     std::uint64_t fans = 0;
     std::vector<bool> seen(twins_.size(), false);
     for (std::uint32_t start = 0; start < twins_.size(); ++start) {
       if (seen[start] || twins_[start] == kUnpaired) continue;
       ++fans;
-      // The half-edge before this one in its triangle ends where this one starts; so its twin starts there too.
+      // The previous half-edge in its triangle ends where this one starts, so its twin starts there, too.
       for (std::uint32_t h = start; !seen[h]; h = twins_[h % 3 == 0 ? h + 2 : h - 1]) seen[h] = true;
     }
     return fans;

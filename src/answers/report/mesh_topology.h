@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the triangles of one mesh hang together: over which edges, in how many pieces, and whether they close.
+// Topology of a mesh: which triangles are connected, by edges or by vertices, and whether the surface is closed.
 //
 //      +---+---+
-//      | / | / |      one shell: joined over an edge
+//      | / | / |      one shell: connected by an edge
 //      +---+---+---+
-//              | / |      another one of the same piece: joined in a corner alone
+//              | / |      another shell of the same piece: connected by a vertex alone
 //              +---+
 //
-// Corners are the same when their positions are, whatever their numbers, so that a file without shared vertices is
-// examined as one with them.
+// Vertices are the same if their positions are, whatever their numbers, so files with and without shared vertices are
+// examined alike.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -23,13 +23,13 @@ struct Topology {
   std::uint64_t pieces = 0, shells = 0;
   bool closed = false;
   std::optional<std::uint64_t> genus;
-  std::vector<glm::vec3> points;  ///< the different positions of finite triangles
+  std::vector<glm::vec3> points;  ///< different positions of finite triangles
 };
 
-/// Precondition: indices in range. \throws Error limit_exceeded.
+/// Examines a mesh. Precondition: indices are in range. \throws Error limit_exceeded.
 [[nodiscard]] Topology examine(const Mesh& mesh, const Execution& execution);
 
-/// True when the triangle's area is exactly zero, for the floats as they are. Precondition: finite.
+/// Whether the triangle's area is exactly zero, for its floats as they are. Precondition: the floats are finite.
 [[nodiscard]] bool are_collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 
 }  // namespace frontmost

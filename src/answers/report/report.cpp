@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is in a scene, counted mesh by mesh and object by object; and what unit a file may mean that says none.
+// Counts of a scene, mesh by mesh and object by object; and likely units of files that state none.
 #include "frontmost/report.h"
 
 #include <algorithm>
@@ -21,11 +21,12 @@ void add(Oddities& sum, const Oddities& odd) {
   sum.inconsistent_edges += odd.inconsistent_edges;
 }
 
-// Triangles of each material, in the order of material numbers.
+// Number of triangles of each material, in the order of material numbers.
 std::vector<MaterialUse> materials_of(const Mesh& mesh, std::size_t material_count) {
   if (mesh.triangles.empty()) return {};
   if (mesh.material_ids.size() <= 1) return {{mesh.material_of(0), mesh.triangles.size()}};
-  // Few materials are the rule: counting beats sorting, unless the scene has more of them than the mesh triangles.
+  // Scenes usually have few materials, so counting beats sorting, unless the scene has more materials than the mesh
+  // triangles.
   std::vector<MaterialUse> uses;
   if (material_count <= mesh.material_ids.size()) {
     std::vector<std::uint64_t> counts(material_count + 1, 0);
@@ -45,7 +46,7 @@ std::vector<MaterialUse> materials_of(const Mesh& mesh, std::size_t material_cou
 
 std::uint64_t face_count(const Mesh& mesh) {
   if (mesh.face_ids.empty()) return mesh.triangles.size();
-  // Triangles of a polygon follow one another.
+  // The triangles of a polygon are consecutive.
   std::uint64_t faces = 1;
   for (std::size_t i = 1; i < mesh.face_ids.size(); ++i) faces += mesh.face_ids[i] != mesh.face_ids[i - 1];
   return faces;
@@ -70,7 +71,7 @@ MeshReport report_mesh(const Mesh& mesh, const Topology& topology, std::size_t m
   return report;
 }
 
-// Of points that stay finite in world space.
+// The bounds of the points that stay finite in world space.
 Box bounds_of(const std::vector<glm::vec3>& points, const glm::dmat4& world_from_mesh, const Execution& execution) {
   Box bounds;
   std::mutex mutex;
@@ -90,8 +91,9 @@ struct Measures {
   double area = 0, volume = 0;
 };
 
-/// Sums over blocks of triangles, so that the number of threads changes nothing. Volumes are of tetrahedra whose tip is
-/// in the middle of the bounds: far from zero others would cancel badly.
+/// Area and volume. Triangles are summed in blocks, so that the number of threads does not change the result. The
+/// volume is that of tetrahedra with their tip in the middle of the bounds; other tips, far from the object, would
+/// cause cancellation.
 Measures measures_of(const Mesh& mesh, const glm::dmat4& world_from_mesh, const Box& bounds,
                      const Execution& execution) {
   constexpr std::size_t block = std::size_t(1) << 14;
@@ -165,7 +167,8 @@ LightReport report_light(const Light& light) {
   return report;
 }
 
-// Objects of one mesh need its points; so meshes come one after the other, and only one holds its points.
+// Objects of one mesh need its points. Meshes are examined one after the other, so only one mesh's points are in
+// memory.
 void report_objects(const Scene& scene, const std::vector<std::uint32_t>& instances, const Topology& topology,
                     const Execution& execution, SceneReport& report) {
   for (const std::uint32_t i : instances) {

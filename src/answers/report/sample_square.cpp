@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// With o the origin of a ray along v: a triangle abc is met where the determinants (a-o, b-o, v), (b-o, c-o, v) and
-// (c-o, a-o, v) have the sign of (a-o, b-o, c-o), or of (b-a, c-a, v) in parallel projection. That its line is met
-// before the eye and not behind it follows from the signs.
+// With o the origin of a ray along v: a triangle abc is met if the determinants (a-o, b-o, v), (b-o, c-o, v) and (c-o,
+// a-o, v) have the sign of (a-o, b-o, c-o), or, in parallel projection, of (b-a, c-a, v). The signs also imply that the
+// ray's line is met in front of the eye and not behind.
 #include "report/sample_square.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 // 1/128 pixel in 1/256.
 constexpr int kMargin = 2;
 // Roundings of a float: 16 of a key (triangle_keys.h), 2 of the corners', and 2 to spare; and 6 of a corner's distance
-// from the eye, as its depth is a sum of coordinates.
+// from the eye, since its depth is a sum of coordinates.
 constexpr double kKeyRounding = 20 * 0x1p-24, kDistanceRounding = 6 * 0x1p-24;
 
 }  // namespace
@@ -46,7 +46,7 @@ ViewedTriangle::ViewedTriangle(const std::array<glm::vec3, 3>& corners, const Sa
     error = std::max(error, depth.error);
     const double from_eye = glm::distance(corner, rays.eye());
     reach = std::max(reach, from_eye);
-    // What lies nearer or farther aside is cut off in doubles.
+    // Points that are nearer, or farther aside, are cut off in doubles.
     if (depth.value >= rays.near()) spread = std::max(spread, std::min(from_eye / depth.value, rays.widest()));
   }
   depths_near_ = {low - error, low + error};
@@ -75,15 +75,15 @@ bool ViewedTriangle::is_inside(const SampleRay& ray) const {
   return true;
 }
 
-/// Whether a plane through the eye along a side of either has the two on its two sides: then they do not meet, and two
-/// convex figures before the eye that do not meet have such a plane. Of triangles that reach behind it, a few that miss
-/// count as touching.
+/// Whether a plane through the eye and a side of either has the triangle and the square on its two sides. They then do
+/// not meet; two convex figures in front of the eye that do not meet always have such a plane. Some triangles that
+/// reach behind the eye and miss the square count as touching.
 bool ViewedTriangle::is_separated(const SampleSquare& square) const {
   for (std::size_t edge = 0; edge < 3; ++edge) {
     std::array<int, 4> sides;
     for (std::size_t i = 0; i < 4; ++i) sides[i] = edge_side(edge, square.corners[i]);
     const auto [least, most] = std::minmax_element(sides.begin(), sides.end());
-    // Of a triangle that is seen edge-on, there is nothing on either side.
+    // A triangle that is seen edge-on has nothing on either side.
     if (facing_ >= 0 && *most < 0) return true;
     if (facing_ <= 0 && *least > 0) return true;
   }
@@ -101,8 +101,8 @@ bool ViewedTriangle::is_separated(const SampleSquare& square) const {
   return false;
 }
 
-/// What the near and far planes leave of a triangle that contains the square. Methods cut in floats, so within their
-/// rounding of a plane either may be.
+/// How the part between near and far of a triangle that contains the square meets the square. Methods clip in floats,
+/// so within their rounding of a plane either answer may be right.
 LineMeeting ViewedTriangle::between_planes(const SampleSquare& square) const {
   const double rim = kKeyRounding;
   if (depths_near_.low > rays_->near() * (1 + rim) && depths_far_.high < rays_->far() * (1 - rim))
@@ -135,7 +135,7 @@ DepthBounds ViewedTriangle::nearness_at(const SampleRay& ray) const {
   const Bounded across = bounded_dot(normal_.value, normal_.error, ray.direction);
   const Bounded& below = rays_->is_orthographic() ? across : along;
   const Bounded& above = rays_->is_orthographic() ? along : across;
-  // The plane goes through the eye, as far as doubles tell. Written so that NaN does.
+  // The plane contains the eye, as far as doubles can tell. The test is written so that NaN passes it.
   if (!(std::abs(below.value) > 4 * below.error)) return {limits_least_.low, limits_greatest_.high};
   const double value = (rays_->is_orthographic() ? -above.value : above.value) / below.value;
   const double error = (above.error + std::abs(value) * below.error) / (std::abs(below.value) - below.error) +
@@ -155,7 +155,7 @@ NearnessRange ViewedTriangle::nearness(const SampleSquare& square) const {
   return range;
 }
 
-/// A nearness; the denominator is positive.
+/// A nearness as a fraction with a positive denominator.
 struct ViewedTriangle::Fraction {
   Expansion numerator, denominator;
 
@@ -165,7 +165,7 @@ struct ViewedTriangle::Fraction {
   }
 };
 
-/// Of the corner that is nearest (extreme 1) or farthest (-1), between the planes.
+/// The nearness of the nearest (extreme 1) or farthest (-1) corner, limited to the planes.
 ViewedTriangle::Fraction ViewedTriangle::exact_limit(int extreme) const {
   Expansion depth;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -201,7 +201,7 @@ ViewedTriangle::Fraction ViewedTriangle::exact_extreme(const ViewedTriangle& tri
 
 bool ViewedTriangle::exactly_nearer(const ViewedTriangle& a, const ViewedTriangle& b, const SampleSquare& square) {
   const Fraction least = exact_extreme(a, square, -1), greatest = exact_extreme(b, square, 1);
-  // greatest + resolution, whose two terms are doubles by definition.
+  // Equals greatest + resolution; both terms of the resolution are doubles by definition.
   const double relative = std::max(a.relative_, b.relative_), absolute = std::max(a.absolute_, b.absolute_);
   const Fraction reach{greatest.numerator * Expansion(1 + relative) + Expansion(absolute) * greatest.denominator,
                        greatest.denominator};

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle against the square of +-1/128 pixel about a sample: whether it meets it, contains it, and how near it is
-// there. Doubles with bounds decide nearly everywhere, expansions the rest.
+// How a triangle meets the square of +-1/128 pixel around a sample, and how near it is there. Doubles with bounds
+// decide nearly everywhere, expansions the rest.
 //
-//       +-----------+            misses     no ray through the square meets the triangle
-//       |        /  |            touches    some do: methods that place corners a little differently may disagree
-//       |   x   /   |            contains   all do: whatever a method does to the corners, it covers the sample
+//       +-----------+            misses     no ray of the square meets the triangle
+//       |        /  |            touches    some rays do: methods that place corners slightly differently may disagree
+//       |   x   /   |            contains   all rays do: the sample is covered wherever a method places the corners
 //       |      /    |
 //       +-----/-----+
 #pragma once
@@ -31,21 +31,22 @@ struct NearnessRange {
   DepthBounds least, greatest;
 };
 
-/// A triangle with finite corners, as its view sees it. Borrows the rays.
+/// A triangle with finite corners in its view. Borrows the rays.
 class ViewedTriangle {
  public:
   ViewedTriangle(const std::array<glm::vec3, 3>& corners, const SampleRays& rays);
 
   [[nodiscard]] LineMeeting meeting(const SampleSquare& square) const;
-  /// Of its plane, within the nearness of its corners and of the near and far planes. Snapping moves what is seen by
-  /// less than the square is wide, however thin the triangle, so that every key of it lies in this range.
+  /// The nearness of the triangle's plane over the square, limited to that of its corners and of the near and far
+  /// planes. Snapping moves the visible part by less than the width of the square, however thin the triangle is, so
+  /// every key of the triangle lies in this range.
   [[nodiscard]] NearnessRange nearness(const SampleSquare& square) const;
-  /// What a key of this triangle may be wrong by, both as nearness.
+  /// Greatest error of a key of this triangle, in terms of nearness.
   [[nodiscard]] double resolution(double nearness) const { return relative_ * std::abs(nearness) + absolute_; }
-  /// -1: seen from the front (counter-clockwise), 1: from behind, 0: edge-on.
+  /// The side that is seen: -1 front (counter-clockwise), 1 back, 0 edge-on.
   [[nodiscard]] int facing() const { return facing_; }
 
-  /// Exactly: the least nearness of `a` exceeds the greatest of `b` by more than either's resolution.
+  /// Whether the least nearness of `a` exceeds the greatest of `b` by more than the resolution of either; exact.
   friend bool is_surely_nearer(const ViewedTriangle& a, const ViewedTriangle& b, const SampleSquare& square);
 
  private:
@@ -65,8 +66,8 @@ class ViewedTriangle {
   std::array<glm::dvec3, 3> corners_;
   const SampleRays* rays_;
   BoundedNormal normal_;
-  DepthBounds depths_near_, depths_far_;        // of the nearest and of the farthest corner, before the planes cut
-  DepthBounds limits_least_, limits_greatest_;  // nearness of the same, between the planes
+  DepthBounds depths_near_, depths_far_;  // depths of the nearest and of the farthest corner, before the planes cut
+  DepthBounds limits_least_, limits_greatest_;  // nearness of these corners, between the planes
   double relative_ = 0, absolute_ = 0;          // resolution()
   int facing_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Storing the lanes that a mask selects, packed. Highway 1.0.3's Compress on AVX2 copies its table to the stack on
-// every call under GCC 12; a small byte table and one permutation are 1.7 times as fast on a whole frame.
+// Stores the lanes that a mask selects, packed. On AVX2, Highway 1.0.3's Compress under GCC 12 copies its table to the
+// stack on every call. A small byte table and one permutation are 1.7 times as fast on a whole frame.
 
 // Included once for every target.
 #if defined(FRONTMOST_BASE_COMPACTOR_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -39,7 +39,8 @@ constexpr std::array<std::array<std::uint8_t, 8>, 256> PackedLanes() {
 alignas(64) constexpr auto kPackedLanes = PackedLanes();
 #endif
 
-/// Selects once, stores several vectors. A store writes a whole vector: the rest is to be overwritten or ignored.
+/// Selects once, then stores several vectors. A store writes a whole vector: lanes behind the packed ones must be
+/// overwritten or ignored.
 template <class D>
 class Compactor {
  public:
@@ -83,7 +84,7 @@ class Compactor {
   [[nodiscard]] HWY_INLINE std::size_t count() const { return count_; }
 };
 
-/// One vector. \returns how many lanes were stored.
+/// Compacts one vector. \returns how many lanes were stored.
 template <class D, class V>
 HWY_INLINE std::size_t CompactInto(V v, hn::Mask<D> mask, D, hn::TFromD<D>* to) {
   const Compactor<D> compact(mask);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads that stay for the next loop, where there is no TBB: to make some for every loop takes as long as many a loop,
-// and WebAssembly gives back those that have ended only when the page comes to rest.
+// Threads that stay for the next loop, for builds without TBB. Making threads for every loop takes as long as many a
+// loop, and WebAssembly frees ended threads only when the page comes to rest.
 //
 //   run(2, work)     work here   ------------------------------+ wait until nobody is inside
 //   a thread         sleeps  -- work ----------------+ sleeps
 //   a thread         in another loop's work -------------- sleeps
 //
-// Loops within loops, and loops of several callers, share them: whoever calls does its own work, and a thread that is
-// free comes to help. Nothing is waited for but work that has begun.
+// Nested loops and loops of several callers share the threads: every caller does its own work, and free threads come to
+// help. A loop waits only for work that has begun.
 #pragma once
 
 #include <pthread.h>
@@ -23,10 +23,10 @@
 
 namespace frontmost {
 
-/// Is never destroyed, as threads wait in it until the process ends.
+/// Never destroyed, as threads wait in it until the process ends.
 class Crew {
  public:
-  /// That of all loops. A process that was forked has one of its own, because a fork takes no threads along.
+  /// The crew of all loops of the process. A forked process gets its own, because a fork takes no threads along.
   static Crew& of_process() {
     static std::atomic<Crew*> crew = new Crew;
 #if !defined(__EMSCRIPTEN__)
@@ -35,8 +35,8 @@ class Crew {
     return *crew;
   }
 
-  /// Does `work` here and on up to `helpers` other threads at the same time. \returns when all have come back. `work`
-  /// must not throw, and must return at once where nothing is left to do.
+  /// Does `work` here and on up to `helpers` other threads at the same time. \returns once all have come back. `work`
+  /// must not throw, and must return at once if nothing is left to do.
   void run(int helpers, const std::function<void()>& work) {
     Job job{&work, helpers};
     {
@@ -54,17 +54,17 @@ class Crew {
  private:
   struct Job {
     const std::function<void()>* work;
-    int wanted;      ///< more threads
-    int inside = 0;  ///< threads
+    int wanted;      ///< threads that may still join
+    int inside = 0;  ///< threads at work
   };
 
-  /// So that there are as many threads as the largest loop so far wanted.
+  /// Makes as many threads as the largest loop so far wanted.
   void hire(int helpers) {
     if (pause_ > 0) return void(--pause_);
     try {
       for (; size_ < helpers; ++size_) std::thread([this] { serve(); }).detach();
     } catch (const std::exception&) {
-      // The system gives no more threads now: those that there are do the same work, and it is asked again later.
+      // The system gives no more threads now: the existing ones do the same work, and the system is asked again later.
       constexpr int loops = 1000;
       pause_ = loops;
     }
@@ -92,7 +92,7 @@ class Crew {
   std::condition_variable called_, left_;
   std::vector<Job*> jobs_;
   int size_ = 0;
-  int pause_ = 0;  ///< loops until more threads are asked for, where some were refused
+  int pause_ = 0;  ///< loops until more threads are asked for, after a refusal
 };
 
 }  // namespace frontmost

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decimal text of doubles, as std::to_chars() writes it; also where the standard library does not have that for doubles
-// (WebAssembly). What C's functions write there has a point for every locale, since there is but one.
+// Decimal text of doubles, as std::to_chars() writes it, even if the standard library lacks std::to_chars() for doubles
+// (WebAssembly). C's functions write a point there whatever the locale, since there is only one.
 #pragma once
 
 #include <charconv>
@@ -11,17 +11,17 @@
 namespace frontmost {
 
 #if defined(__cpp_lib_to_chars)
-/// Six digits of 1234567 are 1.23457e+06.
+/// Text with significant digits: six digits of 1234567 are 1.23457e+06.
 [[nodiscard]] inline std::string general_text(double value, int digits) {
   char text[64];
   return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr};
 }
-/// One digit behind the point: 12.3.
+/// Text with decimals: one decimal gives 12.3.
 [[nodiscard]] inline std::string fixed_text(double value, int decimals) {
   char text[400];
   return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals).ptr};
 }
-/// As few digits as tell the number from all others.
+/// The fewest digits that tell the number from all others.
 [[nodiscard]] inline std::string shortest_text(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};

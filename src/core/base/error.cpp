@@ -6,7 +6,7 @@
 namespace frontmost {
 namespace {
 
-/// The texts that are not empty, with ": " between them.
+/// Joins the texts that are not empty with ": ".
 std::string joined(std::initializer_list<std::string_view> texts) {
   std::string all;
   for (const std::string_view text : texts) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vectors of expansions: differences, products and determinants of doubles without rounding.
 //
-// A sign is looked for in steps, each of which is taken only where the one before leaves it open. Almost all signs are
-// plain, so that nearly everything ends at the first:
+// A sign is computed in steps, each taken only if the one before leaves the sign open. Almost all signs are decided by
+// the first step:
 //
 //   doubles, with a bound of their error        |value| > error: the sign of the value
-//   pairs of doubles, of twice their length     likewise, with a bound of 2^-92
-//   two of the vectors along one line           0, as of corners of a mesh that lie on one line
+//   pairs of doubles, of twice their length     the same, with a bound of 2^-92
+//   two of the vectors along one line           0, as for vertices of a mesh that lie on one line
 //   expansions                                  certain
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace frontmost {
 
-/// What a dozen roundings may amount to, as a share of the sum of the terms' absolute values.
+/// A bound of a dozen roundings, relative to the sum of the terms' absolute values.
 inline constexpr double kRounding = 32.0 / 9007199254740992.0;
 
 using ExactVector = std::array<Expansion, 3>;
@@ -36,18 +36,18 @@ using ExactVector = std::array<Expansion, 3>;
 
 [[nodiscard]] inline ExactVector exact(const glm::dvec3& v) { return {Expansion(v.x), Expansion(v.y), Expansion(v.z)}; }
 
-/// A double, and by how much it may be wrong.
+/// A double, and a bound of its error.
 struct Bounded {
   double value, error;
 };
 
-/// n.v for a normal with errors; v exact but for a rounding of each component.
+/// n.v for a normal with errors; v is exact but for a rounding of each component.
 [[nodiscard]] inline Bounded bounded_dot(const glm::dvec3& n, const glm::dvec3& n_error, const glm::dvec3& v) {
   const glm::dvec3 a = glm::abs(v);
   return {glm::dot(n, v), glm::dot(n_error, a) + kRounding * glm::dot(glm::abs(n), a)};
 }
 
-/// a x b of vectors that are exact but for a rounding of each component, and by how much each of its own may be wrong.
+/// a x b of vectors that are exact but for a rounding of each component, with an error bound of each component.
 struct BoundedNormal {
   glm::dvec3 value, error;
 
@@ -58,13 +58,13 @@ struct BoundedNormal {
   }
 };
 
-/// The vector from one point to another, neither rounded.
+/// The vector from one point to another; neither point is rounded.
 struct Leg {
   glm::dvec3 to, from{0};
 };
 
-/// The sign of a value whose error is known: 2 where that leaves it open. Without any error the value is 0: each of its
-/// products has a factor that is.
+/// The sign of a value with a known error; 2 if the error leaves the sign open. If the error is 0, so is the value:
+/// each of its products has a factor of 0.
 [[nodiscard]] inline int certain_sign(const Bounded& rounded) {
   if (rounded.value > rounded.error) return 1;
   if (rounded.value < -rounded.error) return -1;
@@ -91,7 +91,7 @@ struct DoubleDouble {
   return {high, ((a.high - (high - part)) + (b.high - part)) + (a.low + b.low)};
 }
 
-/// 0 where twice the length of doubles leaves the sign of the determinant open.
+/// The sign of the determinant, or 0 if twice the length of doubles leaves it open.
 [[nodiscard]] inline int sign_by_double_doubles(const Leg& a, const Leg& b, const Leg& c) {
   const Leg* legs[3] = {&a, &b, &c};
   DoubleDouble v[3][3];
@@ -105,13 +105,13 @@ struct DoubleDouble {
     all = sum(all, product(sum(plus, {-minus.high, -minus.low}), v[2][i]));
     size += (std::abs(plus.high) + std::abs(minus.high)) * std::abs(v[2][i].high);
   }
-  // A product or sum errs by less than 2^-100 of what goes into it; here are seventeen of them.
+  // A product or sum errs by less than 2^-100 of its terms, and there are seventeen of them.
   const double value = all.high + all.low, error = size * 1.6e-28;  // 2^-92
   return value > error ? 1 : value < -error ? -1 : 0;
 }
 
-/// Whether two vectors surely lie along one line. Only where their components are doubles without rounding; otherwise
-/// false, as where it is not so.
+/// Whether two vectors surely lie along one line. Decides only if their components are doubles without rounding;
+/// otherwise false.
 [[nodiscard]] inline bool are_parallel(const Leg& a, const Leg& b) {
   double v[2][3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -131,7 +131,7 @@ struct DoubleDouble {
 
 }  // namespace detail
 
-/// The sign of the determinant of three vectors, exactly: doubles decide where their rounding cannot matter.
+/// The sign of the determinant of three vectors, exactly: doubles decide if their rounding cannot matter.
 [[nodiscard]] inline int sign_of_determinant(const Leg& a, const Leg& b, const Leg& c) {
   const BoundedNormal normal(a.to - a.from, b.to - b.from);
   const int sign = certain_sign(bounded_dot(normal.value, normal.error, c.to - c.from));

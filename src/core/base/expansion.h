@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sums and products of doubles without rounding.
 //
-// A sum of doubles that do not overlap holds any number of bits. The product 0.1 * 0.1 of two doubles, for instance, is
-// the rounded product and what was rounded away, which is again a double:
+// A sum of doubles that do not overlap holds any number of bits. For instance, the product 0.1 * 0.1 of two doubles is
+// the rounded product plus its rounding error, which is again a double:
 //
 //   0.1 * 0.1  =  0.010000000000000002  +  (-8.3e-19)       largest term: the value to within rounding, and the sign
 //
-// Terms are kept smallest first, so the last one decides the sign of the whole. Products take an fma, which is written
-// out here: it is the exact error that is wanted, not a faster product, and it has the same bits on every machine.
+// Terms are kept smallest first, so the last term decides the sign of the sum. Products use an explicit fma: it
+// computes the exact error, with the same bits on every machine.
 //
 // J. Shewchuk. Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates. 1997.
 #pragma once
@@ -22,7 +22,7 @@ namespace frontmost {
 
 namespace detail {
 
-/// A list of doubles; the first few without asking for memory, which took half of the time of all exact signs.
+/// A list of doubles. The first few need no allocation: allocating would take half of the time of all exact signs.
 class TermList {
  public:
   TermList() = default;
@@ -48,7 +48,7 @@ class TermList {
     if (size_ == capacity_) grow();
     begin()[size_++] = term;
   }
-  /// Precondition: not more than there are.
+  /// Precondition: size <= size().
   void shrink(std::size_t size) { size_ = size; }
 
  private:
@@ -67,8 +67,8 @@ class TermList {
 
 }  // namespace detail
 
-/// A number as the sum of doubles that do not overlap, smallest first, without zeros: exact as long as nothing
-/// overflows or underflows. Empty is zero.
+/// A number as a sum of doubles that do not overlap, smallest first, without zeros. Exact unless something overflows or
+/// underflows. An empty sum is zero.
 class Expansion {
  public:
   Expansion() = default;
@@ -81,9 +81,9 @@ class Expansion {
     return result;
   }
 
-  /// -1, 0 or 1: that of the largest term.
+  /// -1, 0 or 1: the sign of the largest term.
   [[nodiscard]] int sign() const { return terms_.empty() ? 0 : terms_.back() > 0 ? 1 : -1; }
-  /// To within two roundings of sums and products: the largest term.
+  /// The largest term: the value to within two roundings of sums and products.
   [[nodiscard]] double rounded() const { return terms_.empty() ? 0 : terms_.back(); }
 
   friend Expansion operator+(Expansion a, const Expansion& b) {
@@ -110,7 +110,7 @@ class Expansion {
   }
 
  private:
-  /// Grow-Expansion with zeros left out.
+  /// Grow-Expansion, without zeros.
   void add(double value) {
     std::size_t kept = 0;
     for (const double term : terms_) {
@@ -123,7 +123,7 @@ class Expansion {
     if (value != 0) terms_.push_back(value);
   }
 
-  /// As few terms as there can be: products of sums would grow without end.
+  /// Reduces the sum to the fewest terms: products of sums would otherwise grow without end.
   void compress() {
     if (terms_.size() < 2) return;
     detail::TermList large;  // largest first

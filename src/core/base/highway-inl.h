@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Highway for kernels: include this header, and nothing of Highway's own.
+// Highway for kernels: include this header, and no header of Highway.
 //
 // A *_kernel.cpp defines HWY_TARGET_INCLUDE as its own name first. This header then includes that file again for each
 // instruction set but the static one. The rest of the file is compiled for the static instruction set.

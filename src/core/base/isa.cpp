@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which instruction sets this machine has and this build holds, asked once.
+// The instruction sets that this machine has and this build holds, found once.
 //
-// Highway could say what the machine has, but its library would have to be loaded for it, which takes 2 ms of every
-// start of a program. So the processor is asked here for what each of the three targets is compiled with; a machine
-// that lacks a part of it runs the next narrower one.
+// Highway's library could tell what the machine has, but loading it takes 2 ms of every start of a program. So this
+// file asks the processor for the features that each of the three targets is compiled with. A machine that lacks one of
+// the features runs the next narrower target.
 #include "base/isa.h"
 
 #include <array>
@@ -34,7 +34,7 @@ constexpr std::array<IsaTarget, 6> kTargets{{
 }};
 
 #if HWY_ARCH_X86
-/// What HWY_TARGET_STR of the three targets asks for. Older compilers do not know f16c by name.
+/// The features that HWY_TARGET_STR names for the three targets. Older compilers do not know f16c by name.
 std::int64_t machine_targets() {
   __builtin_cpu_init();
   unsigned eax = 0, ebx = 0, ecx = 0, edx = 0;
@@ -44,13 +44,14 @@ std::int64_t machine_targets() {
                     __builtin_cpu_supports("aes");
   const bool avx2 = sse4 && f16c && __builtin_cpu_supports("avx") && __builtin_cpu_supports("avx2") &&
                     __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma");
-  // Each includes the one before it, as the compiler's own targets do: no machine has the wider without the narrower.
+  // Each target includes the one before it, as the compiler's own targets do: no machine has the wider without the
+  // narrower.
   const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
   return (sse4 ? HWY_SSE4 : 0) | (avx2 ? HWY_AVX2 : 0) | (avx512 ? HWY_AVX3 : 0);
 }
 #else
-/// Elsewhere there is one for all machines.
+/// Other architectures have one target for all machines.
 std::int64_t machine_targets() { return HWY_TARGETS; }
 #endif
 
@@ -77,7 +78,7 @@ std::string_view name(Isa isa) {
 }
 
 std::int64_t highway_targets(Isa isa) {
-  // What nearly every call asks for is told at once.
+  // Nearly every call asks for `best`, so its bit is stored.
   static const std::int64_t of_best = kTargets[std::size_t(available_isas().back()) - 1].bit;
   if (isa == Isa::best) return of_best;
   for (const Isa available : available_isas())

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names for whole vectors of 32-bit numbers, for kernels that work on as many at once as the machine has room for.
+// Names for whole vectors of 32-bit numbers, for kernels that use as many lanes as the machine has.
 //
 //   D  a tag: which numbers, and how many of them     F  float
-//   V  a vector of them                               I  32-bit integer with a sign
-//   M  a mask: for each of them yes or no             U  32-bit integer without
+//   V  a vector of such numbers                       I  signed 32-bit integer
+//   M  a mask: yes or no for each of them             U  unsigned 32-bit integer
 //
-// Kernels that want a fixed number of lanes (raycast's rays, hidden lines' occluders) name types of their own instead.
+// Kernels with a fixed number of lanes (raycast's rays, hidden lines' occluders) name types of their own instead.
 
 // Included once for every target.
 #if defined(FRONTMOST_BASE_LANE_TYPES_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -33,10 +33,10 @@ using VU = hn::Vec<DU>;
 using MF = hn::Mask<DF>;
 using MI = hn::Mask<DI>;
 
-/// Known when compiled: for arrays that hold a vector.
+/// A compile-time constant, for arrays that hold a vector.
 constexpr std::size_t kMaxLanes = hn::MaxLanes(DF());
 
-/// The same number in every lane.
+/// A vector with `value` in every lane.
 HWY_INLINE VF All(float value) { return hn::Set(DF(), value); }
 
 }  // namespace frontmost::HWY_NAMESPACE

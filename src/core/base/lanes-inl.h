@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Highway 1.0.3 lacks or does by way of memory: masks as bits, and counting lanes from a number known at run time.
+// Operations that Highway 1.0.3 lacks, or does through memory: masks as bits, and counting from a run-time number.
 //
 //   a mask of four lanes         set    -    set   set
 //   its bits, lane 0 lowest      0b1101, of which ForEachBit() gives 0, 2 and 3
@@ -23,7 +23,8 @@ HWY_BEFORE_NAMESPACE();
 namespace frontmost::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Lane i in bit i. What is stored is read in the same size: a wider read would wait for the store to reach the cache.
+/// Lane i in bit i. The bytes are read in the size in which they are stored: a wider read would wait for the store to
+/// reach the cache.
 template <class D>
 HWY_INLINE std::uint64_t BitsOf(D d, hn::Mask<D> mask) {
   using Bits = std::conditional_t<(hn::MaxLanes(D()) > 8), std::uint16_t, std::uint8_t>;
@@ -35,7 +36,7 @@ HWY_INLINE std::uint64_t BitsOf(D d, hn::Mask<D> mask) {
   return bits & ((std::uint64_t(1) << hn::Lanes(d)) - 1);
 }
 
-/// `first` and up. Highway's own writes lanes to memory one by one unless it knows `first` when compiled.
+/// `first` and up. Highway's own function writes lanes to memory one by one unless `first` is a compile-time constant.
 template <class D>
 HWY_INLINE hn::Vec<D> CountFrom(D d, hn::TFromD<D> first) {
   return hn::Add(hn::Iota(d, hn::TFromD<D>(0)), hn::Set(d, first));

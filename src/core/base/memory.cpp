@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory for large planes. The first touch of a 4 KiB page costs about as much as writing it several times: with
-// large pages, 32 MiB are ready in 5 ms instead of 15.
+// Memory for large planes. The first touch of a 4 KiB page costs about as much as writing it several times. With large
+// pages, 32 MiB are ready in 5 ms instead of 15.
 
 #include "base/memory.h"
 
@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kAlignment = 64;
 constexpr std::size_t kLargePage = std::size_t(2) << 20;
 constexpr std::size_t kWorthLargePages = kLargePage;
-/// glibc keeps a piece for the next call only where it has less than 32 MiB.
+/// glibc keeps a block for the next call only if it has less than 32 MiB.
 constexpr std::size_t kMostArena = std::size_t(28) << 20;
 
 constexpr std::size_t round_up(std::size_t bytes, std::size_t unit) { return (bytes + unit - 1) / unit * unit; }
@@ -52,7 +52,7 @@ void want_large_pages(void* start, std::size_t bytes) {
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
   if (bytes < kWorthLargePages) return;
   const Pages pages(start, bytes);
-  // Where small pages are larger than that, the system says no.
+  // If small pages are larger than the range, the system refuses.
   (void)madvise(pages.begin(), pages.size(), MADV_HUGEPAGE);
 #else
   (void)start, (void)bytes;
@@ -73,14 +73,14 @@ void populate_pages(void* start, std::size_t bytes, const Execution& execution) 
 
 namespace detail {
 
-/// Before what a Buffer holds.
+/// Header before the contents of a Buffer.
 struct alignas(kAlignment) Block {
-  Slab* slab = nullptr;     ///< null: memory of its own
-  Block* before = nullptr;  ///< in the slab
+  Slab* slab = nullptr;     ///< null: the block has memory of its own
+  Block* before = nullptr;  ///< the block before it in the slab
   bool is_dropped = false;
 };
 
-/// A stack of blocks behind itself.
+/// A stack of blocks that follow this header.
 struct alignas(kAlignment) Slab {
   Slab(void* whole, std::size_t room) : memory(whole), next(reinterpret_cast<char*>(this + 1)), end(next + room) {}
 
@@ -92,7 +92,7 @@ struct alignas(kAlignment) Slab {
     ++users;
     return last;
   }
-  /// `block`, or null for the arena. \returns whether nobody uses the slab any more.
+  /// Drops `block`, or the arena if it is null. \returns whether nothing uses the slab any more.
   [[nodiscard]] bool drop(Block* block) noexcept {
     const std::lock_guard lock(mutex);
     if (block) block->is_dropped = true;
@@ -100,7 +100,7 @@ struct alignas(kAlignment) Slab {
     return --users == 0;
   }
 
-  void* const memory;  ///< in which all this lies
+  void* const memory;  ///< the allocation that holds the slab
 
  private:
   std::mutex mutex;
@@ -111,7 +111,7 @@ struct alignas(kAlignment) Slab {
 
 namespace {
 
-/// Of this thread's innermost Arena. Asked by way of a template, so that builds without arenas have no such memory.
+/// The slab of this thread's innermost Arena. A template, so that builds without arenas have no thread-local variable.
 template <bool has_room>
 struct CurrentSlab {
   static Slab*& place() {
@@ -128,12 +128,12 @@ struct CurrentSlab<false> {
 };
 using Current = CurrentSlab<Arena::has_room>;
 
-/// Large pieces in large pages; null where there is no room.
+/// Allocates large blocks in large pages; null if there is no memory.
 void* allocate_alone(std::size_t bytes) {
   const bool large = bytes >= kWorthLargePages;
   const std::size_t alignment = large ? kLargePage : kAlignment;
   void* pointer = std::aligned_alloc(alignment, round_up(bytes, alignment));
-  // A last page that would be less than half full is better made of small ones.
+  // Small pages are better for a last large page that would be less than half full.
   if (pointer && large) want_large_pages(pointer, (bytes + kLargePage / 2) / kLargePage * kLargePage);
   return pointer;
 }
@@ -145,8 +145,8 @@ void drop(Slab* slab, Block* block) noexcept {
   std::free(memory);
 }
 
-/// Not by aligned_alloc(): glibc keeps a piece that is given back for the next one only up to the size that the last
-/// one had without what its alignment took.
+/// Uses malloc() instead of aligned_alloc(): glibc keeps a freed block for the next one only up to the last block's
+/// size without the padding of its alignment.
 Slab* make_slab(std::size_t room) {
   const std::size_t size = sizeof(Slab) + room, alignment = size < kWorthLargePages ? kAlignment : kLargePage;
   void* const memory = std::malloc(size + alignment);
@@ -161,7 +161,7 @@ Slab* make_slab(std::size_t room) {
 }  // namespace
 
 void* allocate(std::size_t bytes) {
-  // Rounded up, such a size would wrap around to a small one.
+  // Sizes near the greatest would wrap around to a small size when rounded up.
   if (bytes > std::size_t(-1) - 2 * kLargePage) throw std::bad_alloc();
   const std::size_t size = sizeof(Block) + round_up(bytes, kAlignment);
   Slab* const current = Current::get();

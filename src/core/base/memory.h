@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory of many pages: large pages, one piece for the many Buffers of one call, and asking for lines ahead of their
-// use.
+// Memory of many pages: large pages, one block for the many Buffers of one call, and prefetching.
 //
-// The first touch of a 4 KiB page costs about as much as writing it several times, and every look-up far away misses
-// the processor's table of pages: large pages (2 MiB) spare both. Buffers have them by themselves where they are large
-// enough; other arrays ask for them here, and small Buffers share them in an Arena:
+// The first touch of a 4 KiB page costs about as much as writing it several times, and every distant look-up misses the
+// processor's table of pages. Large pages (2 MiB) avoid both. Large Buffers use them on their own; other arrays ask for
+// them here, and small Buffers share them in an Arena:
 //
 //   an Arena's slab, in large pages
 //   +------+--------+----------+--------------+--------------------------------+
 //   | slab | Buffer |  Buffer  | Buffer       |          room                  |
 //   +------+--------+----------+--------------+--------------------------------+
-//                                             ^ next: it goes back to the left when the last Buffers are dropped
+//                                             ^ next: moves back to the left when the last Buffers are dropped
 #pragma once
 
 #include <cstddef>
@@ -20,15 +19,15 @@
 
 namespace frontmost {
 
-/// Asks the system to back [start, start + bytes), which was not touched yet, by large pages. Only a wish; nothing
-/// happens where it would not pay.
+/// Asks the system to back [start, start + bytes), which was not touched yet, by large pages. This is only a hint, and
+/// does nothing if it would not pay.
 void want_large_pages(void* start, std::size_t bytes);
 
-/// Has the system make the pages of a range now, by several threads, instead of one by one when they are touched.
-/// The range's contents stay. Nothing happens for ranges of a few pages, or where the system does not know how.
+/// Makes the pages of a range now, on several threads, instead of one by one at first touch. Keeps the range's
+/// contents. Does nothing for ranges of a few pages, or if the system lacks the means.
 void populate_pages(void* start, std::size_t bytes, const Execution& execution);
 
-/// values.reserve(count) in large pages that are there.
+/// values.reserve(count) in large pages that are already populated.
 template <class T>
 void reserve_large(std::vector<T>& values, std::size_t count, const Execution& execution) {
   if (count <= values.capacity()) return;
@@ -43,16 +42,15 @@ namespace detail {
 struct Slab;
 }
 
-/// While it lives, the Buffers of the thread that made it lie side by side in large pages, as long as there is room:
-/// the first touch of thousands of small pages, which Buffers of less than a large page have each by itself, was a
-/// third of draw_lines() in a new process. Buffers may outlive it, and may be dropped in any order by any thread; their
-/// room is there again when those made after them are gone, too. To be destroyed in the opposite order of making, on
-/// the same thread.
+/// While an Arena lives, the Buffers of its thread lie side by side in large pages, as long as there is room. Without
+/// it, the first touch of thousands of small pages takes a third of draw_lines() in a new process. Buffers may outlive
+/// the Arena, and any thread may drop them in any order; their room is free again once later Buffers are gone, too.
+/// Arenas must be destroyed in the reverse order of their making, on the same thread.
 class Arena {
  public:
-  /// Not under AddressSanitizer, which finds what reads beyond a Buffer's end where nothing lies beside it; nor in
-  /// WebAssembly, which has no pages to be touched, and where code for threads runs in modules without them, which have
-  /// no memory of a thread's own.
+  /// False under AddressSanitizer, which finds reads beyond a Buffer's end only if nothing lies beside the Buffer.
+  /// False in WebAssembly, which has no pages to touch, and in which code for threads runs in modules without
+  /// thread-local memory.
   static constexpr bool has_room =
 #if defined(__SANITIZE_ADDRESS__) || defined(__wasm__)
       false;
@@ -66,7 +64,7 @@ class Arena {
       true;
 #endif
 
-  /// With room for so many bytes, at most 28 MiB, or none where there is no memory. What is not touched costs nothing.
+  /// Makes room for `bytes`, at most 28 MiB, or no room if there is no memory. Untouched room costs nothing.
   explicit Arena(std::size_t bytes);
   ~Arena();
   Arena(const Arena&) = delete;
@@ -77,10 +75,10 @@ class Arena {
   detail::Slab* outer_;
 };
 
-/// Asks for the cache line of an address that is read soon. Any address will do.
+/// Prefetches the cache line of an address that is read soon. Any address is allowed.
 inline void prefetch_line(const void* address) {
   __builtin_prefetch(address);
-  // g++ 12 takes a function that does nothing but prefetch for one without effect, and drops the calls of it.
+  // g++ 12 treats a function that only prefetches as one without effect, and drops calls of it.
   asm volatile("");
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sign of the determinant a.x b.y - a.y b.x + b.x c.y - b.y c.x + c.x a.y - c.y a.x. The usual form, a product of
-// differences, rounds when the differences do. This one does not round at all: a product of two floats has at most 48
-// bits and fits a double, from the smallest subnormal squared (2^-298) to the greatest float squared (2^256). Only the
-// sum of six doubles is left, and expansions add them without error.
+// differences, rounds if the differences do. This form does not round at all: a product of two floats has at most 48
+// bits and fits a double, from the smallest subnormal squared (2^-298) to the greatest float squared (2^256).
+// Expansions then add the six doubles without error.
 //
 // J. Shewchuk. Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates. 1997.
 #include "base/orientation.h"
@@ -20,8 +20,8 @@ Sum two_sum(double a, double b) {
   return {high, (a - a_part) + (b - b_part)};
 }
 
-/// Adds one term after the other to a list of numbers that do not overlap, smallest first, whose exact sum is that of
-/// the terms: the last that is not zero decides.
+/// Adds the terms one by one to a list of numbers that do not overlap, smallest first, whose exact sum is that of the
+/// terms: the last number that is not zero decides.
 int sign_of_sum(const double (&terms)[6]) {
   double parts[6];
   int count = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Output that is there whole or not at all: written beside its place without a name, and named when it is complete.
+// Output files that are complete or absent: written beside their place without a name, and named when complete.
 
 #include "base/output_file.h"
 
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr mode_t new_file_mode = 0666;  // less the umask
 
-/// Where a chain of symbolic links leads, whether something is there or not.
+/// The end of a chain of symbolic links, whether something is there or not.
 fs::path follow_links(fs::path path) {
   constexpr int longest_chain = 40;  // as Linux counts
   std::error_code ignored;
@@ -71,13 +71,13 @@ OutputFile::OutputFile(const std::string& path, Staging staging)
   const bool exists = ::stat(target_.c_str(), &status) == 0;
   if (!exists && errno != ENOENT) fail("cannot write");
   if (exists && S_ISDIR(status.st_mode)) throw Error(ErrorCode::file_unwritable, name_, "", "is a folder");
-  // Devices and pipes are written to, not replaced: nobody wants /dev/null to become a file.
+  // Devices and pipes are written to, not replaced: /dev/null must not become a file.
   if (exists && !S_ISREG(status.st_mode)) {
     open_direct();
     return;
   }
   if (exists) {
-    // Renaming needs no permission for the file that goes away; take its owner by their word all the same.
+    // Renaming needs no permission for the replaced file; a file without write permission is respected all the same.
     if (::access(target_.c_str(), W_OK) != 0) fail("cannot write");
     mode_ = status.st_mode & 0777;
   }
@@ -90,7 +90,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::fail(const char* doing) const {
-  // Before anything else is called: making a string may change it.
+  // errno is read first, as making a string may change it.
   const int code = errno;
   throw Error(ErrorCode::file_unwritable, name_, "", doing + (": " + std::generic_category().message(code)));
 }
@@ -103,7 +103,7 @@ void OutputFile::open_direct() {
 
 void OutputFile::open_staged(Staging staging) {
   if (!target_.has_filename()) throw Error(ErrorCode::file_unwritable, name_, "", "is not a file name");
-  // A file without a name goes by itself when the process ends, however it ends; a hidden one would stay behind.
+  // A file without a name vanishes when the process ends, however it ends; a hidden file would stay behind.
   if (staging == Staging::named || !open_unnamed()) open_named();
 }
 
@@ -114,7 +114,7 @@ bool OutputFile::open_unnamed() {
     kind_ = Kind::unnamed;
     return true;
   }
-  if (descriptor_ >= 0) ::close(descriptor_);  // no /proc, so it could never be named
+  if (descriptor_ >= 0) ::close(descriptor_);  // without /proc the file could never be named
   descriptor_ = -1;
 #endif
   return false;
@@ -135,7 +135,7 @@ void OutputFile::write(std::span<const std::byte> bytes) {
     const ssize_t written = ::write(descriptor_, bytes.data(), std::min(bytes.size(), most));
     if (written >= 0) {
       bytes = bytes.subspan(std::size_t(written));
-    } else if (errno == EAGAIN) {  // a pipe that someone made non-blocking
+    } else if (errno == EAGAIN) {  // a pipe that somebody made non-blocking
       pollfd ready{descriptor_, POLLOUT, 0};
       ::poll(&ready, 1, -1);
     } else if (errno != EINTR) {
@@ -146,7 +146,7 @@ void OutputFile::write(std::span<const std::byte> bytes) {
 
 void OutputFile::commit() {
   if (kind_ == Kind::standard_output) return;
-  // Before the file has its name, so that nobody can open it with other permissions than the old one had.
+  // Permissions are set before the file has its name, so nobody can open it with others than the old file had.
   if (mode_ && kind_ != Kind::direct && ::fchmod(descriptor_, *mode_) != 0) fail("cannot set permissions");
   if (kind_ == Kind::unnamed) give_name();
   close();
@@ -155,14 +155,14 @@ void OutputFile::commit() {
   temporary_.clear();
 }
 
-/// Links the nameless file to its place or, as links never replace anything, to a name from where it can be renamed.
+/// Links the nameless file to its place, or, as links never replace a file, to a name from which it can be renamed.
 void OutputFile::give_name() {
 #ifdef O_TMPFILE
   const std::string source = link_of(descriptor_);
   const auto link_to = [&](const fs::path& path) {
     return ::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0;
   };
-  // Straight to its place where there was nothing; if something has come there meanwhile it is replaced, below.
+  // Link directly if nothing was at the place; a file that has come there meanwhile is replaced below.
   if (!mode_ && link_to(target_)) return;
   temporary_ = make_beside(target_, link_to);
   if (temporary_.empty()) fail("cannot create");
@@ -170,7 +170,7 @@ void OutputFile::give_name() {
 }
 
 void OutputFile::close() {
-  // Some file systems find only now that the disk is full.
+  // Some file systems report only now that the disk is full.
   const int descriptor = descriptor_;
   descriptor_ = -1;
   if (::close(descriptor) != 0 && errno != EINTR) fail("cannot write");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes out: files that are whole or not there at all.
+// Output files that are complete or absent.
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,18 @@
 
 namespace frontmost {
 
-/// A file being written. Until commit() nothing is seen at its place, and a file that was there stays as it is;
-/// destruction without commit() leaves no trace.
+/// A file being written. Until commit() nothing is visible at its place, and an existing file stays as it is.
+/// Destruction without commit() leaves no trace.
 ///
-/// Where the file system can (O_TMPFILE), the bytes are kept in a file without a name, so that not even a killed
-/// process leaves something behind; otherwise in a hidden one beside the target. Symbolic links are followed: the file
-/// that they lead to is replaced, not the link. A replaced file's permissions are kept, a new one's follow the umask.
-/// "-" is standard output; it, devices and pipes are written to directly.
+/// If the file system can (O_TMPFILE), the bytes go to a file without a name, so that even a killed process leaves
+/// nothing behind; otherwise to a hidden file beside the target. Symbolic links are followed: the file that they lead
+/// to is replaced, not the link. A replaced file's permissions are kept; those of a new file follow the umask. "-" is
+/// standard output. Standard output, devices and pipes are written to directly.
 class OutputFile {
  public:
   enum class Staging { best, named };
 
-  /// \throws Error file_unwritable, as all members do.
+  /// \throws Error file_unwritable, as all member functions do.
   explicit OutputFile(const std::string& path, Staging staging = Staging::best);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
@@ -30,7 +30,7 @@ class OutputFile {
   void write(std::span<const std::byte> bytes);
   void commit();
 
-  /// What stands for the file in messages.
+  /// The file's name in messages.
   [[nodiscard]] const std::string& name() const { return name_; }
 
  private:
@@ -46,8 +46,8 @@ class OutputFile {
 
   std::string name_;
   std::filesystem::path target_;
-  std::filesystem::path temporary_;  ///< exists as long as this is not empty
-  std::optional<unsigned> mode_;     ///< of the file that is replaced
+  std::filesystem::path temporary_;  ///< exists unless this is empty
+  std::optional<unsigned> mode_;     ///< permissions of the file that is replaced
   Kind kind_ = Kind::direct;
   int descriptor_ = -1;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several files cannot be replaced at once. They come as near to it as a file system allows: all are written beside
-// their places first, where a full disk is found out, and are then only renamed.
+// Several files cannot be replaced at once. This code comes as near to it as a file system allows: all files are first
+// written beside their places, where a full disk is found out, and are then only renamed.
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
@@ -33,7 +33,7 @@ MadeFolder::~MadeFolder() {
 StagedFolder::StagedFolder(const std::string& folder) : folder_(folder) {
   std::string name = (folder_ / ".frontmost-XXXXXX").string();
   if (!::mkdtemp(name.data())) {
-    const int code = errno;  // before strings are made: that may change it
+    const int code = errno;  // read before strings are made, which may change it
     throw Error(ErrorCode::file_unwritable, folder, "", "cannot write: " + std::generic_category().message(code));
   }
   staged_ = name;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops over chunks on threads: those of TBB, where it is built in and can be trusted, else threads made for one loop;
-// without TBB those of a crew, which stay.
+// Loops over chunks on threads. With TBB, its threads are used if it can be trusted, else threads made for one loop;
+// without TBB the threads of a crew, which stay.
 //
 //   caller    --- check --- chunk 0 --- chunk 2 --- chunk 5 ---+
 //   helper    ------------- chunk 1 --- chunk 4 ---------------+--- the first exception is thrown again, or go on
 //   helper    ------------- chunk 3 --- chunk 6 ---------------+
 //
-// Whoever is free takes the next number from one counter. That balances chunks of any length, and since no chunk knows
-// who runs it, results cannot depend on it.
+// A free thread takes the next number from one counter. This balances chunks of any length. No chunk knows which thread
+// runs it, so results cannot depend on threads.
 #include "base/parallel.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@
 namespace frontmost {
 namespace {
 
-// Chunks of one loop, handed out in order to whoever asks.
+// Chunks of one loop, handed out in order to free threads.
 class ChunkQueue {
  public:
   ChunkQueue(const Execution& execution, std::size_t count, std::size_t grain, detail::ChunkFunction function,
@@ -41,11 +41,11 @@ class ChunkQueue {
 
   [[nodiscard]] std::size_t chunk_count() const { return (count_ + grain_ - 1) / grain_; }
 
-  // Runs chunks until none are left or one has failed.
+  // Runs chunks until none is left or one has failed.
   void drain() noexcept {
     const IeeeScope ieee;
     for (;;) {
-      // Relaxed: the number alone says what to do; the caller sees what bodies wrote by the end of the loop.
+      // Relaxed: only the number matters; the caller sees the writes of bodies at the end of the loop.
       const std::size_t chunk = next_.fetch_add(1, std::memory_order_relaxed);
       if (chunk >= chunk_count() || failed_.load(std::memory_order_relaxed)) return;
       try {
@@ -75,20 +75,20 @@ class ChunkQueue {
 };
 
 #if defined(FRONTMOST_THREADS_tbb)
-/// Threads for this loop alone.
+/// Drains the queue on threads made for this loop alone.
 void drain_on_own(int threads, ChunkQueue& queue) {
   std::vector<std::thread> helpers;
   helpers.reserve(std::size_t(threads));
   try {
     for (int i = 1; i < threads; ++i) helpers.emplace_back([&] { queue.drain(); });
   } catch (const std::exception&) {
-    // The system gives no more threads, or no memory for them: those that there are do the same work.
+    // The system gives no more threads, or no memory for them: the existing ones do the same work.
   }
   queue.drain();
   for (std::thread& helper : helpers) helper.join();
 }
 
-/// A place for that many threads: more than cores need both an arena of their own and a higher global limit.
+/// An arena for so many threads: more threads than cores need both an arena of their own and a higher global limit.
 struct Helpers {
   explicit Helpers(int threads)
       : limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads)), arena(threads) {}
@@ -97,8 +97,8 @@ struct Helpers {
   tbb::task_arena arena;
 };
 
-/// Has TBB make its threads now, by work that waits until all have come. It may come to no more than it wants; then the
-/// rest is made when it is.
+/// Makes TBB start its threads now, with work that waits until all have come. TBB may start fewer at first; it then
+/// starts the rest when it wants to.
 void gather(int threads) {
   constexpr std::chrono::milliseconds patience(50);
   const auto until = std::chrono::steady_clock::now() + patience;
@@ -114,8 +114,8 @@ void gather(int threads) {
   });
 }
 
-/// Whether TBB can be trusted with so many: a thread that the system refuses it ends the process. So as many are tried
-/// beforehand, and as many again, because those that were tried may count a little longer than they live.
+/// Whether TBB can be trusted with so many threads: a refused thread makes it end the process. So as many are tried
+/// beforehand, and as many again, because tried threads may count a little longer than they live.
 bool tbb_may_use(int threads) {
   static std::mutex mutex;
   static std::atomic<int> made{1};
@@ -139,9 +139,9 @@ void drain_here(int threads, ChunkQueue& queue) {
 
 void drain_on(int threads, ChunkQueue& queue) {
   if (!tbb_may_use(threads)) return drain_on_own(threads, queue);
-  // In the arena that the caller is in anyway helpers look for the next loop for some 50 us before they go to sleep: to
-  // wake one takes as long as many a loop, 40 us. Who waits for the end of an inner loop must not begin with the outer
-  // one's chunks meanwhile.
+  // In the caller's own arena, helpers look for the next loop for some 50 us before they sleep: waking one takes 40 us,
+  // as long as many a loop. A thread that waits for the end of an inner loop must not begin chunks of the outer loop
+  // meanwhile.
   if (threads <= tbb::this_task_arena::max_concurrency())
     return tbb::this_task_arena::isolate([&] { drain_here(threads, queue); });
   Helpers helpers(threads);

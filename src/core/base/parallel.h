@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only road to threads, and the setting of the processor that every result depends on.
+// Loops on threads (the only way to use threads), and the processor settings that every result depends on.
 //
-// Chunk boundaries depend on the range and the grain, never on the number of threads, so that work split by chunk gives
-// the same result however many threads there are:
+// Chunk boundaries depend on the range and the grain, never on the number of threads. So work split by chunk gives the
+// same result for any number of threads:
 //
 //   indices   0        grain     2 grain   3 grain       count
 //             |---------|---------|---------|-----...-----|
 //             chunk 0    chunk 1   chunk 2                    taken in this order by whichever thread is free
 //
-// Rounding mode and flush-to-zero change the last bits of everything. Bodies of loops run with the IEEE defaults
-// already; what computes outside of a loop makes an IeeeScope first.
+// Rounding mode and flush-to-zero change the last bits of everything. Bodies of loops always run with the IEEE
+// defaults; code that computes outside of a loop makes an IeeeScope first.
 #pragma once
 
 #include <cfenv>
@@ -30,8 +30,8 @@ void run_chunks(const Execution& execution, std::size_t count, std::size_t grain
 }  // namespace detail
 
 /// Calls `body(begin, end)` for consecutive chunks of `grain` indices that cover [0, count), in any order, on
-/// execution.threads threads. The first exception of a body is thrown again here. Polls Watch::cancelled between
-/// chunks. Every body runs with round-to-nearest and without flush-to-zero, whatever the caller's setting.
+/// execution.threads threads. Rethrows the first exception of a body. Polls Watch::cancelled between chunks. Every body
+/// runs with round-to-nearest and without flush-to-zero, whatever the caller's setting.
 template <class Body>
 void parallel_for(const Execution& execution, std::size_t count, std::size_t grain, Body&& body) {
   detail::run_chunks(
@@ -45,9 +45,9 @@ void parallel_for(const Execution& execution, std::size_t count, std::size_t gra
 /// The number of threads that parallel_for would use. \throws Error bad_argument outside 0 to 1024.
 [[nodiscard]] int thread_count(const Execution& execution);
 
-/// \throws Error cancelled when the watch says so.
+/// \throws Error cancelled if the watch says so.
 void check_cancelled(const Execution& execution);
-/// Tells the watch, if there is one.
+/// Reports to the watch, if there is one.
 void report_progress(const Execution& execution, std::string_view stage, double fraction);
 
 class IeeeScope {

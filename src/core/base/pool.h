@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Things that are costly to make, lent to one thread at a time and kept for the next.
+// Objects that are costly to make, lent to one thread at a time and kept for the next.
 //
-// Threads of a loop come and go, so nothing may be kept by thread; what a chunk of work needs (scratch arrays, a set of
-// tiles) is borrowed for the chunk. There are never more things than were lent at the same time. Which of them a chunk
-// gets must not change what it computes.
+// Threads of a loop come and go, so nothing may be kept by thread. A chunk of work borrows the objects that it needs
+// (scratch arrays, a set of tiles). There are never more objects than were lent at the same time. Results must not
+// depend on which object a chunk gets.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ namespace frontmost {
 template <class T>
 class Pool {
  public:
-  /// Gives the thing back when it goes.
+  /// Returns the object to the pool on destruction.
   class Lease {
    public:
     Lease(Pool& pool, std::unique_ptr<T> thing) : pool_(pool), thing_(std::move(thing)) {}
@@ -31,7 +31,7 @@ class Pool {
     std::unique_ptr<T> thing_;
   };
 
-  /// The thing that was given back last, or what `make()` returns: a std::unique_ptr<T>.
+  /// The object that was returned last, or the result of `make()`, a std::unique_ptr<T>.
   template <class Make>
   [[nodiscard]] Lease borrow(const Make& make) {
     {
@@ -44,7 +44,7 @@ class Pool {
     }
     std::unique_ptr<T> thing = make();
     const std::lock_guard lock(mutex_);
-    free_.reserve(++count_);  // so that giving back never fails
+    free_.reserve(++count_);  // so that returning an object never fails
     return Lease(*this, std::move(thing));
   }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many more threads the system would give: limits on processes and on memory refuse some.
+// The number of threads that the system would still give: limits on processes and on memory refuse some.
 //
-// Only TBB needs to know: a thread that the system refuses it ends the process, so as many are tried beforehand.
-// Threads that are made here for one loop need not: who is refused some goes on with those that there are.
+// Only TBB needs this number: a refused thread makes TBB end the process, so as many threads are tried beforehand.
+// Threads that are made here for one loop need no such test: after a refusal the loop continues with fewer.
 #pragma once
 
 #include <condition_variable>
@@ -14,11 +14,11 @@
 
 namespace frontmost {
 
-/// Starts a thread. \throws std::system_error or std::bad_alloc where there is none.
+/// Starts a thread. \throws std::system_error or std::bad_alloc if there is none.
 using StartThread = std::function<std::thread(std::function<void()>)>;
 
-/// Starts threads until `wanted` live at once or one is refused, and ends them. \returns how many there were.
-/// About 15 us a thread.
+/// Starts threads until `wanted` live at once or one is refused, and ends them. \returns how many there were. About 15
+/// us a thread.
 [[nodiscard]] inline int count_spare_threads(int wanted, const StartThread& start) {
   std::mutex mutex;
   std::condition_variable changed;
@@ -32,7 +32,7 @@ using StartThread = std::function<std::thread(std::function<void()>)>;
   try {
     while (int(threads.size()) < wanted) threads.push_back(start(wait));
   } catch (const std::exception&) {
-    // Refused, as may well be: those that there are say how many.
+    // A refusal is expected: the threads started so far are the answer.
   }
   {
     const std::lock_guard lock(mutex);

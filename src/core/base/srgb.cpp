@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sRGB function by roots instead of powers, and its tables, which are made when this is compiled.
+// The sRGB function by roots instead of powers, and its tables, which are computed at compile time.
 //
-// srgb8_of_linear() looks up a float by the upper half of its bits. From one byte to the next there is a threshold; a
-// bucket holds one at most, and its entry is made such that adding the lower half of the bits carries into the byte
-// just from the threshold on:
+// srgb8_of_linear() looks up a float by the upper half of its bits. A bucket holds at most one threshold from one byte
+// to the next. Its entry is such that adding the lower half of the bits carries into the byte exactly from the
+// threshold on:
 //
 //   entry            | byte     | 65536 - threshold |
 //   + lower half     | 0        | bits              |
-//   = upper half     byte, or byte + 1 where the bits reach the threshold
+//   = upper half     byte, or byte + 1 if the bits reach the threshold
 #include "base/srgb.h"
 
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace frontmost {
 namespace {
 
-// The exponent 2.4 is 12/5, so that both directions are roots of products. Newton's iteration for a root uses only
+// The exponent 2.4 is 12/5, so both directions are roots of products. Newton's iteration for a root uses only
 // operations that every machine, and the compiler, rounds alike.
 
 /// value^(12/5) for value in (0.05, 1].
@@ -53,7 +53,7 @@ constexpr std::uint32_t float_bits_from(double value) {
   }
   const double mantissa = (value - 1) * 8388608.0;
   const auto whole = std::uint32_t(mantissa);
-  return (exponent << 23) + whole + (double(whole) < mantissa ? 1 : 0);  // a carry moves on into the exponent, rightly
+  return (exponent << 23) + whole + (double(whole) < mantissa ? 1 : 0);  // a carry correctly moves on into the exponent
 }
 
 /// The first float of each byte from 1 on.
@@ -92,11 +92,11 @@ constexpr std::array<float, 256> linear_table() {
   return result;
 }
 
-constexpr double kLinearEnd = 0.0031308;  ///< of the straight piece near zero
+constexpr double kLinearEnd = 0.0031308;  ///< end of the linear segment near zero
 
 double curved(double linear) { return 1.055 * power_5_12(linear) - 0.055; }
 
-/// 65535 times the curved piece as parabolas, each over 65536 neighbouring floats, through both ends and the middle.
+/// 65535 times the curved segment, as parabolas through both ends and the middle of 65536 neighbouring floats each.
 class Parabolas {
  public:
   Parabolas() {
@@ -107,7 +107,7 @@ class Parabolas {
       pieces_[i] = {low, 4 * middle - 3 * low - high, 2 * (low + high) - 4 * middle};
     }
   }
-  /// Off by 1e-4 at most.
+  /// Wrong by at most 1e-4.
   [[nodiscard]] double operator()(float linear) const {
     std::uint32_t bits;
     std::memcpy(&bits, &linear, sizeof bits);
@@ -120,7 +120,7 @@ class Parabolas {
   struct Piece {
     double at_start, slope, bend;
   };
-  static constexpr std::uint32_t kFirst = 0x3B4D2E1Cu >> 16;  // of kLinearEnd as a float
+  static constexpr std::uint32_t kFirst = 0x3B4D2E1Cu >> 16;  // kLinearEnd as a float
 
   static double start(std::size_t i) {
     const std::uint32_t bits = (kFirst + std::uint32_t(i)) << 16;
@@ -143,10 +143,10 @@ std::uint16_t srgb16_of_linear(float linear) {
   if (!(linear > 0)) return 0;  // NaN too
   if (linear >= 1) return 65535;
   if (double(linear) > kLinearEnd) {
-    // Made when it is first asked for: most programs write 8 bits.
+    // Made at the first call, as most programs write 8 bits.
     static const Parabolas parabolas;
     const double near = parabolas(linear) + 0.5, whole = double(std::uint32_t(near)), fraction = near - whole;
-    // Beyond the parabola's error from the next step the answer is certain: 499 times in 500.
+    // The answer is certain beyond the parabola's error from the next step: 499 times in 500.
     constexpr double doubt = 1e-3;
     if (fraction > doubt && fraction < 1 - doubt) return std::uint16_t(whole);
   }

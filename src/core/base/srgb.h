@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sRGB transfer function (IEC 61966-2-1), exact and the same on every machine: only operations that IEEE 754
-// rounds correctly are used, never pow.
+// The sRGB transfer function (IEC 61966-2-1), exact and the same on every machine: it uses only operations that IEEE
+// 754 rounds correctly, never pow.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace frontmost {
 
-/// The sRGB value in [0, 1] of a linear one in [0, 1], to about 1e-15.
+/// The sRGB value in [0, 1] of a linear value in [0, 1], to about 1e-15.
 [[nodiscard]] double srgb_of_linear(double linear);
 
 namespace detail {
@@ -20,15 +20,15 @@ inline constexpr std::uint32_t least_srgb8_bits = 0x39000000u;
 inline constexpr std::uint32_t one_bits = 0x3F800000u;
 inline constexpr std::size_t srgb8_bucket_count = ((one_bits - least_srgb8_bits) >> 16) + 1;
 
-/// Buckets of 65536 neighbouring floats are so narrow that none holds more than one of the 255 thresholds between
-/// the bytes. An entry is the bucket's first byte in its high half, and in its low half what makes the low bits of a
-/// float carry into the high half from the threshold on: lookup, comparison and step are one addition.
+/// Buckets of 65536 neighbouring floats are so narrow that none holds more than one of the 255 thresholds between the
+/// bytes. The high half of an entry is the bucket's first byte. From the threshold on, its low half plus the low bits
+/// of a float carry into the high half: lookup, comparison and step are one addition.
 extern const std::array<std::uint32_t, srgb8_bucket_count> srgb8_buckets;
 extern const std::array<float, 256> srgb8_linears;
 
 }  // namespace detail
 
-/// The nearest byte: round(255 * sRGB(linear)). Values out of [0, 1] are clamped, NaN gives 0.
+/// The nearest byte: round(255 * sRGB(linear)). Values outside [0, 1] are clamped, NaN gives 0.
 [[nodiscard]] inline std::uint8_t srgb8_of_linear(float linear) {
   const float above = linear > detail::least_srgb8 ? linear : detail::least_srgb8;  // false for NaN
   const float clamped = above < 1.0f ? above : 1.0f;
@@ -41,7 +41,7 @@ extern const std::array<float, 256> srgb8_linears;
 /// The linear value of an sRGB byte, rounded to float.
 [[nodiscard]] inline float linear_of_srgb8(std::uint8_t value) { return detail::srgb8_linears[value]; }
 
-/// The same for 16 bits: round(65535 * sRGB(linear)). Slower: about 3 ns a value.
+/// The nearest 16-bit value: round(65535 * sRGB(linear)). Slower: about 3 ns a value.
 [[nodiscard]] std::uint16_t srgb16_of_linear(float linear);
 [[nodiscard]] float linear_of_srgb16(std::uint16_t value);
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names come from files and may be any bytes; what shows them wants UTF-8, and some of it obeys control characters.
+// Names come from files and may be any bytes. Programs that show them expect UTF-8, and some obey control characters.
 #include "frontmost/base.h"
 
 namespace frontmost {
 namespace {
 
-/// Bytes of the character that `text` begins with; 0: it begins with none.
+/// Bytes of the character at the beginning of `text`; 0 if there is no valid character.
 std::size_t character_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return 1;
@@ -13,14 +13,14 @@ std::size_t character_length(std::string_view text) {
   if (byte(0) < 0xC2 || byte(0) > 0xF4 || text.size() < length) return 0;
   for (std::size_t i = 1; i < length; ++i)
     if ((byte(i) & 0xC0) != 0x80) return 0;
-  // Longer than needed, half of a surrogate pair, or beyond the last character.
+  // The encoding is longer than needed, half of a surrogate pair, or beyond the last character.
   const bool is_none = (byte(0) == 0xE0 && byte(1) < 0xA0) || (byte(0) == 0xED && byte(1) >= 0xA0) ||
                        (byte(0) == 0xF0 && byte(1) < 0x90) || (byte(0) == 0xF4 && byte(1) >= 0x90);
   return is_none ? 0 : length;
 }
 
-/// Of a whole character: those below the blank, the one behind the tilde, U+0080 to U+009F, and the two that are none
-/// and that XML does not allow, U+FFFE and U+FFFF.
+/// Whether a whole character is a control character: one below the blank, the one behind the tilde, U+0080 to U+009F,
+/// or U+FFFE and U+FFFF, which are no characters and which XML does not allow.
 bool is_control(std::string_view character) {
   const auto first = static_cast<unsigned char>(character[0]);
   if (character == "\xEF\xBF\xBE" || character == "\xEF\xBF\xBF") return true;

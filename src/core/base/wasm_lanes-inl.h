@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Highway 1.0.3 lacks on WebAssembly: arithmetic of doubles; and masks and tables without a detour by way of
-// memory, with which a whole frame takes a quarter of the time.
+// Operations that Highway 1.0.3 lacks on WebAssembly: arithmetic of doubles, and masks and tables without a detour
+// through memory, with which a whole frame takes a quarter of the time.
 //
-// These are overloads in Highway's own namespace, so that kernels are written once for every target. The order of the
-// arguments of minimum and maximum is that of Highway's floats: of a NaN and a number the second argument is given, as
-// by SSE.
+// These are overloads in Highway's own namespace, so that kernels are written once for every target. The order of
+// arguments of minimum and maximum is that of Highway's floats: of a NaN and a number the result is the second
+// argument, as in SSE.
 
 // Included once for every target.
 #if defined(FRONTMOST_BASE_WASM_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)

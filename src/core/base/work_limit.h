@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Work that is counted, so that what would take hours ends with an error: after the same work on every machine, and
-// never by a clock.
+// Counts work, so that work that would take hours ends with an error: after the same amount on every machine, and never
+// by a clock.
 #pragma once
 
 #include <atomic>
@@ -10,16 +10,15 @@
 
 namespace frontmost {
 
-/// The work of all threads that share it.
+/// A limit of the work of all threads that share it.
 class WorkLimit {
  public:
-  /// Borrows what watches the execution. The owner says what a step is; `place` is that of the error.
+  /// Borrows the watch of the execution. The owner defines a step; `place` is the place of the error.
   WorkLimit(const Execution& execution, std::uint64_t most, const char* place)
       : execution_(execution), most_(most), place_(place) {}
 
-  /// Counts steps, and asks whether to stop. To be called once in some ten thousand steps. `too_much()` makes the
-  /// reason of the error, in which nothing may depend on which thread comes first. \throws Error limit_exceeded,
-  /// cancelled.
+  /// Counts steps, and checks whether to stop. Call it once in some ten thousand steps. `too_much()` makes the reason
+  /// of the error, which must not depend on the order of threads. \throws Error limit_exceeded, cancelled.
   template <class Text>
   void add(std::uint64_t steps, const Text& too_much) {
     check_cancelled(execution_);

@@ -17,11 +17,11 @@ std::string names_of(const Image& image) {
   return list;
 }
 
-/// The same value, or NaN both: a difference of infinities would be NaN.
+/// Equal values, or two NaNs, differ by 0: the difference of two infinities would be NaN.
 double difference(float a, float b) {
   if (a == b || (a != a && b != b)) return 0;
   const double result = std::fabs(double(a) - double(b));
-  // A number and NaN are as far apart as can be.
+  // A number and NaN are infinitely far apart.
   return result == result ? result : std::numeric_limits<double>::infinity();
 }
 
@@ -42,7 +42,7 @@ class ImagePair {
         colors_[0].has_value() != colors_[1].has_value())
       throw Error(ErrorCode::bad_argument, "comparison",
                   "the image has channels " + names_of(image) + ", the reference " + names_of(reference));
-    maps_.resize(maps_.size() / 2);  // each was found from both sides
+    maps_.resize(maps_.size() / 2);  // each pair was found from both sides
   }
 
   [[nodiscard]] int width() const { return width_; }
@@ -58,7 +58,7 @@ class ImagePair {
   }
 
  private:
-  /// Finds the partner in `other` of each channel of `one` that is not a colour. \returns false where one has none.
+  /// Finds the partner in `other` of each channel of `one` that is no colour. \returns false if a channel has none.
   bool pair_maps(const Image& one, const Image& other) {
     for (const Channel& channel : one.channels) {
       if (colors_[0] && colors_[1] && is_color(channel.name)) continue;
@@ -92,7 +92,7 @@ class ImagePair {
   std::vector<std::pair<const Channel*, const Channel*>> maps_;
 };
 
-/// Comparison of one row; the sum of differences in `mean`.
+/// The comparison of one row; `mean` holds the sum of differences.
 Comparison compare_row(const ImagePair& pair, int y, double threshold) {
   Comparison result;
   result.y = y;
@@ -110,7 +110,7 @@ Comparison compare_row(const ImagePair& pair, int y, double threshold) {
 
 constexpr std::size_t rows_at_a_time = 16;
 
-/// Differing pixels go from red to yellow, the others show the reference, dimmed and grey.
+/// Differing pixels go from red to yellow; other pixels show the reference, dimmed and grey.
 void paint(const ColorPlanes* reference, std::size_t i, double strength, float* const* planes) {
   float grey = 0;
   if (reference) {

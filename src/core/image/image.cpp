@@ -9,7 +9,7 @@
 namespace frontmost {
 namespace {
 
-/// FNV-1a, fed with 32-bit words instead of bytes: four times as fast, and as good for telling pictures apart.
+/// FNV-1a over 32-bit words instead of bytes: four times as fast, and as good at telling pictures apart.
 class WordHash {
  public:
   void add(std::uint32_t word) { value_ = (value_ ^ word) * 0x100000001B3u; }
@@ -17,14 +17,14 @@ class WordHash {
     add(std::uint32_t(text.size()));
     for (const char c : text) add(std::uint32_t(static_cast<unsigned char>(c)));
   }
-  /// Machines differ in the bits of the NaN that an operation makes, so all are one.
+  /// Machines differ in the bits of a NaN that an operation makes, so all NaNs hash alike.
   void add(float number) {
     std::uint32_t bits = 0x7FC00000u;
     if (number == number) std::memcpy(&bits, &number, sizeof bits);
     add(bits);
   }
   [[nodiscard]] std::uint64_t value() const {
-    // The low bits of a word reach the high bits of the product only: fold them back.
+    // The low bits of a word reach only the high bits of the product, so these are folded back.
     return value_ ^ (value_ >> 32);
   }
 
@@ -40,7 +40,7 @@ void validate_size(int width, int height) {
     fail(std::to_string(width) + " x " + std::to_string(height) + " pixels");
 }
 
-/// Size, names and values, of a plain image or a deep one.
+/// Hashes size, names and values of a plain or a deep image.
 template <class AnyImage>
 void add(WordHash& hash, const AnyImage& image) {
   hash.add(std::uint32_t(image.width));
@@ -76,7 +76,7 @@ void validate(const Image& image) {
   const std::size_t count = std::size_t(image.width) * std::size_t(image.height);
   for (const Channel& channel : image.channels) {
     if (value_count(channel) != count) fail("channel " + channel.name + " does not have width x height values");
-    // A file has its channels by name, and find() would never get to the second.
+    // A file stores its channels by name, and find() would never reach the second.
     if (image.find(channel.name) != &channel) fail("two channels are named " + channel.name);
   }
 }

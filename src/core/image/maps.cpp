@@ -16,7 +16,7 @@ Image one_channel(const Visible& visible, Channel channel) {
   return image;
 }
 
-/// `depth_at(x, y, planar depth)` for every pixel where something is seen.
+/// A map of `depth_at(x, y, planar depth)` for every pixel that sees something.
 template <class DepthAt>
 Image map_of_depths(const Visible& visible, const char* name, float background, DepthAt&& depth_at) {
   check_planes(visible, "depth image");

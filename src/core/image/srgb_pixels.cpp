@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of pixels as PNG wants them: sRGB, straight alpha, whole numbers.
+// Rows of pixels in the form of PNG: sRGB, straight alpha, whole numbers.
 
 #include "image/srgb_pixels.h"
 
@@ -31,9 +31,9 @@ const float* plane(const Image& image, std::string_view name) {
 bool ColorPlanes::is_opaque() const {
   if (!alpha) return true;
   const std::size_t count = std::size_t(width) * std::size_t(height);
-  // Block by block without branches, so that the compiler can go many pixels at a time.
+  // The loop goes block by block without branches, so that the compiler can use vectors.
   constexpr std::size_t block = 4096;
-  constexpr float most_clear = 254.5f / 255;  // just below the quotient: the last float that is rounded to 254
+  constexpr float most_clear = 254.5f / 255;  // just below the quotient: the last float that rounds to 254
   for (std::size_t first = 0; first < count; first += block) {
     const std::size_t end = std::min(count, first + block);
     unsigned clear = 0;

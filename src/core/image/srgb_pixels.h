@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The colours of an image as screens and PNG want them: sRGB, straight alpha.
+// The colours of an image in the form of screens and PNG: sRGB, straight alpha.
 #pragma once
 
 #include <limits>
@@ -20,10 +20,10 @@ struct ColorPlanes {
   [[nodiscard]] bool is_opaque() const;
 };
 
-/// R, G, B and, where there is one, A. None where one of the three is missing or holds integers.
+/// The planes R, G, B and, if there is one, A. None if one of R, G, B is missing or holds integers.
 [[nodiscard]] std::optional<ColorPlanes> color_planes(const Image& image);
 
-/// 0 to 1 as 0 to `most`, rounded. Values out of range are clamped, NaN gives 0.
+/// A fraction of 0 to 1 as 0 to `most`, rounded. Values out of range are clamped, NaN gives 0.
 template <class Value>
 [[nodiscard]] Value rounded_fraction(float fraction) {
   constexpr float most = float(std::numeric_limits<Value>::max());
@@ -31,7 +31,7 @@ template <class Value>
   return Value(double(above < 1 ? above : 1.0f) * most + 0.5);
 }
 
-/// The premultiplied colours of one pixel as sRGB with straight alpha; those of alpha 0 are black.
+/// The premultiplied colour of one pixel as sRGB with straight alpha; black if alpha is 0.
 template <class Value>
 void store_srgb(const float (&color)[3], float alpha, Value* out) {
   const auto value = [](float linear) {
@@ -47,10 +47,10 @@ void store_srgb(const float (&color)[3], float alpha, Value* out) {
   }
 }
 
-/// Row y as bytes R, G, B, or R, G, B, A. Values out of range are clamped, NaN gives 0, and the colour of pixels with
-/// alpha 0 is black.
+/// Row y as bytes R, G, B, or R, G, B, A. Values out of range are clamped, NaN gives 0, and pixels with alpha 0 are
+/// black.
 void srgb8_row(const ColorPlanes& planes, int y, bool with_alpha, std::uint8_t* row);
-/// The same in 16 bits.
+/// srgb8_row() in 16 bits.
 void srgb16_row(const ColorPlanes& planes, int y, bool with_alpha, std::uint16_t* row);
 
 }  // namespace frontmost

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is added to a scene: whatever has a number is counted on from what is there.
+// Adds meshes and scenes to a scene: all numbers are counted on from the existing ones.
 //
 //   scene   meshes 0 1 2      materials 0 1          part   meshes 0 1 -> 3 4      materials 0 -> 2
 //           instances name meshes, meshes name materials, materials name textures: all by the new numbers
@@ -20,7 +20,7 @@ void move_all(std::vector<T>& from, std::vector<T>& to) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
-/// The number of a category in the scene, which it is added to where it is not there.
+/// The number of a category in the scene; adds the category if it is new.
 std::uint32_t number_of(const Category& category, std::vector<Category>& categories) {
   const auto found = std::find_if(categories.begin(), categories.end(), [&](const Category& there) {
     return there.name == category.name && there.number == category.number;
@@ -52,7 +52,7 @@ void add(Scene& scene, Scene part) {
     scene.source.metres_per_unit = part.source.metres_per_unit;
   }
   set_origin(part, scene.origin);
-  // Everything is renumbered before anything is moved: the counts of what was there are what is added.
+  // Everything is renumbered before anything is moved: the current counts are the offsets.
   for (Mesh& mesh : part.meshes)
     for (std::uint32_t& material : mesh.material_ids) shift(material, scene.materials.size());
   for (Instance& instance : part.instances) instance.mesh += std::uint32_t(scene.meshes.size());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Points and normals of a patch, from Bernstein's polynomials.
 //
-// A neighbour may run along a shared edge the other way, with u or v counted from the other end. So every sum pairs
-// what changes places with what it changes places with: the first point with the last and the second with the third, a
+// A neighbour may run along a shared edge in the other direction, with u or v counted from the other end. So every sum
+// pairs values that change places with each other: the first point with the last, the second with the third, a
 // parameter with its complement. Both sides then add the same numbers in the same order.
 #include "scene/bezier_patch.h"
 
@@ -26,7 +26,7 @@ BernsteinWeights bernstein_slope(PatchParameter t) {
   return {-first, first - middle, middle - last, last};
 }
 
-// Ends with ends and middle with middle: the sum is the same for a curve and its reverse.
+// Ends are added to ends, and middle to middle: the sum is the same for a curve and its reverse.
 glm::dvec3 blend(const CubicCurve& p, const BernsteinWeights& w) {
   return (p[0] * w[0] + p[3] * w[3]) + (p[1] * w[1] + p[2] * w[2]);
 }
@@ -43,7 +43,7 @@ glm::dvec3 blend(const BezierPatch& patch, const BernsteinWeights& u, const Bern
 PatchPoint evaluate_there(const BezierPatch& patch, PatchParameter u, PatchParameter v) {
   const BernsteinWeights wu = bernstein(u), wv = bernstein(v), du = bernstein_slope(u), dv = bernstein_slope(v);
   PatchPoint point{blend(patch, wu, wv), blend(patch, du, wv), blend(patch, wu, dv), {}};
-  // At a pole v moves nothing. Near it, along_v is the distance in u times d2P / du dv, whose direction is the limit;
+  // At a pole v has no effect. Near it, along_v is the distance in u times d2P / du dv, whose direction is the limit;
   // from a pole at u = 1 that distance is negative.
   glm::dvec3 across = point.along_v;
   if (glm::dot(across, across) < 1e-20 * glm::dot(point.along_u, point.along_u))
@@ -53,7 +53,7 @@ PatchPoint evaluate_there(const BezierPatch& patch, PatchParameter u, PatchParam
   return point;
 }
 
-// What is between the parameter and the middle of the patch, but near to it.
+// A parameter slightly nearer to the middle of the patch.
 PatchParameter inwards(PatchParameter t) {
   const double value = t.value + (0.5 - t.value) * 0x1p-10;
   return {value, 1 - value};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bicubic Bezier patches: exact enough for equal bits on both sides of a shared edge, and the teapot made of them.
+// Bicubic Bezier patches, with equal bits on both sides of a shared edge, and the teapot made of them.
 //
 //            v = 0                  v = 1
 //   u = 0    p[0]   p[1]   p[2]   p[3]
@@ -7,8 +7,8 @@
 //            p[8]   p[9]   p[10]  p[11]
 //   u = 1    p[12]  p[13]  p[14]  p[15]
 //
-// The four corners lie on the patch, the other points pull at it. An edge is the curve of its own four points alone, so
-// that two patches with the same four have the same edge.
+// The four corners lie on the patch; the other points pull at it. An edge depends on its own four points only, so two
+// patches with the same four points have the same edge.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -18,11 +18,11 @@
 
 namespace frontmost {
 
-/// A place on a patch, and the directions in which u and v grow there.
+/// A point of a patch, and the directions in which u and v grow there.
 struct PatchPoint {
   glm::dvec3 position, along_u, along_v;
-  /// Unit length, outward. The limit where an edge of constant u is pulled together to a pole; that of a point beside
-  /// it where it degenerates otherwise, and zero where that has none either.
+  /// Unit length, outward. At a pole, to which an edge of constant u is contracted, it is the limit. At other
+  /// degenerate points it is the normal of a nearby point, or zero if that has none either.
   glm::dvec3 normal;
 };
 
@@ -35,13 +35,14 @@ struct PatchParameter {
   return {double(part) / whole, double(whole - part) / whole};
 }
 
-/// Uses only +, * and sqrt, so the bits are the same on every machine. Points on a common edge of two patches are
-/// bit-equal when their control points are, whichever way each patch runs along it.
+/// The point of a patch at (u, v). Uses only +, * and sqrt, so the bits are the same on every machine. Points on a
+/// common edge of two patches are bit-equal if their control points are, in whichever direction each patch runs along
+/// the edge.
 [[nodiscard]] PatchPoint evaluate(const BezierPatch& patch, PatchParameter u, PatchParameter v);
 
 /// The 32 patches of the classic teapot, y up, standing on y = 0, spout towards +x: rim, upper and lower body, knob,
 /// lid and bottom in four quarters each, then two pieces of the handle and two of the spout in two halves each. On the
-/// texture u is once around, v from the rim (handle, spout: the first end) down.
+/// texture, u goes once around, and v goes down from the rim (handle, spout: from the first end).
 [[nodiscard]] std::vector<BezierPatch> teapot_patches();
 
 }  // namespace frontmost

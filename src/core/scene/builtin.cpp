@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The built-in scenes by name; and the small classics of visibility among them: the teapot, two cubes through one
-// another, three triangles in a ring.
+// The built-in scenes by name, and three small classics of visibility: the teapot, two cubes through one another, and
+// three triangles in a ring.
 #include <array>
 
 #include "base/parallel.h"
@@ -42,8 +42,8 @@ Scene make_teapot() {
   return scene;
 }
 
-// The second cube is turned by the angle of the 3-4-5 triangle about y, and pushed half its width along every axis, so
-// each cuts a corner out of the other and no face lies in a face.
+// The second cube is turned by the angle of the 3-4-5 triangle about y, and pushed half its width along every axis. So
+// each cube cuts a corner out of the other, and no face lies in a face.
 Scene make_cubes() {
   Scene scene;
   const auto clay = add(scene, paint("clay", 0xC8553D));
@@ -58,8 +58,8 @@ Scene make_cubes() {
   return scene;
 }
 
-// Each triangle is a long wedge that comes nearer towards its tip. Its tip lies over the base of the next, all the way
-// round: drawn in any order, one is wrong. Faces look along +z.
+// Each triangle is a long wedge that gets nearer towards its tip. Its tip lies over the base of the next, all the way
+// round: any order of drawing gets one wrong. Faces look along +z.
 Scene make_cycle() {
   Scene scene;
   constexpr std::uint32_t kColors[3] = {0xD1495B, 0xEDAE49, 0x2E8B8B};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A city for occlusion: a grid of streets, blocks of four lots, towers in the middle and houses at the rim, parks with
-// trees, cars. A few meshes placed many times. One unit is a metre. What stands where is decided by hashes of places.
+// trees, cars. A few meshes are placed many times. One unit is a metre. Hashes of places decide what stands where.
 #include <array>
 #include <cmath>
 
@@ -10,14 +10,14 @@
 namespace frontmost {
 namespace {
 
-constexpr int kBlocks = 13;     // along each side
+constexpr int kBlocks = 13;     // blocks along each side
 constexpr double kBlock = 46;   // of pavement, edge to edge
 constexpr double kStreet = 14;  // between pavements
 constexpr double kPitch = kBlock + kStreet;
 constexpr double kKerb = 0.15;
 constexpr double kFloorHeight = 3.6;
 
-// A well-mixed number for a place: x and y of it, and what is asked about it.
+// A well-mixed number for a place (x, y) and a question about it.
 std::uint32_t hash(int x, int y, int question) {
   std::uint32_t h =
       std::uint32_t(x) * 0x9E3779B1u + std::uint32_t(y) * 0x85EBCA77u + std::uint32_t(question) * 0xC2B2AE3Du;
@@ -49,8 +49,8 @@ Paints add_paints(Scene& scene) {
   return p;
 }
 
-// Floors of a wall band over a set-back window band, and a hut on the roof, on a square of 18 m. Towers step back by
-// 2 m at two fifths of their height.
+// A building on a square of 18 m: floors of a wall band over a set-back window band, and a hut on the roof. Towers step
+// back by 2 m at two fifths of their height.
 Mesh building(int floors, std::uint32_t wall, const Paints& paints) {
   Mesh mesh;
   const int step = floors > 12 ? floors * 2 / 5 : floors;
@@ -73,7 +73,7 @@ Mesh house(std::uint32_t wall, const Paints& paints) {
   Mesh mesh;
   append(mesh, box({-7, 0, -5}, {7, 5.6, 5}), wall);
   append(mesh, box({-5, 1, -5.06}, {5, 4.4, 5.06}), paints.glass);
-  // The slope of 3-4-5 triangles: 5.6 across and 4.2 up make 7 along.
+  // The slope is a 3-4-5 triangle: 5.6 across and 4.2 up make 7 along.
   const glm::dmat4 front = moved({0, 9.35, 0}) * glm::dmat4(1, 0, 0, 0, 0, 0.8, 0.6, 0, 0, -0.6, 0.8, 0, 0, 0, 0, 1);
   const glm::dmat4 back = turned(1, 2);
   const Mesh slope = box({-7.5, -0.3, 0}, {7.5, 0, 7});
@@ -97,7 +97,7 @@ Mesh car(std::uint32_t paint, const Paints& paints) {
 }
 
 constexpr std::array<int, 9> kFloors{2, 3, 4, 5, 6, 8, 11, 18, 34};
-constexpr std::size_t kTowers = 7;  // the first that is one: towers are of concrete and slate only
+constexpr std::size_t kTowers = 7;  // index of the first tower: towers are of concrete and slate only
 
 // The meshes, each stored once.
 struct Stock {
@@ -153,7 +153,7 @@ void add_park(Scene& scene, const Stock& stock, int i, int j) {
   }
 }
 
-// Tall in the middle, low at the rim, and never quite the same.
+// Adds a lot's building: tall in the middle, low at the rim, and never quite the same.
 void add_lot(Scene& scene, const Stock& stock, const glm::ivec2& block, int lot) {
   const std::uint32_t h = hash(block.x * 4 + lot, block.y, 1);
   const glm::dvec3 at = block_place(block.x, block.y) + glm::dvec3(lot % 2 * 22 - 11, kKerb, lot / 2 * 22 - 11);
@@ -169,7 +169,7 @@ void add_lot(Scene& scene, const Stock& stock, const glm::ivec2& block, int lot)
   }
 }
 
-// Cars and dashes along the street on the far side of a block, in both directions.
+// Adds cars and dashes along the street on the far side of a block, in both directions.
 void add_street(Scene& scene, const Stock& stock, int i, int j) {
   const glm::dvec3 corner = block_place(i, j) + glm::dvec3(-kPitch / 2, 0.02, -kPitch / 2);
   for (const bool along_z : {false, true}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The demo: a round stage with a tiled floor, and on it what this program is about. The teapot, two cubes through one
+// The demo: a round stage with a tiled floor, and on it the subjects of this program. The teapot, two cubes through one
 // another, a knot that hides itself, a vase, spheres, and a pane of glass to look through.
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace frontmost {
 namespace {
 
-// Two light and two dark tiles with a thin joint, each tile a shade of its own.
+// Two light and two dark tiles with a thin joint, each tile in a shade of its own.
 Texture tiles() {
   constexpr int kTile = 128, kJoint = 2;
   Texture texture;
@@ -31,7 +31,7 @@ Texture tiles() {
   return texture;
 }
 
-// A texture seen from above, `repeats` times to the unit.
+// Texture coordinates of a texture seen from above, `repeats` times to the unit.
 void project_from_above(Mesh& mesh, double repeats) {
   mesh.texcoords = {};
   for (const glm::vec3& p : mesh.positions) mesh.texcoords.values.emplace_back(p.x * repeats, p.z * repeats);
@@ -82,7 +82,7 @@ void add_cubes(Scene& scene, double floor) {
 }
 
 void add_vase(Scene& scene, double floor) {
-  // Foot, belly, neck and lip as (radius, height), from the lip down; a smooth curve through them.
+  // Foot, belly, neck and lip as (radius, height), from the lip down, joined by a smooth curve.
   constexpr int kSteps = 48;
   const auto outline = [](double t) {  // t from 0 at the lip to 1 at the foot: one Bezier curve of degree 4
     constexpr std::array<glm::dvec2, 5> p{{{0.44, 2.1}, {-0.05, 1.55}, {0.45, 1.45}, {1.15, 0.55}, {0.32, 0}}};
@@ -134,7 +134,7 @@ void add_pane(Scene& scene, double floor) {
   const auto glass_id = add(scene, std::move(glass));
   const glm::dmat4 at = moved({2.75, floor, 1.75}) * turned(-1, 9);
   place(scene, "foot", add(scene, "foot", box({-0.6, 0, -0.16}, {0.6, 0.14, 0.16}), oak), at);
-  // Last, so that its ids come after those of all that is seen through it.
+  // The pane comes last, so that its ids follow those of everything seen through it.
   place(scene, "pane", add(scene, "pane", box({-0.5, 0.14, -0.025}, {0.5, 1.35, 0.025}), glass_id), at);
 }
 

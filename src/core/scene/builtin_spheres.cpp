@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Forty spheres set out like the seeds of a sunflower. Neighbours along an arm share a colour, every other arm is of
-// metal, and from the middle outwards they go from polished to matte.
+// metal, and the spheres go from polished to matte from the middle outwards.
 #include <cmath>
 
 #include "scene/compose.h"

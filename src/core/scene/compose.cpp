@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Matrices of movements, turns and sizes by hand, because glm's go through the C library's sine and cosine, whose last
+// Matrices of movements, turns and sizes, computed here because glm's use the C library's sine and cosine, whose last
 // bits differ from one system to the next.
 #include "scene/compose.h"
 

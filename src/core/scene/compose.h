@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Putting a scene together (paint, places and cameras), and the scenes behind builtin() that are put together so. All
-// are bit-identical on every machine, as shapes.h says.
+// Functions that compose scenes from paint, places and cameras, and the scenes of builtin() that are composed this way.
+// All are bit-identical on every machine, as shapes.h says.
 //
-//   paint() --add()--> a material's number --add(mesh)--> a mesh's number --place()--> an instance, which is seen
+//   paint() --add()--> a material's number --add(mesh)--> a mesh's number --place()--> a visible instance
 #pragma once
 
 #include <string>
@@ -14,23 +14,23 @@ namespace frontmost {
 /// A plain material: base colour in sRGB as 0xRRGGBB.
 [[nodiscard]] Material paint(std::string name, std::uint32_t srgb, float roughness = 0.6f, float metallic = 0);
 
-/// Appends and returns the new one's number.
+/// Appends a material. \returns its number.
 std::uint32_t add(Scene& scene, Material material);
-/// Every triangle of the mesh gets that material.
+/// Appends a mesh whose triangles all get `material`. \returns its number.
 std::uint32_t add(Scene& scene, std::string name, Mesh mesh, std::uint32_t material);
 void place(Scene& scene, std::string name, std::uint32_t mesh, const glm::dmat4& world_from_mesh = glm::dmat4(1.0));
 
 [[nodiscard]] glm::dmat4 moved(const glm::dvec3& by);
 [[nodiscard]] glm::dmat4 scaled(double by);
-/// About the y axis, counter-clockwise seen from above, by part / whole of a full turn.
+/// A turn about the y axis, counter-clockwise seen from above, by part / whole of a full turn.
 [[nodiscard]] glm::dmat4 turned(int part, int whole);
-/// About the x axis, counter-clockwise seen from +x.
+/// A turn about the x axis, counter-clockwise seen from +x.
 [[nodiscard]] glm::dmat4 tilted(int part, int whole);
 
-/// A camera at `eye` that looks at `target` with y up. `vertical`: full field of view in degrees.
+/// A camera at `eye` that looks at `target` with y up. `vertical` is the full field of view in degrees.
 [[nodiscard]] Camera camera_at(std::string name, const glm::dvec3& eye, const glm::dvec3& target, double vertical);
 
-/// From a colour as designers write it (0xRRGGBB, sRGB) to linear light.
+/// Linear light from a colour in designers' notation (0xRRGGBB, sRGB).
 [[nodiscard]] glm::vec4 color(std::uint32_t srgb, double alpha = 1);
 
 [[nodiscard]] Scene make_teapot();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds for every material, whoever made it: the textures that it uses, and numbers within their ranges.
+// Properties of every material, whoever made it: the textures that it uses, and numbers within their ranges.
 #include "scene/material.h"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ std::array<const TextureUse*, 14> texture_uses_of(const Material& material) { re
 float MaterialNumber::in_range() const { return std::isnan(*value) ? otherwise : std::clamp(*value, least, greatest); }
 
 std::array<MaterialNumber, material_number_count> numbers_of(Material& m) {
-  // Below 1 light would be faster than in a vacuum; but 0 stands for a mirror.
+  // An ior below 1 would make light faster than in a vacuum; but 0 stands for a mirror.
   const float least_ior = m.ior > 0 ? 1.0f : 0.0f;
   return {{{"baseColorFactor", &m.base_color.x, 0, 1, 1},
            {"baseColorFactor", &m.base_color.y, 0, 1, 1},

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers of a material and the ranges that they have by frontmost/scene.h. Readers tell what they change; whoever
-// shades changes it in silence, as scenes are also made by code.
+// The numbers of a material, and their ranges by frontmost/scene.h. Readers report what they change; shading changes it
+// silently, as scenes are also made by code.
 //
-//   number                      range              not a number counts as
+//   number                      range              NaN counts as
 //   base colour, metallic,
 //   roughness, occlusion        0 to 1             the default
 //   emissive                    0 and up           0
@@ -12,27 +12,27 @@
 //   thickness                   0 and up           0
 //   attenuation distance        above 0            infinite
 //
-// What goes "and up" ends at a million million, so that squares and quotients are numbers still.
+// Ranges "and up" end at 1e12, so that squares and quotients stay finite.
 #pragma once
 
 #include "frontmost/scene.h"
 
 namespace frontmost {
 
-/// A number of a material, by its name in glTF, with its range and what counts where it is not a number.
+/// A number of a material, by its name in glTF, with its range and the value that replaces NaN.
 struct MaterialNumber {
   const char* name;
   float* value;
   float least, greatest, otherwise;
 
-  /// What the number counts as.
+  /// The value limited to its range, or `otherwise` if it is NaN.
   [[nodiscard]] float in_range() const;
 };
 
 inline constexpr std::size_t material_number_count = 28;
 [[nodiscard]] std::array<MaterialNumber, material_number_count> numbers_of(Material& material);
 
-/// Brings all of them into their ranges.
+/// Limits all numbers of a material to their ranges.
 void limit_numbers(Material& material);
 
 }  // namespace frontmost

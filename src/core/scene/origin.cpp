@@ -5,8 +5,9 @@
 //        |--------------- distance ------------------|- extent --|
 //                                                    ^ the roundest number near here
 //
-// It becomes the origin where the distance is so much greater than the extent that floats would round the details. The
-// search is over as soon as one point lies so near to zero, or so far from the others, that nothing else can matter.
+// This number becomes the origin if the distance is so much greater than the extent that floats would round the
+// details. The search is over as soon as one point is so near to zero, or so far from the others, that no other point
+// matters.
 #include "scene/origin.h"
 
 #include <algorithm>
@@ -16,9 +17,9 @@
 namespace frontmost {
 namespace {
 
-constexpr double least_ratio = 4;  ///< of distance and extent: below it an origin saves two bits at most
+constexpr double least_ratio = 4;  ///< of distance to extent: below it an origin saves two bits at most
 constexpr double least_distance = 1024;
-constexpr double always_ratio = 128;  ///< however small the units are
+constexpr double always_ratio = 128;  ///< far at this ratio, however small the units are
 
 bool is_far(double distance, double extent) {
   return distance > least_ratio * extent && (distance > least_distance || distance > always_ratio * extent);
@@ -29,7 +30,7 @@ double roundest(double low, double high) {
   const double middle = low / 2 + high / 2;
   constexpr double largest = 1e9, last_place = 0x1p-52;
   double step = largest;
-  // Beyond, powers of two: powers of ten have more factors of five there than a float has bits.
+  // Beyond `largest`, steps are powers of two: powers of ten have more factors of five there than a float has bits.
   while (step <= high / 2) step *= 2;
   for (; step > middle * last_place; step /= step > 1 && step <= largest ? 10 : 2) {
     const double nearest = std::round(middle / step) * step;
@@ -46,7 +47,7 @@ void OriginSearch::include_far(const glm::dvec3& point) {
     if (!(std::abs(point[axis]) <= most)) return;
   low_ = glm::min(low_, point);
   high_ = glm::max(high_, point);
-  // Further points take none away from the extent, and add none to the distances.
+  // Further points never reduce the extent, and never increase the distances.
   const double size = extent();
   is_home_ = !is_far(distance(0), size) && !is_far(distance(1), size) && !is_far(distance(2), size);
 }
@@ -61,7 +62,7 @@ double OriginSearch::extent() const {
 glm::dvec3 OriginSearch::origin() const {
   glm::dvec3 origin(0);
   const double size = extent();
-  // One point has no details to keep.
+  // A single point has no details to keep.
   if (is_home_ || !(size > 0)) return origin;
   for (int axis = 0; axis < 3; ++axis) {
     const double away = distance(axis);
@@ -75,14 +76,14 @@ glm::dvec3 OriginSearch::origin() const {
 
 namespace {
 
-/// The points of instances, as they lie about the file's zero.
+/// The points of instances, relative to the file's zero.
 class PlacedPoints {
  public:
   explicit PlacedPoints(const Scene& scene) : scene_(scene), bounds_(scene.meshes.size()) {}
 
   void include(const Instance& instance, OriginSearch& search) {
     std::optional<Box>& bounds = bounds_[instance.mesh];
-    // A mesh that stands in many places is gone through once.
+    // A mesh with many instances is searched once.
     if (bounds) return include_corners(*bounds, instance.world_from_mesh, search);
     bounds.emplace();
     for (const glm::vec3& p : scene_.meshes[instance.mesh].positions) {
@@ -105,7 +106,7 @@ class PlacedPoints {
   }
 
   const Scene& scene_;
-  std::vector<std::optional<Box>> bounds_;  ///< of the meshes that were gone through
+  std::vector<std::optional<Box>> bounds_;  ///< by mesh; of the meshes searched so far
 };
 
 }  // namespace

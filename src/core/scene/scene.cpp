@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene promises to everything behind it: lists that match each other, and numbers of things that exist.
+// The guarantees of a valid scene: lists that match each other, and numbers of things that exist.
 //
-// validate() is the door between readers (and callers who make scenes by hand) and the rest of the house. It names the
-// mesh and the triangle, since whoever reads the message has a file of millions of them.
+// validate() stands between readers (and callers who make scenes by hand) and all other code. Errors name the mesh and
+// the triangle, as a file may have millions of triangles.
 #include "frontmost/scene.h"
 
 #include <cmath>
@@ -24,7 +24,7 @@ namespace {
 
 void check_corners(const Scene& scene, std::size_t mesh, const std::vector<glm::uvec3>& triangles, std::size_t count,
                    const char* what) {
-  // One pass without branches finds whether there is anything to say; a second one finds where.
+  // One pass without branches finds whether there is an error; a second pass finds where.
   if (triangles.empty()) return;
   std::uint32_t greatest = 0;
   const std::uint32_t* numbers = &triangles.front().x;
@@ -102,7 +102,7 @@ void check_instances(const Scene& scene) {
 
 bool is_positive_and_finite(double value) { return value > 0 && std::isfinite(value); }
 
-/// Whether it turns and moves, and does nothing else.
+/// Whether the matrix only rotates and translates.
 bool is_rigid(const glm::dmat4& m) {
   constexpr double tolerance = 1e-6;
   for (int i = 0; i < 3; ++i)
@@ -111,7 +111,7 @@ bool is_rigid(const glm::dmat4& m) {
   return std::isfinite(m[3].x) && std::isfinite(m[3].y) && std::isfinite(m[3].z);
 }
 
-/// What is wrong with a light, or null.
+/// The fault of a light, or null.
 const char* fault_of(const Light& light) {
   if (!(light.intensity >= 0 && std::isfinite(light.intensity))) return "its intensity is not a number from 0 on";
   for (int k = 0; k < 3; ++k)
@@ -170,7 +170,7 @@ void validate_besides_vertices(const Scene& scene) {
                   "pixels do not match its size");
   check_instances(scene);
   check_lights(scene);
-  // One id fewer than there are numbers: the greatest stands for nothing seen.
+  // The greatest id stands for "nothing seen", so there is one id fewer than there are numbers.
   if (triangle_count(scene) > no_primitive - 1)
     throw Error(ErrorCode::limit_exceeded, scene.name, "more than 4294967294 triangles over all instances");
 }

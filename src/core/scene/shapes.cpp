@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes as grids of points: a sphere, a torus knot and what a lathe turns are one grid each, bent so that its first
-// and its last row, or column, are the same, or one point.
+// Shapes as grids of points: a sphere, a torus knot and the shape of a lathe are one grid each, bent so that its first
+// and last row, or column, coincide or contract to a point.
 //
 //   rows i       0 ------ j ------ columns
 //     |          +---+---+---+
@@ -36,7 +36,7 @@ struct GridNumbers {
   int rows, columns;
 };
 
-// Both triangles of a quad, less one that a pole has pulled together to a line.
+// Adds both triangles of a quad, less one that a pole has contracted to a line.
 void add_quad(const glm::uvec4& corners, const glm::uvec4& texcoords, Mesh& mesh) {
   const glm::uvec4 &c = corners, &t = texcoords;
   if (c[0] != c[1]) {
@@ -77,7 +77,7 @@ Mesh box(const glm::dvec3& low, const glm::dvec3& high) {
   for (int i = 0; i < 8; ++i)
     mesh.positions.emplace_back(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z);
   mesh.texcoords.values = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
-  // Corners of each side from its lower left, counter-clockwise from outside; bit k of a corner is its axis k.
+  // Corners of each side from its lower left, counter-clockwise from outside; bit k of a corner belongs to axis k.
   constexpr std::array<glm::uvec4, 6> kSides{
       {{0, 4, 6, 2}, {5, 1, 3, 7}, {0, 1, 5, 4}, {6, 7, 3, 2}, {1, 0, 2, 3}, {4, 5, 7, 6}}};
   for (std::uint32_t side = 0; side < 6; ++side) {
@@ -119,7 +119,7 @@ Mesh sphere(int rings) {
 }
 
 Mesh torus_knot(const KnotShape& shape) {
-  // The curve with two directions across it: away from the core circle, and the third.
+  // A point of the curve with two directions across it: away from the core circle, and the third direction.
   struct Station {
     glm::dvec3 position, out, side;
   };
@@ -186,7 +186,7 @@ Mesh round_slab(const RoundSlab& slab, int segments) {
 
 namespace {
 
-// The part's values behind the mesh's own, and which of them its corners take.
+// Appends the part's values to the mesh's own, and the value numbers of its corners.
 template <class T>
 void append_values(Attribute<T>& attribute, const std::vector<T>& values, const std::vector<glm::uvec3>& corners) {
   const auto first = std::uint32_t(attribute.values.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes that the built-in scenes are composed of. Everything is computed in double with +, *, / and
-// sqrt alone and rounded to float once, so that the scenes are bit-identical on every machine.
+// Meshes of which the built-in scenes are composed. Everything is computed in double with +, *, / and sqrt alone and
+// rounded to float once, so the scenes are bit-identical on every machine.
 #pragma once
 
 #include <functional>
@@ -22,7 +22,7 @@ namespace frontmost {
 /// A (p, q) torus knot: winds p times around the y axis and q times around the core circle of radius 1.
 struct KnotShape {
   int p = 2, q = 3;
-  double core = 0.42;  ///< how far the curve swings about the core circle
+  double core = 0.42;  ///< distance by which the curve swings about the core circle
   double tube = 0.17;  ///< radius of the tube
   int along = 320, around = 24;
 };
@@ -35,7 +35,8 @@ struct KnotShape {
 struct SurfacePoint {
   glm::dvec3 position, normal;
 };
-/// A rectangle of quads, bent so that its first and last row, or column, may be one. Outer side: (along j) x (along i).
+/// A rectangle of quads, bent so that its first and last row, or column, may coincide. Outer side: (along j) x (along
+/// i).
 struct SurfaceGrid {
   int rows = 1, columns = 1;    ///< of quads; i counts rows, j columns
   bool closed_rows = false;     ///< row `rows` is row 0
@@ -44,13 +45,13 @@ struct SurfaceGrid {
 };
 [[nodiscard]] Mesh surface(const SurfaceGrid& grid, const std::function<SurfacePoint(int i, int j)>& point);
 
-/// A point of an outline to be turned about the y axis, and the outward normal there. Two points in one place with
-/// different normals make an edge.
+/// A point of an outline that is turned about the y axis, and the outward normal there. Two coincident points with
+/// different normals make a sharp edge.
 struct ProfilePoint {
   double radius, height;
   glm::dvec2 normal;  ///< (outward, up), unit length
 };
-/// The outline from its top to its bottom, turned. Closed where it starts and ends at radius 0.
+/// The outline, from its top to its bottom, turned about the y axis. Closed if it starts and ends at radius 0.
 [[nodiscard]] Mesh lathe(std::span<const ProfilePoint> profile, int segments);
 
 /// A closed round slab that stands on y = 0, its upper edge rounded.
@@ -59,7 +60,7 @@ struct RoundSlab {
 };
 [[nodiscard]] Mesh round_slab(const RoundSlab& slab, int segments);
 
-/// Appends a part, moved, as triangles of that material. Both meshes have normals and texture coordinates.
+/// Appends a transformed part as triangles of `material`. Both meshes have normals and texture coordinates.
 void append(Mesh& mesh, const Mesh& part, std::uint32_t material, const glm::dmat4& mesh_from_part = glm::dmat4(1.0));
 
 }  // namespace frontmost

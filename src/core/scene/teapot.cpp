@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The teapot as triangles: every patch a grid, and points that two patches share stored once.
+// The teapot as triangles: every patch is a grid, and points that two patches share are stored once.
 //
 // Patches of one part (body with lid and bottom, handle, spout) are welded where their points agree to the bit, which
-// evaluate() promises along shared edges. Parts are not welded to each other: the handle touches the body in one point,
-// at an angle.
+// evaluate() guarantees along shared edges. Parts are not welded to each other: the handle touches the body in one
+// point, at an angle.
 #include <algorithm>
 #include <map>
 #include <tuple>
@@ -14,7 +14,7 @@
 namespace frontmost {
 namespace {
 
-constexpr std::size_t kFirstHandlePatch = 24, kFirstSpoutPatch = 28;  // first patches; what is turned comes before
+constexpr std::size_t kFirstHandlePatch = 24, kFirstSpoutPatch = 28;  // first patches; turned patches come before
 
 struct ByCoordinates {
   bool operator()(const glm::vec3& a, const glm::vec3& b) const {
@@ -22,15 +22,15 @@ struct ByCoordinates {
   }
 };
 
-// Stores each position of a part once, with the normal of the first patch that comes to it: where patches of one part
-// meet they are tangent to each other, so the others' are the same but for rounding. Not so between parts: the handle
+// Stores each position of a part once, with the normal of the first patch that reaches it. Patches of one part are
+// tangent to each other where they meet, so their normals agree but for rounding. Parts are not tangent: the handle
 // touches the body in one point, (-2, 0.9, 0), at an angle.
 class Welder {
  public:
   explicit Welder(Mesh& mesh) : mesh_(mesh) {}
   void start_part() { numbers_.clear(); }
   std::uint32_t add(const PatchPoint& point) {
-    // + 0.0f: what is reflected may be -0, which is the same place.
+    // + 0.0f: reflected coordinates may be -0, which is the same place.
     const glm::vec3 position = glm::vec3(point.position) + 0.0f;
     const auto [place, is_new] = numbers_.try_emplace(position, std::uint32_t(mesh_.positions.size()));
     if (is_new) {

@@ -2,15 +2,15 @@
 // The control points of the classic teapot.
 //
 // M. Newell. The Utilization of Procedure Models in Digital Image Synthesis. University of Utah, 1975; the bottom was
-// added by F. Crow, 1987. In the usual list of 306 points and 32 patches most numbers are reflections of a few: what
-// is turned is a profile, handle and spout are halves. Here stands only what is not a reflection.
+// added by F. Crow, 1987. In the usual list of 306 points and 32 patches most numbers are reflections of a few: turned
+// parts are profiles, handle and spout are halves. This file lists only numbers that are not reflections.
 #include "scene/bezier_patch.h"
 
 namespace frontmost {
 namespace {
 
 // One ring of control points: its radius, the length of the arms that bend a quarter of it, and its height. The arms
-// are 0.56 of the radius, but for the knob, which is 0.45 / 0.8.
+// are 0.56 of the radius, except for the knob: 0.45 / 0.8.
 struct ProfileRing {
   double radius, arm, height;
 };
@@ -26,8 +26,8 @@ constexpr std::array<ProfileRing, 4> kLid{
     {{0.2, 0.112, 2.7}, {0.4, 0.224, 2.55}, {1.3, 0.728, 2.55}, {1.3, 0.728, 2.4}}};
 constexpr std::array<ProfileRing, 4> kBottom{{{1.5, 0.84, 0.15}, {1.5, 0.84, 0.075}, {1.425, 0.798, 0}, {0, 0, 0}}};
 
-// One half ring of a bent tube: a loop of four points that starts and ends in the mirror plane. Both middle points
-// lie `width` off it, beside the first and the last.
+// One half ring of a bent tube: a loop of four points that starts and ends in the mirror plane. Both middle points lie
+// `width` off the plane, beside the first and the last.
 struct Loop {
   double first_x, first_height, last_x, last_height, width;
 };
@@ -48,7 +48,7 @@ constexpr LoopTube kSpout{{{1.7, 1.425, 1.7, 0.6, 0.66},
                            {2.9, 2.475, 3.45, 2.5125, 0.15},
                            {2.8, 2.4, 3.2, 2.4, 0.15}}};
 
-// From Newell's axes (z up) to ours (y up); + 0.0 makes a negative zero positive.
+// Converts Newell's axes (z up) to ours (y up); + 0.0 makes a negative zero positive.
 glm::dvec3 upright(double x, double y, double height) { return {x + 0.0, height, 0.0 - y}; }
 
 void add_turned(std::vector<BezierPatch>& patches, const std::array<ProfileRing, 4>& profile) {
@@ -77,14 +77,14 @@ void add_tube(std::vector<BezierPatch>& patches, const LoopTube& tube) {
         const std::array<glm::dvec3, 4> half{
             upright(loop.first_x, 0, loop.first_height), upright(loop.first_x, y, loop.first_height),
             upright(loop.last_x, y, loop.last_height), upright(loop.last_x, 0, loop.last_height)};
-        // The mirrored half runs back, so that both have the outside on the same side.
+        // The mirrored half runs backwards, so that both halves have the same outer side.
         for (std::size_t j = 0; j < 4; ++j) patch.points[4 * i + j] = half[mirrored ? 3 - j : j];
       }
       patches.push_back(patch);
     }
 }
 
-constexpr std::size_t kTubes = 24;  // the first patch of the handle; what is turned comes before
+constexpr std::size_t kTubes = 24;  // the first patch of the handle; turned patches come before
 
 void place_on_texture(BezierPatch& patch, std::size_t number) {
   const bool is_turned = number < kTubes;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where in a texture a coordinate lies: the rules of wrapping and turning that all who look into one share.
+// The texels of a texture coordinate: rules of wrapping and turning that all texture readers share.
 //
 //    u:     0                               1
 //           |   0   |   1   |   2   |   3   |
 //                     ^first    ^second
 //
 // Texel i covers [i, i + 1) / size, and its middle is at (i + 0.5) / size. So a coordinate lies between the middles of
-// two texels: texel_pair() gives both, and the share of the second.
+// two texels: texel_pair() returns both, and the share of the second.
 #pragma once
 
 #include <algorithm>
@@ -21,9 +21,9 @@ namespace frontmost {
   return truncated - int(float(truncated) > value);
 }
 
-/// A texture coordinate brought into [0, 1] by its wrap rule. Non-finite and absurd ones become 0.
+/// A texture coordinate brought into [0, 1] by its wrap rule. Values that are not finite, or of 1e6 and more, become 0.
 [[nodiscard]] inline float wrapped(float t, Texture::Wrap wrap) {
-  // Beyond, a float has four bits for the fraction or fewer, and floor_of() would soon pass the range of int.
+  // Larger floats have four bits or fewer for the fraction, and floor_of() would soon exceed the range of int.
   if (!(std::abs(t) < 1e6f)) return 0.0f;
   switch (wrap) {
     case Texture::Wrap::clamp: return std::clamp(t, 0.0f, 1.0f);
@@ -36,14 +36,14 @@ namespace frontmost {
   return 0.0f;
 }
 
-/// A texel number one past an end: the other end where the texture repeats, else the same texel again.
+/// A texel number one past an end: the other end if the texture repeats, else the same texel again.
 [[nodiscard]] inline int neighbour(int i, int size, Texture::Wrap wrap) {
   if (i < 0) return wrap == Texture::Wrap::repeat ? size - 1 : 0;
   if (i >= size) return wrap == Texture::Wrap::repeat ? 0 : size - 1;
   return i;
 }
 
-/// The two texels on either side of a coordinate, along one axis, and how far it is from the first to the second.
+/// The two texels on either side of a coordinate, along one axis, and its distance from the first to the second.
 struct TexelPair {
   int first, second;
   float fraction;
@@ -54,12 +54,12 @@ struct TexelPair {
   return {neighbour(low, size, wrap), neighbour(low + 1, size, wrap), at - float(low)};
 }
 
-/// The texel that a coordinate lies in.
+/// The texel that holds a coordinate.
 [[nodiscard]] inline int texel_of(float t, int size, Texture::Wrap wrap) {
   return std::min(int(wrapped(t, wrap) * float(size)), size - 1);
 }
 
-/// KHR_texture_transform, its sine and cosine taken once.
+/// KHR_texture_transform, with sine and cosine computed once.
 class TexcoordTransform {
  public:
   explicit TexcoordTransform(const TextureUse& use) : offset_(use.offset) {
@@ -69,11 +69,11 @@ class TexcoordTransform {
     across_ = glm::vec2(c, -s) * use.scale.x;
     down_ = glm::vec2(s, c) * use.scale.y;
   }
-  /// Of a place, and of a step from one to another.
+  /// place() transforms a coordinate; step() transforms the difference of two coordinates.
   [[nodiscard]] glm::vec2 place(const glm::vec2& uv) const { return step(uv) + offset_; }
   [[nodiscard]] glm::vec2 step(const glm::vec2& v) const { return across_ * v.x + down_ * v.y; }
 
-  // For kernels, which do the same to many at once.
+  // For kernels, which transform many coordinates at once.
   [[nodiscard]] const glm::vec2& across() const { return across_; }
   [[nodiscard]] const glm::vec2& down() const { return down_; }
   [[nodiscard]] const glm::vec2& offset() const { return offset_; }
@@ -83,7 +83,7 @@ class TexcoordTransform {
   }
 
  private:
-  glm::vec2 across_, down_;  ///< where one step in u, and in v, leads
+  glm::vec2 across_, down_;  ///< images of one step in u, and in v
   glm::vec2 offset_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directions and fractions of a full turn with the same bits on every machine, which no C library promises.
+// Directions and fractions of a full turn with the same bits on every machine, which no C library guarantees.
 #pragma once
 
 #include <cmath>
@@ -9,19 +9,19 @@
 
 namespace frontmost {
 
-/// Of length 1, with the same bits on every machine. Precondition: not zero.
+/// The direction of v with length 1, with the same bits on every machine. Precondition: v is not zero.
 [[nodiscard]] inline glm::dvec3 unit(const glm::dvec3& v) { return v / std::sqrt(glm::dot(v, v)); }
 
 /// The point (cos, sin) of the unit circle at part / whole of a full turn, counter-clockwise from (1, 0), to within
 /// about 2e-16. Exact at quarters of the turn, and exactly symmetric in the eight octants. Precondition: whole > 0.
 [[nodiscard]] inline glm::dvec2 turn(std::int64_t part, std::int64_t whole) {
-  // Fold into the first octant with integers, where nothing rounds: 8 * part / whole octants.
+  // Integers fold the angle into the first octant without rounding: 8 * part / whole octants.
   std::int64_t eighths = (part % whole + whole) % whole * 8;
   const std::int64_t octant = eighths / whole;
   eighths -= octant * whole;
   if (octant % 2 == 1) eighths = whole - eighths;
   const double x = 0.78539816339744830962 * (double(eighths) / double(whole)), xx = x * x;
-  // Taylor's series up to x^17 and x^16; the rest is below 1e-17 for x <= pi / 4.
+  // Taylor's series up to x^17 and x^16; the remainder is below 1e-17 for x <= pi / 4.
   double sine = 1, cosine = 1;
   for (int k = 16; k >= 2; k -= 2) {
     sine = 1 - sine * xx / double(k * (k + 1));

@@ -5,10 +5,10 @@
 
 namespace frontmost {
 
-/// Validates all but the vertices that triangles name, which Surfaces checks itself.
+/// Validates everything but the vertex numbers of triangles, which Surfaces checks itself.
 void validate_besides_vertices(const Scene& scene);
 
-/// What stands before the place in errors about a scene: its name, if it has one.
+/// The prefix of the place in errors about a scene: the scene's name, if it has one.
 [[nodiscard]] std::string place_in(const Scene& scene);
 
 }  // namespace frontmost

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the cells of triangles, as many at a time as the vector holds.
+// Finds the cells of triangles, a vector of triangles at a time.
 //
-// A triangle's place is that of the sum of its corners; the factor of a third, the transform of the instance and the
-// size of a cell are one matrix for all (CellMap), so that no step is taken for one of them alone. The order that is
-// made of the cells says nothing about where a triangle is drawn, so floats will do.
+// A triangle's place is that of the sum of its vertices. One matrix (CellMap) combines the factor of a third, the
+// transform of the instance and the size of a cell, so that none of them takes a step of its own. The order of cells
+// does not affect where a triangle is drawn, so floats suffice.
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@
 #define HWY_TARGET_INCLUDE "surfaces/cell_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After Highway: a block of its own.
+// The include follows Highway in a block of its own.
 #include "base/lane_types-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -25,13 +25,13 @@ class CellFinder {
  public:
   CellFinder(const glm::vec3* positions, const CellMap& map) : positions_(&positions->x), map_(map) {}
 
-  /// Of as many triangles as the vector holds.
+  /// Cells of a vector of triangles.
   HWY_INLINE hn::Vec<DU> Find(const std::uint32_t* corners) {
     hn::Vec<DU> a, b, c;
     hn::LoadInterleaved3(DU(), corners, a, b, c);
     const VI i = First(a), j = First(b), k = First(c);
     const VF x = Sum(0, i, j, k), y = Sum(1, i, j, k), z = Sum(2, i, j, k);
-    // Not a number where any corner is not finite, and then so for ever; a sum that overflows is taken for one.
+    // rest_ becomes NaN if a vertex is not finite, and stays NaN. A sum that overflows counts as not finite.
     rest_ = hn::Add(rest_, hn::Add(hn::Sub(x, x), hn::Add(hn::Sub(y, y), hn::Sub(z, z))));
     const VI cell_x = Place(0, x, y, z), cell_y = Place(1, x, y, z), cell_z = Place(2, x, y, z);
     const VI yz = hn::Or(hn::ShiftLeft<SpaceCell::y_shift>(cell_y), hn::ShiftLeft<SpaceCell::z_shift>(cell_z));
@@ -57,7 +57,7 @@ class CellFinder {
     const auto& row = map_.rows[axis];
     const VF xy = hn::Add(hn::Mul(hn::Set(d, row[0]), x), hn::Mul(hn::Set(d, row[1]), y));
     const VF at = hn::Add(hn::Add(xy, hn::Mul(hn::Set(d, row[2]), z)), hn::Set(d, row[3]));
-    // Not a number is not greater than 0 and so lands in cell 0; conversion of it would differ from target to target.
+    // NaN is not greater than 0, and so goes to cell 0; its conversion would differ from target to target.
     const VF not_before = hn::IfThenElseZero(hn::Gt(at, hn::Zero(d)), at);
     return hn::ConvertTo(DI(), hn::Min(not_before, hn::Set(d, map_.last)));
   }
@@ -76,7 +76,7 @@ bool FindCells(const MeshPart& part, const CellMap& map, SpaceCell* cells) {
   std::size_t i = 0;
   for (; i + lanes <= count; i += lanes) hn::StoreU(finder.Find(&triangles[i].x), d, &cells[i].packed);
   if (i < count) {
-    // The last triangle again and again: reading on would pass the end of the array.
+    // The last triangle is repeated: reading on would pass the end of the array.
     glm::uvec3 rest[kMaxLanes];
     for (std::size_t k = 0; k < lanes; ++k) rest[k] = triangles[std::min(i + k, count - 1)];
     HWY_ALIGN_MAX std::uint32_t found[kMaxLanes];
@@ -96,7 +96,7 @@ namespace frontmost {
 FRONTMOST_KERNELS(FindCells);
 
 bool find_cells(const MeshPart& part, const CellMap& map, Isa isa, SpaceCell* cells) {
-  // Beyond, three times a vertex's number passes the 31 bits of a lane.
+  // For more vertices, three times a vertex's number exceeds the 31 bits of a lane.
   constexpr std::size_t kMostVertices = (std::size_t(1) << 31) / 3;
   if (part.mesh.positions.size() > kMostVertices) {
     std::fill_n(cells, part.end - part.begin, SpaceCell());

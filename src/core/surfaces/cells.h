@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cells of a grid over a scene, and which of them triangles lie in.
+// The cells of a grid over a scene, and the cells that triangles lie in.
 //
 //   bit  31        22 21 20        11 10 9         0
 //        |  z        | 0 |  y        | 0 |  x       |      the gaps keep a carry of one axis out of the next, so that
-//                                                          three places are compared with one subtraction
+//                                                          one subtraction compares three places
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace frontmost {
 
-/// A cell by its place along each axis, 0 to 1023, packed: x in bits 0 to 9, y in 11 to 20, z in 22 to 31.
+/// A cell, packed: its places along the axes, 0 to 1023, x in bits 0 to 9, y in 11 to 20, z in 22 to 31.
 struct SpaceCell {
   static constexpr int y_shift = 11, z_shift = 22;
   static constexpr std::uint32_t mask = 1023;
@@ -23,7 +23,7 @@ struct SpaceCell {
   [[nodiscard]] std::uint32_t x() const { return packed & mask; }
   [[nodiscard]] std::uint32_t y() const { return packed >> y_shift & mask; }
   [[nodiscard]] std::uint32_t z() const { return packed >> z_shift; }
-  /// True when `other` is from one cell before to two cells after this one, along every axis.
+  /// True if `other` is from one cell before to two cells after this one, along every axis.
   [[nodiscard]] bool is_near(SpaceCell other) const {
     // One bit above each place is lent to it, so that no difference borrows from the next.
     constexpr std::uint64_t ones = 1 | 1ull << y_shift | 1ull << z_shift, lent = ones << 10;
@@ -31,9 +31,9 @@ struct SpaceCell {
   }
 };
 
-/// From the sum of a triangle's corners, in the space of their mesh, to its place in the grid, in cells.
+/// Maps the sum of a triangle's vertices, in mesh space, to its place in the grid, in cells.
 struct CellMap {
-  std::array<std::array<float, 4>, 3> rows;  ///< by axis: factors of x, y, z, and what is added
+  std::array<std::array<float, 4>, 3> rows;  ///< by axis: factors of x, y, z, and the constant term
   float last = 0;                            ///< the greatest place along an axis
 };
 
@@ -43,8 +43,8 @@ struct MeshPart {
   std::uint32_t begin = 0, end = 0;
 };
 
-/// Finds the cells of triangles, the same ones for any instruction set; 0 along an axis along
-/// which the place is not a number. \returns false where a corner may not be finite.
+/// Finds the cells of triangles, the same ones for any instruction set. The cell is 0 along an axis on which the place
+/// is NaN. \returns false if a vertex may not be finite.
 bool find_cells(const MeshPart& part, const CellMap& map, Isa isa, SpaceCell* cells);
 
 }  // namespace frontmost

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cuts triangles, in spatial order, into clusters of at most 64 distinct vertices.
+// Divides triangles, in spatial order, into clusters of at most 64 distinct vertices.
 //
 //   spatial order  | t t t t t t t t t t t t t t t t t t t ...
-//                  |<- cluster 0 ->|<- cluster 1 ->|      each ends before the triangle that has no room in it
+//                  |<- cluster 0 ->|<- cluster 1 ->|      each ends before the first triangle that does not fit
 //                  |<----------- part ------------>|      by one thread
 //
 // Work is split at fixed places of the order, so the clusters do not depend on the number of threads.
@@ -21,35 +21,35 @@
 namespace frontmost {
 namespace {
 
-// Large enough that the clusters cut short at the end of each part do not count, small enough to keep all threads busy.
+// Large enough that the short clusters at the end of each part do not matter, small enough to keep all threads busy.
 constexpr std::uint32_t kRunsPerPart = 1u << 13;
 
-/// Some runs of the spatial order, and the clusters made of them. Their ids are those of the runs, in order.
+/// Some runs of the spatial order, and the clusters made of them. The clusters' ids are those of the runs, in order.
 struct ClusterPart {
-  std::size_t begin = 0;          // of the runs
+  std::size_t begin = 0;          // first of the runs
   std::vector<Cluster> clusters;  // first_vertex and first_triangle relative to the part
   std::vector<Box> boxes;
   std::vector<float> x, y, z;
   std::array<std::vector<std::uint8_t>, 3> corners;
 };
 
-/// What all parts are made from.
+/// The input that all parts share.
 struct Source {
   const PlacedScene& placed;
   const InstanceFinder& instances;
   const SpatialOrder& order;
-  std::size_t first_cutout;  ///< in the order: clusters hold triangles from before, or from there on
+  std::size_t first_cutout;  ///< first run with cutouts; no cluster holds triangles from both sides of it
 };
 
-/// What is needed of an instance to read its triangles. Neighbours in the order mostly share it.
+/// The data of an instance for reading its triangles. Neighbours in the order mostly share an instance.
 struct Placed {
   std::uint32_t number = 0;
   PrimitiveId first = 0;
-  std::uint32_t count = 0;  ///< of its ids; none yet
+  std::uint32_t count = 0;  ///< number of its ids; 0 at first
   const glm::uvec3* triangles = nullptr;
   const glm::vec3* positions = nullptr;
 
-  [[nodiscard]] bool holds(PrimitiveId id) const { return id - first < count; }  // wraps for ids below
+  [[nodiscard]] bool holds(PrimitiveId id) const { return id - first < count; }  // wraps around for lower ids
   [[nodiscard]] const glm::uvec3& corners(PrimitiveId id) const { return triangles[id - first]; }
 };
 
@@ -66,7 +66,7 @@ class PartBuilder {
     start_cluster();
     for (std::size_t i = begin; i < end; ++i) {
       prefetch(i, end);
-      // What has holes is drawn by other code, cluster by cluster: no cluster may hold both kinds.
+      // Other code draws triangles with holes, cluster by cluster, so no cluster may hold both kinds.
       if (i == source_.first_cutout) start_next_cluster();
       const TriangleRun run = run_at(i);
       for (std::uint32_t k = 0; k < run.count; ++k) add(run.first + k);
@@ -92,8 +92,8 @@ class PartBuilder {
     return {number, firsts[number], firsts[number + 1] - firsts[number], mesh.triangles.data(), mesh.positions.data()};
   }
 
-  /// Runs that are neighbours in space are often far apart in memory: the corner numbers are asked for well ahead, and
-  /// the positions that they lead to a little later.
+  /// Runs that are neighbours in space are often far apart in memory: vertex numbers are prefetched well ahead, and the
+  /// positions that they name a little later.
   void prefetch(std::size_t i, std::size_t end) const {
     constexpr std::size_t kCornersAhead = 48, kPositionsAhead = 24;
     if (i + kCornersAhead >= end) return;
@@ -109,18 +109,18 @@ class PartBuilder {
     }
   }
 
-  /// A triangle's corners.
+  /// A triangle's vertices.
   struct Corners {
     std::array<VertexKey, 3> key;
     std::array<glm::vec3, 3> world;
   };
 
-  /// \returns whether all corners are finite in world space.
+  /// \returns whether all vertices are finite in world space.
   bool read(PrimitiveId id, Corners& triangle) {
     if (!placed_.holds(id)) {
       placed_ = place_of(id);
       to_world_.emplace(source_.placed.scene->instances[placed_.number].world_from_mesh);
-      // Where the corners stay as they are the spatial order has looked at them already.
+      // Without a transform, the spatial order has tested the vertices already.
       must_check_ = !to_world_->is_identity() || source_.order.all_finite[placed_.number] == 0;
     }
     const glm::uvec3& corners = placed_.corners(id);
@@ -134,7 +134,7 @@ class PartBuilder {
 
   void add(PrimitiveId id) {
     Corners triangle;
-    std::array<std::uint8_t, 3> numbers{};  // not finite: degenerate, three times vertex 0, whatever that is or will be
+    std::array<std::uint8_t, 3> numbers{};  // for vertices that are not finite: degenerate, three times vertex 0
     if (!read(id, triangle)) {
       if (cluster_.triangle_count == Cluster::max_triangles) start_next_cluster();
       append(numbers);
@@ -144,7 +144,7 @@ class PartBuilder {
       start_next_cluster();
       intern(triangle, numbers);
     }
-    // A mirror turns counter-clockwise into clockwise, but what was outside stays outside.
+    // A mirror turns counter-clockwise into clockwise, but outer sides stay outer sides.
     if (source_.placed.mirrored[placed_.number]) std::swap(numbers[1], numbers[2]);
     append(numbers);
   }
@@ -153,7 +153,7 @@ class PartBuilder {
     for (std::size_t k = 0; k < 3; ++k) numbers[k] = table_.intern(triangle.key[k], triangle.world[k]);
   }
 
-  /// \returns false, with the table as it was, where there is no room left.
+  /// \returns false, with the table unchanged, if there is not enough room.
   bool intern_into_rest(const Corners& triangle, std::array<std::uint8_t, 3>& numbers) {
     if (table_.size() + 3 <= Cluster::max_vertices) {
       intern(triangle, numbers);
@@ -162,7 +162,7 @@ class PartBuilder {
     std::size_t missing = 0;
     for (std::size_t k = 0; k < 3; ++k) missing += (numbers[k] = table_.find(triangle.key[k])) == VertexTable::none;
     if (table_.size() + missing > Cluster::max_vertices) return false;
-    // What was found is not looked for again: adding one may lose the guess of another.
+    // Known vertices are not looked up again: adding one may overwrite the guess of another.
     for (std::size_t k = 0; k < 3; ++k)
       if (numbers[k] == VertexTable::none) numbers[k] = table_.intern(triangle.key[k], triangle.world[k]);
     return true;
@@ -181,7 +181,7 @@ class PartBuilder {
   void finish_cluster() {
     if (cluster_.triangle_count == 0) return;
     cluster_.vertex_count = static_cast<std::uint16_t>(table_.size());
-    // Kernels load whole vectors: what lies behind the last vertex or triangle is read, and must be harmless.
+    // Kernels load whole vectors, so the padding behind the last vertex or triangle must be harmless.
     const std::size_t vertices = table_.pad(), triangles = padded_to_lanes(cluster_.triangle_count);
     part_.x.insert(part_.x.end(), table_.x(), table_.x() + vertices);
     part_.y.insert(part_.y.end(), table_.y(), table_.y() + vertices);
@@ -196,15 +196,15 @@ class PartBuilder {
 
   const Source& source_;
   ClusterPart& part_;
-  Placed placed_;  ///< of the last triangle
+  Placed placed_;  ///< instance of the last triangle
   std::optional<ToWorld> to_world_;
-  bool must_check_ = true;  ///< that corners are finite
+  bool must_check_ = true;  ///< whether vertices must be tested for being finite
   VertexTable table_;
   Cluster cluster_;
   std::array<std::array<std::uint8_t, padded_to_lanes(Cluster::max_triangles)>, 3> corners_;
 };
 
-/// Where each part's clusters, vertices and triangles go in the whole.
+/// The beginning of each part's clusters, vertices and triangles in the whole set.
 struct Place {
   std::size_t cluster = 0, vertex = 0, triangle = 0;
 };
@@ -214,7 +214,7 @@ void place(const std::vector<T>& part, Buffer<T>& whole, std::size_t at) {
   std::copy(part.begin(), part.end(), whole.data() + at);
 }
 
-/// The ids of a part's clusters: those of its runs, padded like the triangles.
+/// Writes the ids of a part's clusters: the ids of its runs, padded like the triangles.
 void place_ids(const ClusterPart& part, const SpatialOrder& order, PrimitiveId* ids) {
   const std::uint64_t* next = order.runs.data() + part.begin;
   TriangleRun run{0, 0};
@@ -230,7 +230,7 @@ void place_ids(const ClusterPart& part, const SpatialOrder& order, PrimitiveId* 
 }
 
 void gather(ClusterSet& set, std::vector<ClusterPart>& parts, const SpatialOrder& order, const Execution& execution) {
-  // Where everything goes is known before anything is copied, so that parts are copied at once and in any order.
+  // All places are known before anything is copied, so parts are copied at once and in any order.
   std::vector<Place> places(parts.size() + 1);
   for (std::size_t i = 0; i < parts.size(); ++i)
     places[i + 1] = {places[i].cluster + parts[i].clusters.size(), places[i].vertex + parts[i].x.size(),
@@ -244,7 +244,7 @@ void gather(ClusterSet& set, std::vector<ClusterPart>& parts, const SpatialOrder
 
   parallel_for(execution, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      // Moved out, so that its memory is given back as soon as it is copied: the set is never there twice as a whole.
+      // Moved out, so that its memory is freed as soon as it is copied: the whole set never exists twice.
       const ClusterPart part = std::move(parts[i]);
       const Place& at = places[i];
       place(part.x, set.x, at.vertex);
@@ -265,8 +265,8 @@ void gather(ClusterSet& set, std::vector<ClusterPart>& parts, const SpatialOrder
   });
 }
 
-/// Puts what may have holes at the end of the order; runs that hold both kinds become several. \returns where that
-/// begins.
+/// Moves triangles that may have holes to the end of the order; runs that hold both kinds are split. \returns the first
+/// run with cutouts.
 std::size_t part_cutouts(const Cutouts* cutouts, Buffer<std::uint64_t>& runs) {
   if (!cutouts) return runs.size();
   std::vector<std::uint64_t> kinds[2];
@@ -283,7 +283,7 @@ std::size_t part_cutouts(const Cutouts* cutouts, Buffer<std::uint64_t>& runs) {
   return kinds[0].size();
 }
 
-/// The clusters before the one whose first triangle is `id`.
+/// The number of clusters before the cluster whose first triangle is `id`.
 std::size_t clusters_before(const ClusterSet& set, PrimitiveId id) {
   std::size_t count = 0;
   while (count < set.clusters.size() && set.id[set.clusters[count].first_triangle] != id) ++count;
@@ -307,7 +307,7 @@ void BoxArrays::set(std::size_t i, const Box& box) {
 ClusterSet build_clusters(const PlacedScene& placed, const Execution& execution) {
   ClusterSet set;
   set.cutouts = placed.cutouts;
-  // The fractions are about what the steps take of the time.
+  // The progress fractions are about the steps' shares of the time.
   SpatialOrder order = spatial_order(placed, execution);
   const std::size_t first_cutout = part_cutouts(set.cutouts.get(), order.runs);
   report_progress(execution, "surfaces", 0.4);

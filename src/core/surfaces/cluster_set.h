@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clusters of triangles as structure of arrays: the form in which methods read geometry that they look at often.
+// Clusters of triangles as structure of arrays, the form in which methods read geometry repeatedly.
 //
 //   clusters    | 0           | 1           | ...
 //   x, y, z     | v v v ... v | v v ...     |        at most 64 vertices each, in world space
 //   i0, i1, i2  | t t t t ... | t t t ...   |        at most 124 triangles each: numbers of its vertices, a byte each
-//   id          | t t t t ... | t t t ...   |        which triangle of the scene it is
-//   boxes       | box         | box         |        what is outside of the picture is left out as a whole
+//   id          | t t t t ... | t t t ...   |        number of the triangle in the scene
+//   boxes       | box         | box         |        clusters outside of the picture are left out as a whole
 //
-// Everything is padded to 16, so that kernels read whole vectors and have no loop for the rest.
+// Everything is padded to 16, so that kernels read whole vectors and need no loop for the rest.
 #pragma once
 
 #include <mutex>
@@ -21,9 +21,10 @@
 
 namespace frontmost {
 
-/// Up to 64 vertices and 124 triangles that are neighbours in space. Its vertices start at `first_vertex` of
-/// ClusterSet::x, y, z; its corner numbers (0 to 63, relative) and primitive ids at `first_triangle` of i0, i1, i2, id.
-/// Both are padded to whole vectors of 16: padding vertices repeat the last one, padding triangles are degenerate.
+/// Up to 64 vertices and 124 triangles that are neighbours in space. The vertices start at `first_vertex` of
+/// ClusterSet::x, y, z; vertex numbers of triangles (0 to 63, relative) and primitive ids start at `first_triangle` of
+/// i0, i1, i2, id. Both are padded to whole vectors of 16: padding vertices repeat the last one, padding triangles are
+/// degenerate.
 struct Cluster {
   static constexpr int max_vertices = 64;
   static constexpr int max_triangles = 124;
@@ -54,17 +55,18 @@ struct InstanceMove {
 
 struct ClusterSet {
   std::vector<Cluster> clusters;
-  std::size_t first_cutout = 0;  ///< clusters from here on hold what may have holes, those before nothing of it
-  std::shared_ptr<const Cutouts> cutouts;  ///< null where nothing may
-  BoxArrays boxes;                         ///< of the clusters; empty where no triangle has finite corners
+  std::size_t first_cutout = 0;            ///< clusters from here on may have holes, clusters before have none
+  std::shared_ptr<const Cutouts> cutouts;  ///< null if no triangle may have holes
+  BoxArrays boxes;                         ///< boxes of the clusters; empty for a cluster without triangles with finite
+                                           ///< vertices
   Buffer<float> x, y, z;                   ///< world space
   Buffer<std::uint8_t> i0, i1, i2;
   Buffer<PrimitiveId> id;
   LazyCones cones;
-  std::optional<Holders> holders;  ///< once an instance has moved
+  std::optional<Holders> holders;  ///< made once an instance has moved
 
-  /// Follows an instance to where it is in the scene. O(triangles) the first time; later what its own clusters take.
-  /// \returns false, and is to be made anew, where corners have become finite, or are so no more.
+  /// Moves an instance to its place in the scene. O(triangles) the first time, later O(size of the instance's
+  /// clusters). \returns false if the set must be made anew, because vertices became finite or ceased to be.
   [[nodiscard]] bool follow(const PlacedScene& placed, const InstanceMove& move, Isa isa);
 
  private:
@@ -72,31 +74,32 @@ struct ClusterSet {
   void fit(std::size_t cluster);
 };
 
-/// The clusters of surfaces, made now where they are not there.
+/// The clusters of surfaces; makes them if there are none.
 [[nodiscard]] const ClusterSet& cluster_set(const Surfaces& surfaces, const Execution& execution = {});
-/// Null where they have not been made yet.
+/// The clusters of surfaces, or null if they have not been made yet.
 [[nodiscard]] const ClusterSet* made_cluster_set(const Surfaces& surfaces);
-/// Null where a single picture is drawn sooner without.
+/// The clusters of surfaces, or null if a single picture is drawn sooner without clusters.
 [[nodiscard]] const ClusterSet* cluster_set_for_picture(const Surfaces& surfaces, const Execution& execution);
 
-/// Cuts all triangles into clusters, every one into one. Triangles with a non-finite world-space corner become
-/// degenerate (three times the same corner number), so that no method sees them.
+/// Divides all triangles into clusters. Triangles with a non-finite world-space vertex become degenerate (three equal
+/// vertex numbers), so no method sees them.
 [[nodiscard]] ClusterSet build_clusters(const PlacedScene& placed, const Execution& execution);
 
-/// The clusters of a scene, made when they have been asked for often enough to pay. May be asked by several threads at
+/// The clusters of a scene, made once they have been asked for often enough to pay. May be used by several threads at
 /// once.
 class LazyClusters {
  public:
-  /// A picture without clusters takes a third to a half of the time that it takes to make them and one with them. So
-  /// the first two calls give null, unless the clusters are there.
+  /// A picture without clusters takes a third to a half of the time of making clusters and one picture with them. So
+  /// the first two calls return null, unless the clusters exist.
   [[nodiscard]] const ClusterSet* get(const PlacedScene& placed, const Execution& execution) const;
-  /// At the first call, too.
+  /// The clusters, made at the first call if needed.
   [[nodiscard]] const ClusterSet& get_now(const PlacedScene& placed, const Execution& execution) const;
-  /// Null where they have not been made.
+  /// The clusters, or null if they have not been made.
   [[nodiscard]] const ClusterSet* made() const { return made_.load(); }
-  /// Clusters that are there follow an instance to where it is in the scene, or go. Not while another call runs.
+  /// Moves an instance of existing clusters to its place in the scene, or drops the clusters. Not while another call
+  /// runs.
   void follow(const PlacedScene& placed, const InstanceMove& move, Isa isa);
-  /// Until then they have none, so that what may have holes need not be copied for their sake.
+  /// Drops the clusters' reference to cutouts, so that cutouts need not be copied before they move.
   void leave_cutouts() {
     if (set_) set_->cutouts.reset();
   }

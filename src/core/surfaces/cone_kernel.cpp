@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes normal cones, a vector of triangles at a time.
 //
-// In two passes over a cluster: one for the unit normals, the box around which has the axis in its middle, and one for
-// the least cosine between the axis and a normal. A cone must never be too narrow, so whatever rounding could turn
-// round leaves the cluster without one: needles, boxes without extent, and normals that open to a half turn.
+// There are two passes over a cluster. The first finds the unit normals, whose bounding box has the axis in its middle;
+// the second finds the least cosine between the axis and a normal. A cone must never be too narrow. So a cluster gets
+// no cone if rounding could reverse a direction: for needles, boxes without extent, and normals that open to a half
+// turn.
 
 #include <cmath>
 #include <limits>
@@ -15,7 +16,7 @@
 #define HWY_TARGET_INCLUDE "surfaces/cone_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After Highway: a block of its own.
+// The include follows Highway in a block of its own.
 #include "base/lane_types-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -38,7 +39,7 @@ HWY_INLINE ConeVector Cross(const ConeVector& a, const ConeVector& b) {
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
 }
 
-/// Finds the cone of one cluster after the other.
+/// Finds the cones of clusters, one after the other.
 class ConeMaker {
  public:
   explicit ConeMaker(const ClusterSet& set) : set_(set) {}
@@ -46,17 +47,17 @@ class ConeMaker {
   void Make(std::size_t i, ConeArrays& cones) {
     const Box box = set_.boxes.get(i);
     const glm::vec3 size = box.high - box.low;
-    // Lengths in units of the box: products of four of them neither overflow nor vanish.
+    // Lengths are in units of the box: products of four of them neither overflow nor underflow.
     const float widest = HWY_MAX(size.x, HWY_MAX(size.y, size.z)), scale = 1.0f / widest;
     if (!(widest > 0 && widest <= kMost && scale <= kMost)) return Leave(i, cones);
     FindNormals(set_.clusters[i], scale);
     const DF d;
-    // One triangle whose normal is mostly rounding could face either way, and its cluster could then never be left out.
+    // A triangle whose normal is mostly rounding could face either way, so its cluster could never be left out.
     if (!hn::AllFalse(d, too_flat_)) return Leave(i, cones);
     const float squared_altitude = Least(least_squared_altitude_);
     if (squared_altitude == kMost) return Leave(i, cones);  // no triangle has a normal
     const glm::vec3 axis = Axis();
-    // Normals that cancel out have none. Asked here, as Min of NaN and a number is either, by processor.
+    // Normals that cancel out have no axis. Tested here, as Min of NaN and a number depends on the processor.
     if (!(glm::dot(axis, axis) <= kMost)) return Leave(i, cones);
     const float cosine = LeastCosine(axis), altitude = std::sqrt(squared_altitude) * widest;
     if (!(cosine > 0 && altitude > 0 && altitude <= kMost)) return Leave(i, cones);
@@ -83,7 +84,7 @@ class ConeMaker {
     return hn::PromoteTo(d, hn::LoadU(hn::Rebind<std::uint8_t, DI>(), numbers.data() + at));
   }
 
-  /// Unit normals, range of each of their components, and the squared altitudes in units of the box.
+  /// Finds unit normals, the ranges of their components, and the squared altitudes in units of the box.
   void FindNormals(const Cluster& cluster, float scale) {
     const DF d;
     const VF zero = hn::Zero(d), most = hn::Set(d, kMost);
@@ -95,7 +96,7 @@ class ConeMaker {
     for (std::size_t t = 0; t < cluster.triangle_count; t += hn::Lanes(d)) {
       const std::size_t at = cluster.first_triangle + t;
       const VI i0 = Load(set_.i0, at), i1 = Load(set_.i1, at), i2 = Load(set_.i2, at);
-      // Corners at one place stay at one place when they are snapped: such a triangle, like padding, faces nobody.
+      // Coincident vertices still coincide once they are snapped: such a triangle, like padding, faces nobody.
       const MF none = hn::RebindMask(d, hn::Or(hn::Or(hn::Eq(i0, i1), hn::Eq(i1, i2)), hn::Eq(i0, i2)));
       AddNormals(Fetch(cluster, i0), Fetch(cluster, i1), Fetch(cluster, i2), none, scale);
     }
@@ -108,9 +109,9 @@ class ConeMaker {
     ab = {hn::Mul(ab.x, s), hn::Mul(ab.y, s), hn::Mul(ab.z, s)};
     ac = {hn::Mul(ac.x, s), hn::Mul(ac.y, s), hn::Mul(ac.z, s)};
     const ConeVector bc = Sub(ac, ab), normal = Cross(ab, ac);
-    const VF squared = Dot(normal, normal);  // of altitude times longest edge
+    const VF squared = Dot(normal, normal);  // square of altitude times longest edge
     const VF longest = hn::Max(Dot(ab, ab), hn::Max(Dot(ac, ac), Dot(bc, bc)));
-    // 2^-100 is far from what a float can no longer hold to full precision.
+    // 2^-100 is far above numbers that a float does not hold to full precision.
     const VF least = hn::Max(hn::Mul(hn::Mul(longest, longest), hn::Set(d, 0x1p-24f)), hn::Set(d, 0x1p-100f));
     too_flat_ = hn::Or(too_flat_, hn::AndNot(none, hn::Not(hn::Ge(squared, least))));
     least_squared_altitude_ = hn::Min(least_squared_altitude_, hn::IfThenElse(none, most, hn::Div(squared, longest)));
@@ -138,11 +139,11 @@ class ConeMaker {
     return hn::GetLane(hn::MaxOfLanes(d, v));
   }
 
-  /// Towards the middle of the box of the normals: a single one that differs counts as much as many that agree.
+  /// Axis towards the middle of the bounding box of normals: one differing normal counts as much as many that agree.
   [[nodiscard]] glm::vec3 Axis() const {
     const glm::vec3 middle(Least(low_.x) + Greatest(high_.x), Least(low_.y) + Greatest(high_.y),
                            Least(low_.z) + Greatest(high_.z));
-    return middle * (1.0f / std::sqrt(glm::dot(middle, middle)));  // not finite where there is none
+    return middle * (1.0f / std::sqrt(glm::dot(middle, middle)));  // not finite if there is no axis
   }
 
   [[nodiscard]] float LeastCosine(const glm::vec3& axis) const {
@@ -195,8 +196,8 @@ ConeArrays make_cones(const ClusterSet& set, const Execution& execution) {
 
 const ConeArrays& LazyCones::get_now(const ClusterSet& set, const Execution& execution) const {
   if (const ConeArrays* const made = state_->made.load()) return *made;
-  // Several threads may come here: all make the same, one is kept. Waiting for one another could be for ever, where
-  // the threads that make the cones are lent to draw another view.
+  // Several threads may come here: all make the same cones, and one result is kept. Waiting for each other might never
+  // end, if the threads that make the cones are lent to draw another view.
   auto mine = std::make_unique<ConeArrays>(make_cones(set, execution));
   ConeArrays* first = nullptr;
   if (!state_->made.compare_exchange_strong(first, mine.get())) return *first;

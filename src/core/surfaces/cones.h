@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which way the triangles of each cluster face, at most: what tells that none of them faces the eye.
+// The directions that the triangles of each cluster may face: they tell if none of them faces the eye.
 // (L. A. Shirman, S. S. Abi-Ezzi. The Cone of Normals Technique for Fast Processing of Curved Patches. 1993.)
 //
 //         \  axis  /
@@ -8,8 +8,8 @@
 //            \|/
 //       ------+------ surface
 //
-// Where even the direction in the cone that is turned most towards the eye faces away from it, from every place of the
-// cluster's box, all of its triangles face away.
+// All triangles face away from the eye if even the cone's direction that is turned most towards it faces away, from
+// every place of the cluster's box.
 #pragma once
 
 #include <atomic>
@@ -22,32 +22,33 @@ namespace frontmost {
 
 struct ClusterSet;
 
-/// By cluster: a cone that holds the outward normals of all triangles with distinct corners, the winding of mirrored
-/// instances turned as in the cluster. Every normal is within kConeRounding, in radians, of what is stored. Padded to
+/// By cluster: a cone that holds the outward normals of all triangles with distinct vertices; mirrored instances have
+/// the cluster's reversed winding. Every normal is within kConeRounding, in radians, of the stored cone. Padded to
 /// whole vectors of 16.
 struct ConeArrays {
   Buffer<float> x, y, z;   ///< axis, of length 1
-  Buffer<float> cosine;    ///< of half the opening angle, greater than 0
-  Buffer<float> altitude;  ///< the least of those triangles' least altitudes; 0 where there is no cone to be used
+  Buffer<float> cosine;    ///< cosine of half the opening angle, greater than 0
+  Buffer<float> altitude;  ///< the least altitude of all these triangles; 0 if there is no usable cone
 };
 
-/// Of a triangle that is 2^12 times as long as it is high the normal errs by 2^-9 (flatter ones leave the cluster
-/// without a cone); the cosine of a closed cone errs by 2^-22, the angle thus by 2^-10.5.
+/// The normal of a triangle that is 2^12 times as long as it is high errs by 2^-9; a flatter triangle leaves its
+/// cluster without a cone. The cosine of a closed cone errs by 2^-22, and so the angle by 2^-10.5.
 inline constexpr float kConeRounding = 3.0f / 1024.0f;
 
-/// O(triangles), in parallel: 3 ms a million triangles on one thread, a tenth of the time for clusters.
+/// Makes the cones of a set. O(triangles), in parallel: 3 ms a million triangles on one thread, a tenth of the time for
+/// clusters.
 [[nodiscard]] ConeArrays make_cones(const ClusterSet& set, const Execution& execution);
 
-/// The cones of a set, made when they have been asked for often enough to pay.
+/// The cones of a set, made once they have been asked for often enough to pay.
 class LazyCones {
  public:
-  /// What cones save of a frame is between a half and a fortieth of what it costs to make them: a set that is drawn
-  /// once does better without. So the first few calls give null. May be called by several threads at once.
+  /// Cones save between a fortieth and a half of their own cost in each frame, so a set that is drawn once does better
+  /// without. The first few calls therefore return null. May be called by several threads at once.
   [[nodiscard]] const ConeArrays* get(const ClusterSet& set, const Execution& execution) const;
-  /// At the first call, too.
+  /// The cones, made at the first call if needed.
   [[nodiscard]] const ConeArrays& get_now(const ClusterSet& set, const Execution& execution) const;
   [[nodiscard]] std::size_t byte_count() const;
-  /// Cones that are there follow the triangles of some clusters. Not while another call runs.
+  /// Updates existing cones of some clusters after their triangles moved. Not while another call runs.
   void follow(const ClusterSet& set, std::span<const std::uint32_t> clusters, Isa isa);
 
  private:

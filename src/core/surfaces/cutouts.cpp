@@ -8,7 +8,7 @@
 namespace frontmost {
 namespace {
 
-/// Whether a material may have holes: one whose alpha is nowhere asked for is either all there or not at all.
+/// Whether a material may have holes. In other alpha modes, alpha either blends or is ignored.
 bool may_cut(const Material& m) { return m.alpha == Material::Alpha::mask; }
 
 CutoutPattern pattern_of(const Scene& scene, const Material& material) {
@@ -24,13 +24,13 @@ CutoutPattern pattern_of(const Scene& scene, const Material& material) {
   pattern.wrap_u = texture.wrap_u;
   pattern.wrap_v = texture.wrap_v;
   pattern.nearest = texture.nearest;
-  // A quarter of the texture, and all that is asked for: colours stay where they are.
+  // Only alphas are copied, a quarter of the texture.
   pattern.alphas.reserve(texture.pixels.size());
   for (const glm::u8vec4& pixel : texture.pixels) pattern.alphas.push_back(pixel.a);
   return pattern;
 }
 
-/// The values of a triangle's corners, or `none` where the mesh has no such attribute.
+/// The values of a triangle's vertices, or `none` if the mesh has no such attribute.
 template <class T, class Value>
 std::array<Value, 3> corner_values(const Mesh& mesh, const Attribute<T>* attribute, std::uint32_t triangle,
                                    const Value& none, Value (*part)(const T&)) {
@@ -71,7 +71,7 @@ bool CutoutTriangle::is_hole(const glm::vec3& weight) const {
 }
 
 bool CutoutTriangle::is_hole_at(const glm::dvec3& point) const {
-  // Weights are ratios of areas on the plane that the triangle covers most of.
+  // Weights are ratios of areas in the triangle's own plane.
   const glm::dvec3 a(corner[0]), b(corner[1]), c(corner[2]);
   const glm::dvec3 normal = glm::cross(b - a, c - a);
   return is_hole(normalized_weights({glm::dot(normal, glm::cross(b - point, c - point)),
@@ -84,7 +84,7 @@ glm::vec3 normalized_weights(const glm::dvec3& values) {
   const glm::dvec3 turned = total < 0 ? -values : values;
   const glm::dvec3 inside = glm::max(turned, glm::dvec3(0));
   const double sum = inside.x + inside.y + inside.z;
-  // Edge-on, or not a number: the middle.
+  // Equal weights for an edge-on triangle, or NaN.
   if (!(sum > 0 && sum <= std::numeric_limits<double>::max())) return glm::vec3(1.0f / 3);
   return glm::vec3(inside / sum);
 }
@@ -99,13 +99,13 @@ std::shared_ptr<Cutouts> Cutouts::of(const Scene& scene, const std::vector<Primi
     cutouts->patterns_->push_back(cuts ? pattern_of(scene, material) : CutoutPattern{});
     any = any || cuts;
   }
-  // Most scenes: nothing is asked of them then for any sample.
+  // Most scenes have no cutouts, and samples of them need no test.
   if (!any) return nullptr;
   cutouts->words_.resize(first_primitives.back() / 64 + 1);
   for (std::size_t i = 0; i < scene.instances.size(); ++i)
     cutouts->add_mesh(scene, scene.instances[i], first_primitives[i]);
-  // A bit for each triangle and a sum for each word: an id's place is a count of bits, where a table would take four
-  // bytes for every triangle of the scene.
+  // A bit for each triangle and a sum for each word: an id's index is a count of bits. A table would take four bytes
+  // for every triangle of the scene.
   std::uint32_t before = 0;
   for (Word& word : cutouts->words_) {
     word.before = before;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An instance that moves: what was found of it is found again, and nothing else.
+// Updates surfaces after one instance moved: only data that depends on the instance is computed again.
 //
 //   boxes, bounds    of its ranges of triangles
 //   holes            places of its triangles
@@ -15,9 +15,9 @@
 namespace frontmost {
 namespace {
 
-constexpr std::size_t kBoxesAround = 16;  ///< in a box of PlacedScene::levels
+constexpr std::size_t kBoxesAround = 16;  ///< instances or boxes in a box of PlacedScene::levels
 
-/// Whether its three corners are one.
+/// Whether the triangle's three vertices coincide.
 bool is_a_point(const Mesh& mesh, const glm::uvec3& c) {
   const glm::vec3 &p = mesh.positions[c.x], &q = mesh.positions[c.y], &r = mesh.positions[c.z];
   return has_same_bits(p, q) && has_same_bits(q, r);
@@ -47,7 +47,7 @@ void PlacedScene::follow(std::uint32_t instance, Isa isa) {
   }
   follow_bounds(instance);
   if (!has_cutouts(instance)) return;
-  // What an index holds stays as it is until that follows.
+  // An index keeps its cutouts until it follows, so shared cutouts are copied.
   if (cutouts.use_count() > 1) cutouts = std::make_shared<Cutouts>(*cutouts);
   cutouts->move(scene->meshes[scene->instances[instance].mesh], world_from_mesh, first_primitives[instance]);
 }
@@ -84,7 +84,7 @@ bool ClusterSet::move_triangles(const PlacedScene& placed, const InstanceMove& m
   const std::size_t begin = clusters[cluster].first_triangle, end = begin + clusters[cluster].triangle_count;
   const std::uint64_t vertices = clusters[cluster].first_vertex;
   for (std::size_t t = begin; t < end; ++t) {
-    if (id[t] - first >= mesh.triangles.size()) continue;  // wraps for ids below
+    if (id[t] - first >= mesh.triangles.size()) continue;  // wraps around for lower ids
     const glm::uvec3& c = mesh.triangles[id[t] - first];
     const glm::vec3 world[3] = {to_world(mesh.positions[c.x]), to_world(mesh.positions[c.y]),
                                 to_world(mesh.positions[c.z])};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the Morton code of a cell to its place on Hilbert's curve, on which neighbours in the order always share a face.
+// Maps the Morton code of a cell to its place on Hilbert's curve, on which consecutive cells always share a face.
 // D. Hilbert. Über die stetige Abbildung einer Linie auf ein Flächenstück. 1891.
 // C. Hamilton. Compact Hilbert Indices. Dalhousie University CS-2006-07. 2006: names and formulas of a step.
 #pragma once
@@ -10,13 +10,13 @@
 namespace frontmost {
 namespace hilbert_detail {
 
-/// How the curve lies in a cell: it enters at corner `entry` and leaves along axis `direction`. 24 ways.
+/// The curve's pose in a cell: it enters at corner `entry` and leaves along axis `direction`. There are 24 poses.
 struct CellPose {
   std::uint32_t entry, direction;
   [[nodiscard]] constexpr std::uint32_t number() const { return entry * 3 + direction; }
 };
 
-/// Which of the eight parts of a cell comes when, and how the curve lies in it.
+/// The place of one of the eight parts of a cell in the order, and the curve's pose in it.
 struct HilbertStep {
   std::uint32_t place;
   CellPose inside;
@@ -29,7 +29,7 @@ constexpr std::uint32_t rotate_left(std::uint32_t bits, std::uint32_t by) {
 constexpr std::uint32_t gray(std::uint32_t i) { return i ^ i >> 1; }
 constexpr std::uint32_t trailing_ones(std::uint32_t i) { return i & 1 ? 1 + trailing_ones(i >> 1) : 0; }
 
-/// `part` is a bit an axis.
+/// `part` has one bit an axis.
 constexpr HilbertStep step(const CellPose& pose, std::uint32_t part) {
   const std::uint32_t turned = rotate_left(part ^ pose.entry, 2 - pose.direction);
   const std::uint32_t place = (turned ^ turned >> 1 ^ turned >> 2) & 7;  // gray(place) == turned
@@ -38,7 +38,7 @@ constexpr HilbertStep step(const CellPose& pose, std::uint32_t part) {
   return {place, {pose.entry ^ rotate_left(entry, pose.direction + 1), (pose.direction + direction + 1) % 3}};
 }
 
-/// Two levels at a time: by pose and the two parts, the next pose and the two places, each in six bits.
+/// Two levels at a time: for a pose and two parts, the next pose and the two places, each in six bits.
 inline constexpr auto kSteps = [] {
   std::array<std::uint16_t, 24 * 64> steps{};
   for (std::uint32_t pose = 0; pose < 24; ++pose)
@@ -52,11 +52,11 @@ inline constexpr auto kSteps = [] {
 
 }  // namespace hilbert_detail
 
-/// The place of a cell on the curve through a cube of 8^levels of them. `morton` has three bits a level, at most 30; so
-/// has the result.
+/// The place of a cell on the curve through a cube of 8^levels cells. `morton` and the result have three bits a level,
+/// at most 30 bits.
 [[nodiscard]] inline std::uint32_t hilbert_place(std::uint32_t morton, int levels) {
   std::uint32_t pose = 0, place = 0;
-  // An odd number of levels is one more, whose first part is part 0, place 0.
+  // An odd number of levels counts one more, whose first part is part 0 at place 0.
   for (int shift = (levels - 1) / 2 * 6; shift >= 0; shift -= 6) {
     const std::uint32_t next = hilbert_detail::kSteps[pose | (morton >> shift & 63)];
     place = place << 6 | (next & 63);

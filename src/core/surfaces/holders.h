@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which clusters, or leaves, hold triangles of an instance: what has to change when it moves.
+// Which clusters or leaves hold triangles of an instance, and so change when it moves.
 //
 //   instance    0          1       2
-//   first_      0          2       3        where its list begins
+//   first_      0          2       3        beginning of the instance's list
 //   holders_    4  5       5       0 1 9    numbers, each once, in order
 #pragma once
 
@@ -17,7 +17,8 @@ namespace frontmost {
 
 class Holders {
  public:
-  /// ids_of(holder): the ids of its triangles; numbers beyond the last id are of none. O(triangles).
+  /// ids_of(holder) gives the ids of the holder's triangles; numbers beyond the last id belong to no triangle.
+  /// O(triangles).
   template <class IdsOf>
   Holders(const std::vector<PrimitiveId>& first_primitives, std::size_t count, const IdsOf& ids_of)
       : first_(first_primitives.size() + 1, 0) {
@@ -35,7 +36,7 @@ class Holders {
     visit_all([&](std::uint32_t instance, std::uint32_t) { ++first_[instance + 2]; });
     for (std::size_t i = 2; i < first_.size(); ++i) first_[i] += first_[i - 1];
     holders_.resize(first_.back());
-    // Each begin moves to its end, which is where the next one begins.
+    // Filling moves each beginning to its end, which is where the next one begins.
     visit_all([&](std::uint32_t instance, std::uint32_t holder) { holders_[first_[instance + 1]++] = holder; });
   }
 

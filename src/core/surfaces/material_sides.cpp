@@ -6,7 +6,7 @@
 namespace frontmost {
 namespace {
 
-/// What the triangles of a mesh say, or of several meshes.
+/// The sides of the materials of one mesh's triangles, or of several meshes.
 struct SidesFound {
   bool is_any_double = false, is_any_single = false;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one look at every triangle that a scene gets before anything is drawn: its corners are checked and put into
-// boxes. So what comes later need not check again, and may leave out what is behind or beside the picture.
+// The only pass over all triangles of a scene before anything is drawn: it checks their vertices and finds their boxes.
+// So later steps need not check again, and can leave out triangles behind or beside the picture.
 
 #include "surfaces/placed_scene.h"
 
@@ -13,7 +13,7 @@
 namespace frontmost {
 namespace {
 
-/// The ranges of all instances; their vertices are still to be found.
+/// Lists the ranges of all instances; their vertices are found later.
 void list_ranges(PlacedScene& placed) {
   std::uint32_t box_count = 0;
   for (std::uint32_t i = 0; i < placed.scene->instances.size(); ++i) {
@@ -28,7 +28,7 @@ void list_ranges(PlacedScene& placed) {
   placed.boxes.resize(box_count);
 }
 
-/// What no range of an instance has looked at.
+/// Whether a mesh without an instance, which no range covers, has bad vertex numbers.
 bool has_bad_unplaced_mesh(const Scene& scene, Isa isa) {
   std::vector<bool> is_placed(scene.meshes.size(), false);
   for (const Instance& instance : scene.instances) is_placed[instance.mesh] = true;
@@ -81,7 +81,7 @@ PlacedScene place_scene(const Scene& scene, const Execution& execution) {
         is_bad = true;
     }
   });
-  if (is_bad) validate(scene);  // says what is wrong
+  if (is_bad) validate(scene);  // validate() reports the error
   placed.instance_bounds.resize(scene.instances.size());
   for (const MeshRange& range : placed.ranges)
     for (std::uint32_t k = 0; k < range.box_count(); ++k)
@@ -95,13 +95,13 @@ PlacedScene place_scene(const Scene& scene, const Execution& execution) {
 
 namespace {
 
-/// Room only grows: what is in it is written anew.
+/// Room only grows, and is always written anew.
 std::span<glm::vec3> room_for(std::size_t count, WorldScratch& scratch) {
   if (scratch.positions.size() < count) scratch.positions.resize(count);
   return std::span(scratch.positions).first(count);
 }
 
-/// The vertices of corners, each once, in the order in which they are met.
+/// The vertices of triangles, each once, in the order of their first use.
 std::span<glm::vec3> gather_vertices(std::span<const glm::uvec3> corners, const std::vector<glm::vec3>& positions,
                                      const NumberRange& numbers, WorldScratch& scratch) {
   const std::span<glm::vec3> room = room_for(3 * corners.size(), scratch);
@@ -117,7 +117,7 @@ std::span<glm::vec3> gather_vertices(std::span<const glm::uvec3> corners, const 
   scratch.corners.resize(corners.size());
   for (std::size_t i = 0; i < corners.size(); ++i)
     for (int k = 0; k < 3; ++k) {
-      // Written whether it is new or not: which of both cannot be foretold.
+      // Written whether it is new or not, as a branch would be unpredictable.
       std::uint32_t& place = known[corners[i][k] - numbers.low];
       const bool is_new = place < from;
       room[next - from] = positions[corners[i][k]];
@@ -143,7 +143,7 @@ WorldTriangles world_triangles(const PlacedScene& placed, const MeshRange& range
     const auto [low, high] = range.vertices;
     triangles.positions = std::span(positions).subspan(low, std::size_t(high - low) + 1);
     triangles.first_position = low;
-    // No copy at all: most files have one instance, where it is.
+    // Most files have one instance without a transform, which needs no copy.
     if (is_identity) return triangles;
     const std::span<glm::vec3> world = room_for(triangles.positions.size(), scratch);
     place_vertices(world_from_mesh, triangles.positions, world.data(), isa);

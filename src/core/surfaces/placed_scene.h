@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Surfaces finds out of a scene at once: the number of every triangle, and where in the world it is.
+// The data that Surfaces finds in a scene at once: the numbers of all triangles, and their places in the world.
 //
 //   scene      instance 0 of mesh a    instance 1 of mesh a    instance 2 of mesh b
 //   ranges     | 2048 | 2048 | rest |  | 2048 | 2048 | rest |  | rest |           triangles that follow one another
 //   boxes      one for 64 triangles each, in world space
 //
-// Nothing is copied: positions stay in the scene's meshes and go through to_world() whenever they are read. What reads
-// them often asks for clusters.
+// Nothing is copied: positions stay in the scene's meshes and go through to_world() at every read. Frequent readers use
+// clusters.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ namespace frontmost {
   return glm::determinant(glm::dmat3(world_from_mesh)) < 0;
 }
 
-/// The world-space position of a vertex, in the one rounding that every part of the house uses.
+/// The world-space position of a vertex, in the one rounding that all code uses.
 [[nodiscard]] inline glm::vec3 to_world(const glm::dmat4& world_from_mesh, const glm::vec3& p) {
   const glm::dvec3 q(p);
   const glm::dmat4& m = world_from_mesh;
@@ -36,12 +36,12 @@ namespace frontmost {
           float(m[0][2] * q.x + m[1][2] * q.y + m[2][2] * q.z + m[3][2])};
 }
 
-/// Whether a cluster has one vertex for both.
+/// Whether a cluster has one vertex for both positions.
 [[nodiscard]] inline bool has_same_bits(const glm::vec3& a, const glm::vec3& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-/// to_world() for many vertices of one instance, for which most files have no transform at all.
+/// to_world() for many vertices of one instance; most files have no transform at all.
 class ToWorld {
  public:
   explicit ToWorld(const glm::dmat4& world_from_mesh)
@@ -58,33 +58,32 @@ class ToWorld {
 struct NumberRange {
   std::uint32_t low, high;
 
-  /// Whether vertices of so many triangles are best read from the one to the other, as in files whose order is not
-  /// random.
+  /// Whether it is best to read all vertices of the range for so many triangles, as in files whose order is not random.
   [[nodiscard]] bool is_dense(std::size_t triangle_count) const { return high - low < 6 * triangle_count; }
 };
 
 /// Consecutive triangles of one instance.
 struct MeshRange {
-  /// Long to draw beside being handed to a thread, and their vertices stay in the second-level cache.
+  /// Drawing so many takes long compared with handing them to a thread, and their vertices stay in the second-level
+  /// cache.
   static constexpr std::uint32_t most_triangles = 2048;
-  /// In a box of PlacedScene::boxes.
+  /// Triangles in a box of PlacedScene::boxes.
   static constexpr std::uint32_t triangles_in_box = 64;
 
   std::uint32_t instance;
   std::uint32_t begin, end;  ///< within the mesh
-  NumberRange vertices;      ///< of all corners; may be wider than they are
+  NumberRange vertices;      ///< bounds of all vertex numbers; may be wider than they are
   std::uint32_t first_box;
 
   [[nodiscard]] std::uint32_t count() const { return end - begin; }
   [[nodiscard]] std::uint32_t box_count() const { return (count() + triangles_in_box - 1) / triangles_in_box; }
 };
 
-/// Which instances have moved, for whoever keeps something of them. Numbers of moves count from when the surfaces were
-/// made.
+/// The instances that have moved, for owners of derived data. Moves are numbered from the making of the surfaces.
 class MoveLog {
  public:
   [[nodiscard]] std::uint64_t count() const { return first_ + instances_.size(); }
-  /// At most as many are kept as there are instances: whoever is farther behind looks at all of them.
+  /// Keeps at most as many moves as there are instances; an owner that is farther behind updates all instances.
   void add(std::uint32_t instance, std::size_t instance_count) {
     if (instances_.size() >= instance_count) {
       first_ += instances_.size();
@@ -92,7 +91,8 @@ class MoveLog {
     }
     instances_.push_back(instance);
   }
-  /// Calls visit(instance) for all that may have moved since the log had `seen` moves, and sets that to count().
+  /// Calls visit(instance) for all instances that may have moved since the log had `seen` moves, and sets `seen` to
+  /// count().
   template <class Visit>
   void visit_since(std::uint64_t& seen, std::size_t instance_count, const Visit& visit) const {
     if (seen < first_)
@@ -103,21 +103,22 @@ class MoveLog {
   }
 
  private:
-  std::uint64_t first_ = 0;  ///< the number of the first that is kept
+  std::uint64_t first_ = 0;  ///< number of the first kept move
   std::vector<std::uint32_t> instances_;
 };
 
 /// A scene whose indices have all been checked.
 struct PlacedScene {
   const Scene* scene = nullptr;
-  std::vector<PrimitiveId> first_primitives;  ///< by instance, and the total at the end
-  std::vector<std::uint8_t> mirrored;         ///< by instance: its triangles have their last two corners swapped
-  std::shared_ptr<Cutouts> cutouts;           ///< null where no triangle may have holes
+  std::vector<PrimitiveId> first_primitives;  ///< by instance; then the total
+  std::vector<std::uint8_t> mirrored;         ///< by instance: whether its triangles have their last two vertices
+                                              ///< swapped
+  std::shared_ptr<Cutouts> cutouts;           ///< null if no triangle may have holes
   std::shared_ptr<const MaterialSides> sides;
   std::vector<MeshRange> ranges;  ///< of all triangles, in the order of their ids
-  std::vector<Box> boxes;         ///< of those with finite corners, a few consecutive ones each
+  std::vector<Box> boxes;         ///< boxes of a few consecutive triangles each, those with finite vertices
   std::vector<Box> instance_bounds;
-  /// Around 16 consecutive boxes of the level below each, the lowest level around instances; up to a single box.
+  /// Boxes around 16 consecutive boxes of the level below, the lowest level around instances; up to a single box.
   std::vector<std::vector<Box>> levels;
   Box bounds;
   MoveLog moves;
@@ -131,40 +132,40 @@ struct PlacedScene {
   [[nodiscard]] PrimitiveId first_id(const MeshRange& range) const {
     return first_primitives[range.instance] + range.begin;
   }
-  /// Triangles of an instance that may have holes.
+  /// Whether triangles of an instance may have holes.
   [[nodiscard]] bool has_cutouts(std::uint32_t instance) const;
-  /// Follows an instance to where it is in the scene.
+  /// Moves an instance to its place in the scene.
   void follow(std::uint32_t instance, Isa isa);
   /// Makes the levels, and from them the bounds. O(instances * log(instances)).
   void find_bounds();
-  /// Makes the levels and the bounds follow those of one instance. O(log(instances)).
+  /// Updates the levels and the bounds for one instance. O(log(instances)).
   void follow_bounds(std::uint32_t instance);
 
-  /// Calls visit(vertex) for the world-space corners of a box's triangles; those that a triangle shares with the one
-  /// before are not visited again.
+  /// Calls visit(vertex) for the world-space vertices of a box's triangles, except those that a triangle shares with
+  /// the one before.
   template <class Visit>
   void visit_box(std::size_t box, const Visit& visit) const;
 };
 
-/// What the methods read of surfaces.
+/// The placed scene of surfaces, which methods read.
 [[nodiscard]] const PlacedScene& placed_scene(const Surfaces& surfaces);
 
 /// Numbers the triangles and finds their boxes. Precondition: validate_besides_vertices(scene) and
-/// check_transforms(scene) have passed. O(triangles), in parallel: 3 ns a triangle on one thread.
-/// \throws Error as validate(scene) does for the number of a vertex that does not exist.
+/// check_transforms(scene) have passed. O(triangles), in parallel: 3 ns a triangle on one thread. \throws Error as
+/// validate(scene) does for the number of a vertex that does not exist.
 [[nodiscard]] PlacedScene place_scene(const Scene& scene, const Execution& execution);
 
-/// \throws Error bad_argument for a transform that is not finite.
+/// \throws Error bad_argument if a transform is not finite.
 void check_transforms(const Scene& scene);
-/// The same for what an instance shall have.
+/// check_transforms() for a new transform of one instance.
 void check_transform(const Scene& scene, std::size_t instance, const glm::dmat4& world_from_mesh);
 
-/// Triangles of a range in world space. Borrows from the scene, or from what was given to find them.
+/// Triangles of a range in world space. Borrows from the scene, or from the scratch memory.
 struct WorldTriangles {
   std::span<const glm::vec3> positions;
   std::span<const glm::uvec3> corners;  ///< numbers of positions
   std::uint32_t first_position = 0;     ///< the number of positions[0]
-  bool is_mirrored = false;             ///< the last two corners change places
+  bool is_mirrored = false;             ///< the last two vertices change places
   PrimitiveId first_id = 0;
 
   [[nodiscard]] std::array<glm::vec3, 3> operator[](std::size_t triangle) const {
@@ -196,23 +197,24 @@ void PlacedScene::visit_box(std::size_t box, const Visit& visit) const {
   }
 }
 
-/// What finding them needs of memory, one a thread.
+/// Memory of world_triangles(), one a thread.
 struct WorldScratch {
   std::vector<glm::vec3> positions;
   std::vector<glm::uvec3> corners;
-  std::vector<std::uint32_t> known;  ///< by vertex: where it is in positions + known_from, unless it is less than that
+  std::vector<std::uint32_t> known;  ///< by vertex: its index in positions + known_from, if not less than known_from
   std::uint32_t known_from = 1;
 };
 
-/// Every vertex once: all between the least and the greatest where their numbers are dense, else those of corners.
+/// The triangles of a range, every vertex once: all vertices of the range of numbers if it is dense, else those in use.
 [[nodiscard]] WorldTriangles world_triangles(const PlacedScene& placed, const MeshRange& range, Isa isa,
                                              WorldScratch& scratch);
-/// to_world() of each, to the bit. `to`: as many; may be the same.
+/// to_world() of each position, to the bit. `to` has the size of `from`, and may be the same array.
 void place_vertices(const glm::dmat4& world_from_mesh, std::span<const glm::vec3> from, glm::vec3* to, Isa isa);
 
-/// Precondition: not empty.
+/// The least and greatest vertex number. Precondition: not empty.
 [[nodiscard]] NumberRange range_of_numbers(std::span<const glm::uvec3> corners, Isa isa);
-/// One box for each MeshRange::triangles_in_box triangles with finite corners; the others are in none.
+/// Finds a box for each MeshRange::triangles_in_box triangles. Triangles with vertices that are not finite are in no
+/// box.
 void find_boxes(const WorldTriangles& triangles, Isa isa, Box* boxes);
 
 }  // namespace frontmost

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Least significant digit first. Each chunk counts its digits; a prefix sum over (digit, chunk) tells every chunk where
-// its items go, so chunks scatter independently and stably.
+// The least significant digit comes first. Each chunk counts its digits; a prefix sum over (digit, chunk) gives every
+// chunk the places of its items, so chunks scatter independently and stably.
 //
 //             chunk 0   chunk 1                 chunk 0   chunk 1
 //   digit 0      2         1                       0         2
-//   digit 1      1         3      --sums-->        3         4        where the first of each goes
+//   digit 1      1         3      --sums-->        3         4        place of the first item of each
 //   digit 2      0         2                       7         7
 
 #include "surfaces/radix_sort.h"
@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kDigitBits = 11;
 constexpr std::size_t kDigits = std::size_t(1) << kDigitBits;
-// A chunk's counts, 8 KiB, stay in the first-level cache while its quarter of a megabyte passes by.
+// A chunk's counts, 8 KiB, stay in the first-level cache while its quarter of a megabyte is read.
 constexpr std::size_t kChunk = std::size_t(1) << 15;
 
 /// Some bits of an item.
@@ -39,7 +39,7 @@ void sort_by_digit(const Buffer<std::uint64_t>& from, Buffer<std::uint64_t>& to,
     for (std::size_t i = begin; i < end; ++i) ++counts[digit.of(from[i])];
   });
   std::uint32_t place = 0;
-  // By digit first and chunk second: equal digits then keep the order of the chunks, which makes the sort stable.
+  // Sums go by digit first and chunk second: equal digits keep the order of the chunks, which makes the sort stable.
   for (std::size_t value = 0; value < kDigits; ++value)
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
       std::uint32_t& entry = places[chunk * kDigits + value];

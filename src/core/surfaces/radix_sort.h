@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stable parallel radix sort, for orders that are made anew for every scene or view: of clusters, grids and painting.
+// A stable parallel radix sort, for orders of clusters, grids and painting that are made anew for every scene or view.
 //
-// An item is its key and what it stands for in one word, so that sorting moves 8 bytes and needs no comparison:
+// An item is its key and its payload in one word, so that sorting moves 8 bytes and needs no comparison:
 //
 //   bit  63                32 31                 0
 //        | anything | key   | anything           |
@@ -13,9 +13,8 @@
 
 namespace frontmost {
 
-/// Sorts by the bits [32, 32 + key_bits) of each item; those of equal keys keep their order.
-/// Precondition: 0 < key_bits <= 32. O(count) with one more buffer of the same size; the same result for any number of
-/// threads.
+/// Sorts by the bits [32, 32 + key_bits) of each item; items of equal keys keep their order. Precondition: 0 < key_bits
+/// <= 32. O(count) with one more buffer of the same size. The result is the same for any number of threads.
 [[nodiscard]] Buffer<std::uint64_t> radix_sort(Buffer<std::uint64_t> items, int key_bits, const Execution& execution);
 
 }  // namespace frontmost

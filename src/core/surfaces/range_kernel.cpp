@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The boxes of triangles and the extremes of their numbers, as many triangles at a time as the vector holds.
+// Finds boxes of triangles and the extremes of their vertex numbers, a vector of triangles at a time.
 //
-// Both are what Surfaces asks of every triangle of a scene. A corner that is not finite must not get into a box: it is
-// found by adding x - x to a sum, which is 0 for numbers and NaN for others, once for 64 triangles.
+// Surfaces needs both for every triangle of a scene. A vertex that is not finite must not get into a box. It is found
+// by adding x - x to a sum, which adds 0 for finite numbers and NaN for others, once for 64 triangles.
 
 #include <algorithm>
 
@@ -12,7 +12,7 @@
 #define HWY_TARGET_INCLUDE "surfaces/range_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After Highway: a block of its own.
+// The include follows Highway in a block of its own.
 #include "base/lane_types-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -44,7 +44,7 @@ class BoxFinder {
   explicit BoxFinder(const WorldTriangles& triangles)
       : positions_(&triangles.positions.data()->x), first_(std::int32_t(triangles.first_position)) {}
 
-  /// Of consecutive triangles, one at least. \returns false where a corner may not be finite: the box then means
+  /// The box of consecutive triangles, at least one. \returns false if a vertex may not be finite; the box then means
   /// nothing.
   bool Find(std::span<const glm::uvec3> corners, Box& box) {
     const DF d;
@@ -57,13 +57,13 @@ class BoxFinder {
     std::size_t i = 0;
     for (; i + lanes <= corners.size(); i += lanes) Include(&corners[i].x);
     if (i < corners.size()) {
-      // The last triangle again and again: reading on would pass the end of the array.
+      // The last triangle is repeated: reading on would pass the end of the array.
       glm::uvec3 filled[kMaxLanes];
       for (std::size_t k = 0; k < lanes; ++k) filled[k] = corners[HWY_MIN(i + k, corners.size() - 1)];
       Include(&filled[0].x);
     }
     for (int axis = 0; axis < 3; ++axis) {
-      // Plus 0: which zero of both signs is found must not depend on the number of lanes.
+      // + 0: the sign of a zero must not depend on the number of lanes.
       box.low[axis] = hn::GetLane(hn::MinOfLanes(d, low_[axis])) + 0.0f;
       box.high[axis] = hn::GetLane(hn::MaxOfLanes(d, high_[axis])) + 0.0f;
     }
@@ -81,7 +81,7 @@ class BoxFinder {
         const VF p = hn::GatherIndex(DF(), positions_ + axis, at);
         low_[axis] = hn::Min(low_[axis], p);
         high_[axis] = hn::Max(high_[axis], p);
-        rest_ = hn::Add(rest_, hn::Sub(p, p));  // not a number for what is not finite, and then so for ever
+        rest_ = hn::Add(rest_, hn::Sub(p, p));  // becomes NaN if p is not finite, and stays NaN
       }
     }
   }
@@ -91,7 +91,7 @@ class BoxFinder {
   VF low_[3], high_[3], rest_;
 };
 
-/// Of those with finite corners.
+/// The box of the triangles with finite vertices.
 Box BoxOfFinite(const WorldTriangles& triangles, std::size_t begin, std::size_t end) {
   Box box;
   for (std::size_t i = begin; i < end; ++i) {

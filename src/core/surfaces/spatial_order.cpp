@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order along Hilbert's curve, by way of Morton codes.
+// The order along Hilbert's curve, computed from Morton codes.
 // G. Morton. A Computer Oriented Geodetic Data Base and a New Technique in File Sequencing. 1966.
 //
-// File order would do for many meshes, but is up to seven times slower to draw for scattered ones. Morton's own order
-// jumps: clusters cut from it are scattered more, and a frame takes 2 to 8 % longer, for 4 ns a triangle saved here.
-// What did not pay is to look through the next triangles for such as find room in a full cluster: 32 add 2 % more
-// triangles to it, take a sixth of the time for clusters and gain nothing measurable. What halves the time is to sort
-// short runs of the file, but only such as lie together: one that crosses from the end of a row to the next one's
-// beginning makes a cluster as long as the model, and a frame a third slower.
+// The order of the file would do for many meshes, but scattered ones are drawn up to seven times slower. Morton's own
+// order jumps: its clusters are scattered more, and a frame takes 2 to 8 % longer, for 4 ns a triangle saved here.
+// Looking through the next triangles for ones that fit a full cluster does not pay: 32 triangles ahead add 2 % more
+// triangles to a cluster, take a sixth of the time for clusters and gain nothing measurable. Sorting short runs of the
+// file halves the time. Runs must lie together: a run from the end of a row to the beginning of the next makes a
+// cluster as long as the model, and a frame a third slower.
 
 #include "surfaces/spatial_order.h"
 
@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::uint32_t kItemsPerPart = 1u << 15;
 
-/// Some of one instance's triangles. Work is split at fixed numbers, whatever the threads.
+/// Some of one instance's triangles. Work is split at fixed numbers, whatever the number of threads.
 struct InstancePart {
   std::uint32_t instance = 0;
   std::uint32_t begin = 0, end = 0;
@@ -80,7 +80,7 @@ class Grid {
   double cells_, scale_;
 };
 
-/// A surface crosses about 2.5 r^2 of r^3 cells: as many bits as leave about 50 triangles in each.
+/// Bits that leave about 50 triangles in each cell: a surface crosses about 2.5 r^2 of r^3 cells.
 int bits_per_axis(std::size_t triangle_count) {
   const double cells_across = std::sqrt(double(triangle_count) / 125.0);
   return std::clamp(int(std::ceil(std::log2(std::max(cells_across, 1.0)))), 1, 10);
@@ -92,7 +92,7 @@ struct PartRuns {
   bool all_finite = true;
 };
 
-/// Cuts the triangles of a part into runs.
+/// Divides the triangles of a part into runs.
 struct RunCutter {
   const Mesh& mesh;
   const CellMap map;

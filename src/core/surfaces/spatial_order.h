@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order in which triangles are put into clusters: neighbours in space are neighbours in the order.
+// The order in which triangles are put into clusters: neighbours in the order are neighbours in space.
 //
 //   centroid --CellMap--> cell of a grid --hilbert_place()--> a number on Hilbert's curve --radix_sort()--> the order
 //
 //     +--+  +--+
 //     |  |  |  |
-//     +  +--+  +      The curve goes through all cells of the grid, and leaves no block before it has been through
-//     |        |      all of it: what is near on the curve is near in space.
+//     +  +--+  +      The curve goes through all cells of the grid, and completes each block before it leaves the
+//     |        |      block. So cells that are near on the curve are near in space.
 //     +--+  +--+
 //        |  |
 //     +--+  +--+
@@ -18,10 +18,10 @@
 
 namespace frontmost {
 
-/// Finds the instance of a primitive in constant time: a starting point every 64 ids, then a short walk.
+/// Finds the instance of a primitive in constant time: a starting point every 64 ids, then a short search.
 class InstanceFinder {
  public:
-  /// `first_primitives` by instance, and the total at the end; borrowed.
+  /// `first_primitives` has the first id by instance, then the total; borrowed.
   explicit InstanceFinder(const std::vector<PrimitiveId>& first_primitives);
   [[nodiscard]] std::uint32_t find(PrimitiveId id) const {
     std::uint32_t instance = start_[id / kStride];
@@ -35,15 +35,15 @@ class InstanceFinder {
   std::vector<std::uint32_t> start_;
 };
 
-/// Up to four triangles of an instance with consecutive ids that lie together, put into order as one. Files mostly have
-/// neighbours one after the other, and there are a third as many runs to be sorted as triangles.
+/// Up to four triangles of an instance with consecutive ids that lie together and are ordered as one. Files mostly list
+/// neighbours one after the other, so there are a third as many runs to sort as triangles.
 struct TriangleRun {
   static constexpr std::uint32_t max_count = 4;
 
   PrimitiveId first;
   std::uint32_t count;
 
-  /// In 64 bits: count, the place on the curve in 30 bits, first.
+  /// 64 bits: count, the place on the curve in 30 bits, first.
   [[nodiscard]] std::uint64_t packed(std::uint32_t place) const {
     return std::uint64_t(count - 1) << 62 | std::uint64_t(place) << 32 | first;
   }
@@ -51,12 +51,12 @@ struct TriangleRun {
 };
 
 struct SpatialOrder {
-  Buffer<std::uint64_t> runs;            ///< packed TriangleRuns that hold every primitive once
-  std::vector<std::uint8_t> all_finite;  ///< by instance: not 0 where all corners are, in the space of their mesh
+  Buffer<std::uint64_t> runs;            ///< packed TriangleRuns; every primitive is in one
+  std::vector<std::uint8_t> all_finite;  ///< by instance: not 0 if all vertices are finite in mesh space
 };
 
-/// Runs by the cells of their first triangles' centroids along Hilbert's curve; within a cell in id order.
-/// Cells hold some tens of triangles of an ordinary surface. O(triangles), 5 to 16 bytes a triangle while it runs.
+/// Runs in the order of the cells of their first triangles' centroids along Hilbert's curve; within a cell by id. Cells
+/// hold some tens of triangles of an ordinary surface. O(triangles), 5 to 16 bytes a triangle while it runs.
 [[nodiscard]] SpatialOrder spatial_order(const PlacedScene& placed, const Execution& execution);
 
 }  // namespace frontmost

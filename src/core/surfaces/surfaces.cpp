@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces: a scene that was checked and numbered, and its clusters, which may have to be made yet.
+// Surfaces: a scene that was checked and numbered, and its clusters, which may not exist yet.
 //
-// Most of what a method needs is made here once and only read afterwards. Clusters are the exception: they pay from the
-// third picture on, and who asks for a third cannot be known; so they are made then, under a lock, behind an interface
-// that is constant.
+// Most data of a method is made here once and only read afterwards. Clusters are the exception: they pay from the third
+// picture on, and nobody knows in advance whether there is a third. So they are made then, under a lock, behind a const
+// interface.
 #include <algorithm>
 
 #include "base/parallel.h"
@@ -29,7 +29,7 @@ struct Surfaces::State {
 
 Surfaces::Surfaces(const Scene& scene, const Execution& execution) {
   const IeeeScope ieee;
-  // The door: behind it no method looks at an index or a transform again.
+  // All checks are here: behind this point no method checks an index or a transform again.
   validate_besides_vertices(scene);
   check_transforms(scene);
   auto state = std::make_unique<State>();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of a cluster's vertices a corner is.
+// Finds the number of a triangle's vertex in its cluster.
 //
 //   key --hash--> guesses_[4096] --> a number --> keys_ of that number: the same bits?
-//                                                 yes: that is the vertex; no: a new one, and the guess is of it
+//                                                 yes: that is the vertex; no: a new one, which becomes the guess
 #pragma once
 
 #include <algorithm>
@@ -17,20 +17,20 @@ constexpr std::size_t padded_to_lanes(std::size_t count) {
   return (count + Cluster::lanes - 1) / Cluster::lanes * Cluster::lanes;
 }
 
-/// What vertices are told apart by: those of two instances stay two where they meet, and those of one where it is
-/// flattened, so that each can follow its instance.
+/// The identity of a vertex. Vertices of two instances stay two if they coincide, and so do vertices of one instance
+/// that a transform flattens, so that each can follow its instance.
 struct VertexKey {
   glm::vec3 position;  ///< in the space of the mesh
   std::uint32_t instance = 0;
 };
 
-/// The vertices of one cluster after the other. They are told apart by the bits of their position, not by number, which
-/// serves indexed meshes and soups alike: in a soup, as STL files are, every corner has a number of its own, and
-/// welding inside a cluster doubles what it holds.
+/// The vertices of one cluster after the other. Vertices are identified by the bits of their position, not by number,
+/// which suits both indexed meshes and soups. In a soup, such as an STL file, every triangle has vertex numbers of its
+/// own, and welding doubles the triangles that a cluster holds.
 ///
-/// A hash of the position leads to a guess, and what is guessed is compared. The guesses are never cleared, and one may
-/// be lost to another: a vertex is then there twice, which costs a place and changes no picture. In return nothing is
-/// searched, and nothing branches: whether a corner is new cannot be foreseen, and would cost more than all the rest.
+/// A hash of the position leads to a guess, which is compared. The guesses are never cleared, and one may overwrite
+/// another: a vertex is then stored twice, which costs a place and changes no picture. In return the table neither
+/// searches nor branches: a branch on whether a vertex is new is unpredictable, and would cost more than all the rest.
 class VertexTable {
  public:
   static constexpr std::uint8_t none = 0xFF;
@@ -38,13 +38,13 @@ class VertexTable {
   void clear() { count_ = 0; }
   [[nodiscard]] std::size_t size() const { return count_; }
 
-  /// The vertex' number, or `none`: intern() would add it.
+  /// The vertex's number, or `none` if intern() would add it.
   [[nodiscard]] std::uint8_t find(const VertexKey& key) const {
     const Bits bits = bits_of(key);
     const std::uint8_t guess = guesses_[hash(bits)];
     return is_at(guess, bits) ? guess : none;
   }
-  /// The vertex' number; it is added when it is not found. Precondition: there is room for one more.
+  /// The vertex's number; adds the vertex if it is not found. Precondition: there is room for one more.
   std::uint8_t intern(const VertexKey& key, const glm::vec3& p) {
     const Bits bits = bits_of(key);
     std::uint8_t& guess = guesses_[hash(bits)];
@@ -58,19 +58,19 @@ class VertexTable {
   }
   [[nodiscard]] glm::vec3 operator[](std::size_t i) const { return {x_[i], y_[i], z_[i]}; }
 
-  /// Repeats the last vertex until there are whole vectors. \returns the new size, 0 for an empty table.
+  /// Repeats the last vertex to fill whole vectors. \returns the new size, 0 for an empty table.
   std::size_t pad() {
     if (count_ == 0) return 0;
     const std::size_t end = padded_to_lanes(count_);
     for (auto* axis : {&x_, &y_, &z_}) std::fill(axis->begin() + count_, axis->begin() + end, (*axis)[count_ - 1]);
     return end;
   }
-  /// Bounds of all vertices. Precondition: pad() was called after the last was added.
+  /// Bounds of all vertices. Precondition: pad() was called after the last vertex was added.
   [[nodiscard]] Box bounds() const {
     Box box;
     for (int k = 0; k < 3; ++k) {
       const auto& axis = k == 0 ? x_ : k == 1 ? y_ : z_;
-      // Side by side, so that the compiler can use vectors and no comparison waits for the one before.
+      // Lanes are independent, so that the compiler can use vectors and no comparison waits for the one before.
       std::array<float, Cluster::lanes> low, high;
       low.fill(std::numeric_limits<float>::infinity());
       high.fill(-std::numeric_limits<float>::infinity());
@@ -99,7 +99,7 @@ class VertexTable {
     std::memcpy(bits.data(), &key, sizeof bits);
     return bits;
   }
-  /// Round numbers differ in their high bits only: multiplication brings them, and all others, to the top.
+  /// Round numbers differ only in their high bits; multiplication moves these and all other bits to the top.
   static std::uint32_t hash(const Bits& b) {
     return (b[0] * 0x9E3779B1u + b[1] * 0x85EBCA77u + b[2] * 0xC2B2AE3Du + b[3] * 0x27D4EB2Fu) >> (32 - kHashBits);
   }
@@ -111,7 +111,7 @@ class VertexTable {
   }
 
   std::array<std::uint8_t, std::size_t(1) << kHashBits> guesses_{};
-  std::array<Bits, Cluster::max_vertices> keys_{};  // a guess may be of a vertex that is not there
+  std::array<Bits, Cluster::max_vertices> keys_{};  // a guess may name a vertex that does not exist
   std::array<float, Cluster::max_vertices> x_, y_, z_;
   std::uint32_t count_ = 0;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the coordinates of a mesh to those of the world, many vertices at once: in doubles, each product and sum in the
-// order of to_world(), and rounded once, so that its bits are the same.
+// From mesh coordinates to world coordinates, many vertices at once: in doubles, each product and sum in the order of
+// to_world(), and rounded once, so that the bits are the same.
 
 #include "surfaces/placed_scene.h"
 
@@ -8,7 +8,7 @@
 #define HWY_TARGET_INCLUDE "surfaces/world_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After Highway: a block of its own.
+// The include follows Highway in a block of its own.
 #include "base/lane_types-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -16,7 +16,8 @@ namespace frontmost {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Where there are no vectors, Highway turns doubles beyond the floats into the greatest one instead of infinity.
+// On targets without vectors, Highway converts doubles beyond the range of floats to the greatest float, not to
+// infinity.
 #if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
 
 void PlaceVertices(const glm::dmat4& m, std::span<const glm::vec3> from, glm::vec3* to) {
@@ -25,7 +26,7 @@ void PlaceVertices(const glm::dmat4& m, std::span<const glm::vec3> from, glm::ve
 
 #else
 
-/// Of one axis.
+/// The transform of one axis.
 template <class DD>
 class WorldRow {
  public:

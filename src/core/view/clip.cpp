@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Homogeneous clipping by planes, one after another.
+// Homogeneous clipping by one plane after another.
 //
 // I. Sutherland, G. Hodgman. Reentrant Polygon Clipping. 1974.
 //
-// Vertices that can be snapped keep the float position that every other triangle sees; only the others, and the cuts,
-// are worked out in double.
+// Vertices that can be snapped keep the float position that every other triangle sees. Only other vertices, and cuts,
+// are computed in double.
 //
-// No cracks: what becomes of an edge depends on its two ends alone. Both triangles that have it cut it from its inner
-// to its outer end, in the same order of planes, and so get the same bits.
+// There are no cracks: the result for an edge depends on its two ends alone. Both triangles of an edge cut it from its
+// inner to its outer end, in the same order of planes, and so get the same bits.
 
 #include "view/clip.h"
 
@@ -20,17 +20,18 @@ namespace {
 struct ClipVertex {
   double x, y, d;  // homogeneous, see screen_transform.h
   ScreenVertex plain;
-  bool is_plain;  // `plain` holds
+  bool is_plain;  // whether `plain` is valid
 };
 
 enum class ClipPlane { near, far, left, right, top, bottom };
-/// Near comes first: in perspective the sides are only planes where w, the distance, is positive.
+/// Near comes first: in perspective the sides are planes only where w, the distance, is positive.
 constexpr ClipPlane kPlanes[] = {ClipPlane::near,  ClipPlane::far, ClipPlane::left,
                                  ClipPlane::right, ClipPlane::top, ClipPlane::bottom};
 
 double w_of(const ScreenTransform& t, const ClipVertex& v) { return t.orthographic ? 1.0 : v.d; }
 
-/// Not negative inside. A vertex that can be snapped is inside every plane, whatever double arithmetic says.
+/// Distance from a plane, not negative inside. A vertex that can be snapped is inside every plane, whatever doubles
+/// say.
 double distance(const ScreenTransform& t, ClipPlane plane, const ClipVertex& v) {
   const double reach = kGuardBand * w_of(t, v);
   double distance = 0;
@@ -49,14 +50,14 @@ ClipVertex cut(const ScreenTransform& t, ClipPlane plane, const ClipVertex& insi
   const double a = distance(t, plane, inside), b = distance(t, plane, outside);
   // a >= 0 > b: never 0 / 0, and s is within [0, 1].
   const double s = a / (a - b);
-  // Rounding must not carry the distance past an end: behind the near plane there is nothing to divide by.
+  // Rounding must not move the distance past an end: behind the near plane the divide is not possible.
   const auto [nearest, farthest] = std::minmax(inside.d, outside.d);
   ClipVertex v{inside.x + s * (outside.x - inside.x),
                inside.y + s * (outside.y - inside.y),
                std::clamp(inside.d + s * (outside.d - inside.d), nearest, farthest),
                {},
                false};
-  // Exactly on its plane: rounding must not make it an outer one of the plane that made it.
+  // The cut is exactly on its plane: rounding must not put it outside of the plane that made it.
   switch (plane) {
     case ClipPlane::near: v.d = t.near; break;
     case ClipPlane::far: v.d = t.far; break;
@@ -68,11 +69,11 @@ ClipVertex cut(const ScreenTransform& t, ClipPlane plane, const ClipVertex& insi
   return v;
 }
 
-/// Each of six planes adds at most one corner to a convex polygon, and one more is written before it is looked at.
+/// Each of six planes adds at most one corner to a convex polygon, and one more is written before it is tested.
 using ClipCorners = std::array<ClipVertex, ClippedPolygon::max_corners + 1>;
 
-/// Corners that are all outside of a plane have nothing inside between them. Cuts at planes before that one would be
-/// rounded, by much where corners are 1e20 times as far away as others, and could come to lie in the picture.
+/// Vertices that are all outside of a plane have nothing inside between them. Cuts at earlier planes would be rounded,
+/// by much if vertices are 1e20 times as far away as others, and could land in the picture.
 bool is_outside(const ScreenTransform& t, const ClipCorners& triangle) {
   const auto all_outside = [&](ClipPlane plane) {
     return std::all_of(triangle.begin(), triangle.begin() + 3,
@@ -95,7 +96,8 @@ int clip_by(const ScreenTransform& t, ClipPlane plane, const ClipCorners& in, in
   return std::min(kept, ClippedPolygon::max_corners);
 }
 
-/// In 1/256 pixel. Ties go to the even number, as in every kernel; a cut on the guard band must not round beyond it.
+/// A coordinate in 1/256 pixel. Ties go to the even number, as in every kernel; a cut on the guard band must not round
+/// beyond it.
 std::int32_t snap_coordinate(double homogeneous, double w) {
   const double limit = kGuardBand;
   return static_cast<std::int32_t>(std::nearbyint(std::clamp(homogeneous / w, -limit, limit)));
@@ -108,8 +110,8 @@ ScreenVertex finish(const ScreenTransform& t, const ClipVertex& v) {
   return {snap_coordinate(v.x, w), snap_coordinate(v.y, w), std::clamp(float(key), 0.0f, 1.0f)};
 }
 
-/// Fans begin at the first corner: it must not be the one that happened to be given first, or the same triangle given
-/// otherwise would be made of other pieces.
+/// Rotates a polygon to its topmost corner. Fans begin at the first corner, which must not depend on the order of
+/// vertices: another order would otherwise give other pieces.
 void begin_at_top(ClippedPolygon& polygon) {
   const auto end = polygon.corners.begin() + polygon.count;
   const auto top = std::min_element(polygon.corners.begin(), end, [](const ScreenVertex& a, const ScreenVertex& b) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// FacingRule, as many triangles at a time as a vector holds.
+// FacingRule for a vector of triangles at a time.
 
 // Included once for every target.
 #if defined(FRONTMOST_VIEW_FACING_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -18,8 +18,8 @@ namespace frontmost::view_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The lanes of `asked` whose triangles are double-sided. `ids` has a value for each lane; those that are not asked for
-/// may have any.
+/// The lanes of `asked` whose triangles are double-sided. `ids` has a value for each lane; lanes that are not asked for
+/// may hold any value.
 template <class D, class Ids>
 HWY_NOINLINE hn::Mask<D> DoubleSided(D d, const FacingRule& rule, hn::Mask<D> asked, Ids ids) {
   const hn::RebindToSigned<D> di;
@@ -32,8 +32,8 @@ HWY_NOINLINE hn::Mask<D> DoubleSided(D d, const FacingRule& rule, hn::Mask<D> as
   return hn::RebindMask(d, hn::MaskFromVec(hn::Load(di, answer)));
 }
 
-/// What a rule leaves of the lanes that are seen from the front, and of those that are seen from behind; the latter
-/// have triangles. `ids()` is asked only where materials differ.
+/// The lanes that a rule keeps, among those seen from the front and those seen from behind; lanes of `back` must hold
+/// triangles. `ids()` is called only if materials differ.
 template <class D, class Ids>
 HWY_INLINE hn::Mask<D> Kept(D d, const FacingRule& rule, hn::Mask<D> front, hn::Mask<D> back, const Ids& ids) {
   switch (rule.culling()) {

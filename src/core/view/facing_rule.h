@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles a view leaves out by the way they face, for all methods.
+// Which triangles a view culls by their facing, for all methods.
 #pragma once
 
 #include "frontmost/view.h"
@@ -7,10 +7,10 @@
 
 namespace frontmost {
 
-/// View::culling, carried to the triangles of a scene.
+/// View::culling, applied to the triangles of a scene.
 class FacingRule {
  public:
-  /// Borrows `sides`. Null, as of what has no triangles: all are one-sided.
+  /// Borrows `sides`. Null means that all triangles are one-sided; a set without triangles has no sides.
   FacingRule(Culling culling, const MaterialSides* sides) : culling_(culling) {
     if (culling != Culling::material) return;
     if (sides && !sides->bits.empty())
@@ -19,9 +19,9 @@ class FacingRule {
       culling_ = sides && sides->are_all_double ? Culling::none : Culling::back;
   }
 
-  /// Culling::material only where materials of both kinds occur.
+  /// Culling::material only if materials of both kinds occur.
   [[nodiscard]] Culling culling() const { return culling_; }
-  /// Whether a triangle that is seen from this side is left.
+  /// Whether a triangle that is seen from this side is kept.
   [[nodiscard]] bool keeps(PrimitiveId id, bool is_front) const {
     switch (culling_) {
       case Culling::none: return true;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The key planes of small triangles (KeyPlane of triangle_keys.h), as many at a time as the vector holds: operation by
-// operation, and so the same bits.
+// Key planes of small triangles (KeyPlane of triangle_keys.h), a vector of triangles at a time: the same operations,
+// and so the same bits.
 //
-// Only the gradients need doubles. They are worked out half a vector at a time, by way of memory: a vector of doubles
+// Only the gradients need doubles. They are computed half a vector at a time, through memory, as a vector of doubles
 // has half as many lanes.
 
 // Included once for every target.
@@ -24,17 +24,17 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace frontmost::HWY_NAMESPACE;
 
 struct KeyPlanes {
-  VI x0, y0;  ///< the topmost corner
+  VI x0, y0;  ///< the topmost vertex
   VF k0, gx, gy, k_min, k_max;
-  MI steep;  ///< to be drawn one by one: see SteepKeys
+  MI steep;  ///< drawn one by one, see SteepKeys
 };
 
-/// The sides of triangles from corner 0 to corner 1, and from corner 2 to corner 0.
+/// The sides of triangles from vertex 0 to vertex 1, and from vertex 2 to vertex 0.
 struct TwoSides {
   VI x1, y1, x2, y2;
 };
 
-/// From doubles, rounded once: as many lanes at a time as a vector of doubles has.
+/// Finds the gradients in doubles, rounded once, as many lanes at a time as a vector of doubles has.
 HWY_INLINE void FindGradients(const TwoSides& sides, const VF (&key)[3], KeyPlanes& planes) {
   using DD = hn::ScalableTag<double>;
   const DD d;
@@ -64,14 +64,14 @@ HWY_INLINE void FindGradients(const TwoSides& sides, const VF (&key)[3], KeyPlan
   planes.gy = hn::Load(DF(), gy);
 }
 
-/// Precondition: corners less than 2^15 apart, areas positive.
+/// Precondition: vertices less than 2^15 apart, areas positive.
 HWY_INLINE KeyPlanes KeyPlanesOf(const VI (&x)[3], const VI (&y)[3], const VF (&key)[3]) {
   const DF df;
   const TwoSides sides{hn::Sub(x[1], x[0]), hn::Sub(y[1], y[0]), hn::Sub(x[0], x[2]), hn::Sub(y[0], y[2])};
   KeyPlanes planes;
   FindGradients(sides, key, planes);
-  // The topmost corner, of two as high the left one: how far corners 1 and 2 are below corner 0 in the order of reading
-  // fits 32 bits.
+  // The topmost vertex, or the left one of two at the same height. In reading order, the distance of vertices 1 and 2
+  // from vertex 0 fits 32 bits.
   const VI zero = hn::Zero(DI());
   const VI to_1 = hn::Add(hn::ShiftLeft<16>(sides.y1), sides.x1);
   const VI to_2 = hn::Neg(hn::Add(hn::ShiftLeft<16>(sides.y2), sides.x2));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sample as one number, of which the greater is nearer, or as near and of a lower id; 0 is nothing.
+// A sample as one number: the greater number is nearer, or equally near with a lower id; 0 is nothing.
 //
 //   bit 63          32 31           0
-//       | key, a float | id, inverted |      floats that are not negative are as ordered as their bits
+//       | key, a float | id, inverted |      floats that are not negative are ordered like their bits
 #pragma once
 
 #include <cstring>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The viewing rays of a picture, and where on a triangle each meets its plane.
+// The viewing rays of a picture, and where each meets the plane of a triangle.
 //
-// Where a ray starts and where it goes is affine in the screen position. The barycentric weights of the point that it
-// meets are, up to a common factor, the volumes that the ray spans with two corners each: triple products, and so
-// affine as well. They stay valid for triangles that cross the eye plane, and their ratios are perspective-correct
-// without ever dividing by a depth of 0.
+// The start and the direction of a ray are affine in the screen position. The barycentric weights of the point that the
+// ray meets are, up to a common factor, volumes that the ray spans with two vertices each: triple products, and so
+// affine as well. They are valid for triangles that cross the eye plane, and their ratios are perspective-correct
+// without a division by a depth of 0.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace frontmost {
 
-/// For a point on the screen, where its ray starts and where it goes, in world axes.
+/// The start and the direction of the ray through a point on the screen, in world axes.
 class ScreenRays {
  public:
   explicit ScreenRays(const View& view);
@@ -21,13 +21,13 @@ class ScreenRays {
   [[nodiscard]] bool is_parallel() const { return parallel_; }
   [[nodiscard]] const glm::dvec3& eye() const { return eye_; }
   [[nodiscard]] const glm::dvec3& forward() const { return forward_; }
-  /// Perspective: the direction of the ray through (x, y), not normalised, one unit along the viewing axis.
-  /// Parallel: where the ray starts, from the eye.
+  /// Perspective: the direction of the ray through (x, y), not normalised, one unit along the viewing axis. Parallel
+  /// projection: the start of the ray, relative to the eye.
   [[nodiscard]] glm::dvec3 at(double x, double y) const { return corner_ + x * step_x_ + y * step_y_; }
   [[nodiscard]] const glm::dvec3& step_x() const { return step_x_; }
   [[nodiscard]] const glm::dvec3& step_y() const { return step_y_; }
 
-  /// The point seen at (x, y) at a planar depth, from the eye.
+  /// The point seen at (x, y) at a planar depth, relative to the eye.
   [[nodiscard]] glm::dvec3 point(double x, double y, double depth) const {
     return parallel_ ? at(x, y) + depth * forward_ : depth * at(x, y);
   }
@@ -35,7 +35,7 @@ class ScreenRays {
  private:
   bool parallel_;
   glm::dvec3 eye_, forward_;
-  glm::dvec3 corner_;  ///< at the screen's origin
+  glm::dvec3 corner_;  ///< at() at the screen's origin
   glm::dvec3 step_x_, step_y_;
 };
 
@@ -47,12 +47,13 @@ inline ScreenRays::ScreenRays(const View& view)
   step_y_ = (p.bottom - p.top) / view.height * view.up();
 }
 
-/// Of each corner the volume without it, at some screen position, and its change from there per pixel.
+/// For each vertex, the volume spanned by the ray and the other two vertices at some screen position, and its change
+/// per pixel.
 struct RayVolumes {
   glm::dvec3 value, step_x, step_y;
 };
 
-/// At screen position (x, y), in pixels, of a triangle whose corners are given in world axes from the eye.
+/// The volumes at screen position (x, y), in pixels, of a triangle with vertices in world axes relative to the eye.
 [[nodiscard]] RayVolumes ray_volumes(const ScreenRays& rays, const std::array<glm::dvec3, 3>& corners, double x,
                                      double y);
 

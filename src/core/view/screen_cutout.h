@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The holes of a cut-out triangle as a view sees them: asked at samples, answered alike to every method.
+// The holes of a cutout triangle in a view: tested at samples, with the same answer for every method.
 //
-//   place on the screen --RayVolumes--> weights of the three corners --texture--> alpha: a hole if below the cutoff
+//   place on the screen --RayVolumes--> weights of the three vertices --texture--> alpha: a hole if below the cutoff
 //
-// The weights come from the ray through the place, not from snapped corners, so that the z-buffer, which snaps, and the
-// ray caster, which does not, look at the same texel.
+// The weights come from the ray through the place, not from snapped vertices. So the z-buffer, which snaps, and the ray
+// caster, which does not, read the same texel.
 #pragma once
 
 #include "surfaces/cutouts.h"
@@ -25,21 +25,22 @@ class ScreenCutout {
  public:
   /// Borrows the triangle.
   ScreenCutout(const CutoutTriangle& triangle, const ScreenRays& rays);
-  /// Whether the ray through a place on the screen, in 1/256 pixel from the image's top left corner, passes. Places
-  /// outside of the triangle count as the nearest on its rim, roughly: snapping moves corners by half of that unit.
+  /// Whether the ray through a place on the screen, in 1/256 pixel from the image's top left, passes through a hole. A
+  /// place outside of the triangle counts roughly as the nearest place on its rim: snapping moves vertices by half of
+  /// that unit.
   [[nodiscard]] bool is_hole(std::int32_t x, std::int32_t y) const;
 
  private:
   const CutoutTriangle* triangle_;
-  RayVolumes volumes_;  ///< from the image's top left corner
+  RayVolumes volumes_;  ///< at the image's top left corner
 };
 
 inline ScreenCutout::ScreenCutout(const CutoutTriangle& triangle, const ScreenRays& rays)
     : triangle_(&triangle), volumes_(ray_volumes(rays, detail::corners_from_eye(triangle, rays), 0, 0)) {}
 
 inline bool ScreenCutout::is_hole(std::int32_t x, std::int32_t y) const {
-  // From the same corner each time, never by steps from the sample before: the answer is that of the place alone,
-  // whoever asks in whatever order.
+  // Always computed from the same corner, never by steps from the sample before: the answer depends on the place alone,
+  // not on the order of calls.
   constexpr double kPixel = 1.0 / kSubPixels;
   const glm::dvec3 at =
       volumes_.value + (double(x) * kPixel) * volumes_.step_x + (double(y) * kPixel) * volumes_.step_y;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// From world space to the snapped screen: the one definition of where a vertex is, for every method and kernel.
+// From world space to the snapped screen: the one definition of a vertex's place, for every method and kernel.
 //
-// With d = position - eye, the homogeneous screen position is X = x_row . d + x_offset, Y and D likewise, and
-// W = D (perspective) or 1 (parallel). X / W is in 1/256 pixel from the centre of the image, x right, y down; D is the
-// planar distance. Rows and offsets are floats, evaluated as ((a*dx + b*dy) + c*dz) + offset without fused operations,
-// so that scalar code and every kernel give the same bits. The part of the eye that a float cannot hold is in the
-// offsets: far from the origin only the model's own rounding is left.
+// With d = position - eye, the homogeneous screen position is X = x_row . d + x_offset, Y and D likewise, and W = D
+// (perspective) or 1 (parallel). X / W is in 1/256 pixel from the centre of the image, x right, y down; D is the planar
+// distance. Rows and offsets are floats, evaluated as ((a*dx + b*dy) + c*dz) + offset without fused operations, so that
+// scalar code and every kernel give the same bits. The offsets hold the part of the eye that a float cannot hold: far
+// from the origin only the model's own rounding remains.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace frontmost {
 
 /// Sub-pixel units in a pixel.
 inline constexpr int kSubPixels = 256;
-/// Vertices are snapped within +-8192 pixels of the image's centre; what reaches beyond is clipped.
+/// Vertices are snapped within +-8192 pixels of the image's centre; triangles that reach beyond are clipped.
 inline constexpr std::int32_t kGuardBand = 8192 * kSubPixels;
 
 struct ScreenTransform {
@@ -29,7 +29,7 @@ struct ScreenTransform {
   bool orthographic;
   float near, far;                  ///< planar distances; an infinite far plane stands at `farthest`
   float inverse_range;              ///< 1 / (far - near) in parallel projection
-  std::int32_t centre_x, centre_y;  ///< of the image from its top left corner, in 1/256 pixel
+  std::int32_t centre_x, centre_y;  ///< the image's centre from its top left corner, in 1/256 pixel
 
   /// Precondition: validate(view) passes.
   explicit ScreenTransform(const View& view);
@@ -53,15 +53,15 @@ inline HomogeneousVertex transform(const ScreenTransform& t, const glm::vec3& po
           ((t.d_row[0] * dx + t.d_row[1] * dy) + t.d_row[2] * dz) + t.d_offset};
 }
 
-/// True when the vertex lies between near and far and within the guard band, so that it can be snapped as it is.
-/// False for NaN.
+/// True if the vertex lies between near and far and within the guard band, so that it can be snapped as it is. False
+/// for NaN.
 inline bool is_plain(const ScreenTransform& t, const HomogeneousVertex& v) {
-  // Far away the product overflows, and infinity must not pass for being within infinity.
+  // Far away the product overflows, and infinity must not count as within infinity.
   const float reach = std::fmin(float(kGuardBand) * (t.orthographic ? 1.0f : v.d), std::numeric_limits<float>::max());
   return v.d >= t.near && v.d <= t.far && std::abs(v.x) <= reach && std::abs(v.y) <= reach;
 }
 
-/// Precondition: is_plain().
+/// The snapped vertex. Precondition: is_plain().
 inline ScreenVertex snap(const ScreenTransform& t, const HomogeneousVertex& v) {
   if (t.orthographic) {
     const float key = (t.far - v.d) * t.inverse_range;

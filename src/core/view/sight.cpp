@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // J. Shewchuk. Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates. 1997: doubles with a
-// bound on their rounding first, expansions where that leaves the sign open.
+// bound on their rounding come first, then expansions if the bound leaves the sign open.
 #include "view/sight.h"
 
 #include <cmath>
@@ -8,14 +8,14 @@
 namespace frontmost {
 namespace {
 
-/// `exact_sign` is asked where the rounding of n.v matters.
+/// The sign of n.v. Calls `exact_sign` if rounding matters.
 template <class ExactSign>
 Signed with_certain_sign(const BoundedNormal& n, const glm::dvec3& v, double slack, const ExactSign& exact_sign) {
   Bounded rounded = bounded_dot(n.value, n.error, v);
   if (slack > 0) rounded.error += slack * (std::abs(n.value.x) + std::abs(n.value.y) + std::abs(n.value.z));
   const int sign = certain_sign(rounded);
   if (sign != 2) return {rounded.value, sign};
-  // Exact arithmetic would answer for a point that is known only within its slack.
+  // An exact sign would be meaningless for a point that is known only within its slack.
   if (slack > 0) return {};
   return {rounded.value, exact_sign()};
 }
@@ -44,8 +44,8 @@ Sight::EyePlane Sight::plane_through(const glm::dvec3& p, const glm::dvec3& q) c
   return plane;
 }
 
-/// From p on: what is near p and q then has a small bound, however far away the eye is. Vectors from the eye to all
-/// three would leave every seventh sign of a finely divided sphere open.
+/// Vectors start at p, so points near p and q have a small bound, however far away the eye is. Vectors from the eye to
+/// all three points would leave every seventh sign of a finely divided sphere open.
 Signed Sight::EyePlane::turn(const glm::dvec3& x, double slack) const {
   const Signed against = with_certain_sign(normal_, x - p_, slack, [&] {
     const Leg along = sight_->is_parallel_ ? Leg{sight_->forward_} : Leg{p_, sight_->eye_};

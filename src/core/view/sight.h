@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of sight of a view: what lies left and right of them, before and behind, by exact signs.
+// Lines of sight of a view: exact signs tell what lies left or right of them, before or behind them.
 //
 //   eye                p
-//    o - - - - - - - - + - - - -          EyePlane: through the eye and the edge from p to q. turn(x) says on
+//    o - - - - - - - - + - - - -          EyePlane: through the eye and the edge from p to q. turn(x) tells on
 //     \ - - - - - - - -| - - - - x        which side of the edge x is seen.
 //      \               |
-//       ` - - - - - - -+ - - - -          FacePlane: through a triangle. height(x) says on which side of it x lies.
+//       ` - - - - - - -+ - - - -          FacePlane: through a triangle. height(x) tells on which side of it x lies.
 //                      q
 //
-// Both signs together decide what hides what, and both are those of determinants of the coordinates as they are stored:
-// nothing is projected, so nothing is rounded. Values beside the signs are rounded; they tell where something is, never
-// whether.
+// Both signs together decide what hides what, and both are signs of determinants of the stored coordinates: nothing is
+// projected, so nothing is rounded. Values beside the signs are rounded; they tell where something is, never whether.
 #pragma once
 
 #include "base/exact_vector.h"
@@ -25,17 +24,17 @@ struct Signed {
 };
 [[nodiscard]] inline Signed with_sign_of_value(double value) { return {value, value > 0 ? 1 : value < 0 ? -1 : 0}; }
 
-/// Planes that contain lines of sight, and where points are on the screen.
+/// Planes that contain lines of sight, and places of points on the screen.
 class Sight {
  public:
   /// Precondition: validate(view) passes.
   explicit Sight(const View& view);
 
-  /// The plane through the eye (parallel: along the view) and two points.
+  /// The plane through the eye (parallel projection: along the view) and two points.
   class EyePlane {
    public:
-    /// Positive where p, q and x turn left as they are seen. With `slack`, by which any coordinate of x may be wrong:
-    /// 0 where that, or rounding, leaves the sign open.
+    /// Positive if p, q and x turn left as seen from the eye. `slack` bounds the error of each coordinate of x. If it
+    /// is above 0, the sign is 0 if slack or rounding leaves it open.
     [[nodiscard]] Signed turn(const glm::dvec3& x, double slack = 0) const;
 
    private:
@@ -46,16 +45,16 @@ class Sight {
   };
   [[nodiscard]] EyePlane plane_through(const glm::dvec3& p, const glm::dvec3& q) const;
 
-  /// 1 for a triangle that is seen counter-clockwise, -1 clockwise, 0 from its edge.
+  /// 1 for a triangle that is seen counter-clockwise, -1 for clockwise, 0 for edge-on.
   [[nodiscard]] int facing(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) const {
     return plane_through(a, b).turn(c).sign;
   }
 
-  /// Eye space with the planar distance in place of z.
+  /// The position in eye space, with the planar distance in place of z.
   [[nodiscard]] glm::dvec3 in_eye(const glm::dvec3& position) const;
-  /// x and y in pixels, z the planar distance. Precondition in perspective: not in the plane of the eye.
+  /// x and y in pixels, z is the planar distance. Precondition in perspective: not in the plane of the eye.
   [[nodiscard]] glm::dvec3 to_screen(const glm::dvec3& in_eye) const;
-  /// What a point between two of eye space, a share t of the way, weighs on the screen.
+  /// The weight on the screen of a point a share t of the way between two points of eye space.
   [[nodiscard]] double to_weight(const glm::dvec3& from, const glm::dvec3& to, double t) const {
     return is_parallel_ ? 1 : from.z + (to.z - from.z) * t;
   }
@@ -63,7 +62,7 @@ class Sight {
   [[nodiscard]] double far() const { return far_; }
   [[nodiscard]] bool is_parallel() const { return is_parallel_; }
   [[nodiscard]] const glm::dvec3& eye() const { return eye_; }
-  /// Where the eye looks: of unit length.
+  /// The viewing direction, of unit length.
   [[nodiscard]] const glm::dvec3& forward() const { return forward_; }
 
  private:

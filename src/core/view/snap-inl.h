@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vertex formula of screen_transform.h, as many vertices at a time as the vector holds: the same bits.
+// The vertex formula of screen_transform.h for a vector of vertices at a time, with the same bits.
 //
 //   world --Transform--> X, Y, D before the divide --IsPlain--> lanes that can be --Snap--> 1/256 pixels and keys
 //                                                       |
 //                                                       +-----> all others are clipped one by one, see clip.h
 //
-// No step may be fused or reordered: ((a*x + b*y) + c*z) + offset is what a scalar loop computes, too, and a vertex
-// that two triangles share must come to lie at one place whichever code drew which of them.
+// No step may be fused or reordered: a scalar loop also computes ((a*x + b*y) + c*z) + offset, and a vertex that two
+// triangles share must get the same place whichever code draws each of them.
 
 // Included once for every target.
 #if defined(FRONTMOST_VIEW_SNAP_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -32,7 +32,7 @@ struct HomogeneousVertices {
   hn::Vec<SnapF> x, y, d;
 };
 
-/// On the screen, in 1/256 pixel from the centre of the image.
+/// Vertices on the screen, in 1/256 pixel from the centre of the image.
 struct ScreenVertices {
   hn::Vec<SnapI> x, y;
   hn::Vec<SnapF> key;
@@ -53,7 +53,7 @@ HWY_INLINE HomogeneousVertices Transform(const ScreenTransform& t, hn::Vec<SnapF
           RowOf(t.d_row, t.d_offset, from_eye)};
 }
 
-/// Those that can be snapped as they are; NaN can not.
+/// The lanes that can be snapped as they are; NaN cannot.
 HWY_INLINE hn::Mask<SnapF> IsPlain(const ScreenTransform& t, const HomogeneousVertices& v) {
   const SnapF d;
   const auto guard = hn::Set(d, float(kGuardBand));
@@ -63,7 +63,7 @@ HWY_INLINE hn::Mask<SnapF> IsPlain(const ScreenTransform& t, const HomogeneousVe
   return hn::And(between, hn::And(hn::Le(hn::Abs(v.x), reach), hn::Le(hn::Abs(v.y), reach)));
 }
 
-/// Means something where IsPlain().
+/// Valid in lanes of IsPlain().
 HWY_INLINE ScreenVertices Snap(const ScreenTransform& t, const HomogeneousVertices& v) {
   const SnapF d;
   const auto one = hn::Set(d, 1.0f);

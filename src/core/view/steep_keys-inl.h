@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The keys of steep triangles (triangle_keys.h), as many samples at a time as the vector holds: the same bits.
+// The keys of steep triangles (triangle_keys.h) for a vector of samples at a time, with the same bits.
 //
-// Along a row only x changes, and along a column only y; each product with one of them is worked out once for a column
-// (Set) or once for a row (At), and a sample is left with two subtractions and one sum of products.
+// Along a row only x changes, and along a column only y. Each product with one of them is computed once for a column
+// (Set) or once for a row (At); a sample needs only two subtractions and one sum of products.
 
 // Included once for every target.
 #if defined(FRONTMOST_VIEW_STEEP_KEYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -25,10 +25,10 @@ using namespace frontmost::HWY_NAMESPACE;
 using KeyD = hn::ScalableTag<double>;
 using KeyF = hn::Rebind<float, KeyD>;
 
-/// Keys at a column's samples of one row after the other: what depends on x is worked out once.
+/// Keys at a column's samples, row after row: terms that depend on x are computed once.
 class SteepColumn {
  public:
-  /// `x` from where the corners are measured, in 1/256 pixel.
+  /// `x` from the origin of the vertices, in 1/256 pixel.
   HWY_INLINE void Set(const SteepKeys& keys, hn::Vec<KeyD> x) {
     const auto dx = hn::Sub(x, hn::Set(KeyD(), keys.x0));
     q_ = hn::Mul(hn::Set(KeyD(), keys.qy), dx);
@@ -41,7 +41,7 @@ class SteepColumn {
     const double dy = double(y) - keys.y0;
     return Sum(keys, hn::Set(d, keys.qx * dy), hn::Set(d, keys.px * dy));
   }
-  /// At a row for each.
+  /// At() with a row for each lane.
   [[nodiscard]] HWY_INLINE hn::Vec<KeyF> At(const SteepKeys& keys, hn::Vec<KeyD> y) const {
     const KeyD d;
     const auto dy = hn::Sub(y, hn::Set(d, keys.y0));
@@ -61,7 +61,7 @@ class SteepColumn {
   hn::Vec<KeyD> q_, p_;
 };
 
-/// As many columns as a vector of floats has lanes.
+/// SteepColumn for as many columns as a vector of floats has lanes.
 class SteepColumns {
  public:
   HWY_INLINE void Set(const SteepKeys& keys, VI x) {
@@ -74,7 +74,7 @@ class SteepColumns {
     for (std::size_t i = 0; i < kParts; ++i) hn::Store(columns_[i].At(keys, y), KeyF(), result + i * kPart);
     return hn::Load(DF(), result);
   }
-  /// At a row for each.
+  /// At() with a row for each lane.
   [[nodiscard]] HWY_INLINE VF At(const SteepKeys& keys, VI y) const {
     HWY_ALIGN_MAX std::int32_t lanes[kMaxLanes];
     HWY_ALIGN_MAX float result[kMaxLanes];

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth keys between the corners of a triangle on the screen: the one definition, in plain scalar code, for every
-// method that snaps corners. Kernels evaluate it operation by operation, and so get the same bits.
+// Depth keys within a triangle on the screen: the one definition, in plain scalar code, for every method that snaps
+// vertices. Kernels evaluate the same operations, and so get the same bits.
 //
-// Keys are affine over the screen. Over most triangles they change little, and floats hold what it takes to follow
-// their plane: (k0 + dx*gx) + dy*gy from the topmost corner, the gradient being exact before it is rounded. Over a
-// steep one, such as a floor from the eye's feet to the horizon, those products are far greater than the key that they
-// add up to, and little would be left of its bits. There the key is k0 + (e1*a + e2*b) from the farthest corner, in
-// doubles, where e1 and e2 are edge functions: exact integers, and no term is negative within the triangle, so nothing
-// cancels.
+// Keys are affine over the screen. Over most triangles they change little, and floats can follow their plane: (k0 +
+// dx*gx) + dy*gy from the topmost vertex, with a gradient that is exact before it is rounded. Over a steep triangle,
+// such as a floor from the eye's feet to the horizon, these products are far greater than their sum, the key, and would
+// leave few of its bits. There the key is k0 + (e1*a + e2*b) from the farthest vertex, in doubles. e1 and e2 are edge
+// functions: exact integers, and no term is negative within the triangle, so nothing cancels.
 //
-// Neither depends on which corner comes first; nor on the winding, as areas are turned positive before.
+// Neither formula depends on which vertex comes first, nor on the winding, as areas are made positive before.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +17,7 @@
 
 namespace frontmost {
 
-/// Twice the signed area of a triangle with corners x[3], y[3], exact within the guard band.
+/// Twice the signed area of a triangle with vertices x[3], y[3], exact within the guard band.
 template <class Triangle>
 [[nodiscard]] std::int64_t doubled_area(const Triangle& t) {
   return std::int64_t(t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - std::int64_t(t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
@@ -27,14 +26,14 @@ template <class Triangle>
 /// The plane of a gentle triangle: the key at (x, y) is (k0 + (x - x0) * gx) + (y - y0) * gy, limited to
 /// [k_min, k_max].
 struct KeyPlane {
-  /// Keys below this are left to doubles: products with them might not be normal floats.
+  /// Smaller keys are left to doubles: products with them might not be normal floats.
   static constexpr float least_key = 1e-30f;
 
   std::int32_t x0, y0;
   float k0, gx, gy, k_min, k_max;
-  bool is_steep;  ///< the plane is no more than a rough one: see SteepKeys
+  bool is_steep;  ///< the plane is only a rough one, see SteepKeys
 
-  /// Of corners x[3], y[3] with key[3]. Precondition: the area is positive.
+  /// The plane of vertices x[3], y[3] with key[3]. Precondition: the area is positive.
   template <class Triangle>
   explicit KeyPlane(const Triangle& t) {
     const auto is_above = [&](int a, int b) { return t.y[a] < t.y[b] || (t.y[a] == t.y[b] && t.x[a] < t.x[b]); };
@@ -42,14 +41,14 @@ struct KeyPlane {
     x0 = t.x[a], y0 = t.y[a], k0 = t.key[a];
     const double x1 = t.x[1] - t.x[0], y1 = t.y[1] - t.y[0], x2 = t.x[2] - t.x[0], y2 = t.y[2] - t.y[0];
     const double k1 = double(t.key[1]) - double(t.key[0]), k2 = double(t.key[2]) - double(t.key[0]);
-    // Of a gentle triangle keys are within a factor of 3, so that their differences have 26 bits, those of corners 23:
-    // the sums of products are exact, and the same from any corner.
+    // Keys of a gentle triangle are within a factor of 3, so their differences have 26 bits, and those of vertices 23:
+    // the sums of products are exact, and the same from any vertex.
     const double scale = 1 / double(doubled_area(t));
     gx = float((k1 * y2 - k2 * y1) * scale);
     gy = float((x1 * k2 - x2 * k1) * scale);
     k_min = std::min({t.key[0], t.key[1], t.key[2]});
     k_max = std::max({t.key[0], t.key[1], t.key[2]});
-    // Within these limits the sum is good to 16 roundings of a float.
+    // Within these limits the sum is accurate to 16 roundings of a float.
     const auto width = float(std::max({t.x[0], t.x[1], t.x[2]}) - std::min({t.x[0], t.x[1], t.x[2]}));
     const auto height = float(std::max({t.y[0], t.y[1], t.y[2]}) - y0);
     const float limit = k_min - least_key;
@@ -63,14 +62,14 @@ struct KeyPlane {
 
 /// The keys of a steep triangle: rounded once, from doubles.
 struct SteepKeys {
-  double x0, y0, k0;  ///< the farthest corner
-  double px, py;      ///< the side from there to the next corner
-  double qx, qy;      ///< the side to there from the last corner
-  double a, b;        ///< keys of both other corners, less k0, over the area
+  double x0, y0, k0;  ///< the farthest vertex
+  double px, py;      ///< the side from there to the next vertex
+  double qx, qy;      ///< the side to there from the last vertex
+  double a, b;        ///< keys of the two other vertices, less k0, over the area
   float k_min, k_max;
 
   SteepKeys() = default;
-  /// Of corners x[3], y[3] with key[3]. Precondition: the area is positive.
+  /// The keys of vertices x[3], y[3] with key[3]. Precondition: the area is positive.
   template <class Triangle>
   explicit SteepKeys(const Triangle& t) {
     const int lesser = t.key[1] < t.key[0] ? 1 : 0, m = t.key[2] < t.key[lesser] ? 2 : lesser;
@@ -85,11 +84,11 @@ struct SteepKeys {
     k_max = std::max(t.key[p], t.key[q]);
   }
 
-  /// Limited to the range of the corners, which matters outside of the triangle only.
+  /// Limited to the range of the vertices' keys, which matters only outside of the triangle.
   [[nodiscard]] float at(std::int32_t x, std::int32_t y) const {
     return std::min(std::max(float(exactly_at(x, y)), k_min), k_max);
   }
-  /// Before it is rounded and limited.
+  /// The key before it is rounded and limited.
   [[nodiscard]] double exactly_at(double x, double y) const {
     const double dx = x - x0, dy = y - y0;
     return k0 + ((qx * dy - qy * dx) * a + (px * dy - py * dx) * b);
@@ -98,10 +97,10 @@ struct SteepKeys {
   [[nodiscard]] double gy() const { return qx * a + px * b; }
 };
 
-/// Either of both, for code that looks at fragments one by one.
+/// KeyPlane or SteepKeys, for code that evaluates fragments one by one.
 class TriangleKeys {
  public:
-  /// Of corners x[3], y[3] with key[3]. Precondition: the area is positive.
+  /// The keys of vertices x[3], y[3] with key[3]. Precondition: the area is positive.
   template <class Triangle>
   explicit TriangleKeys(const Triangle& t) : plane_(t) {
     if (plane_.is_steep) steep_ = SteepKeys(t);

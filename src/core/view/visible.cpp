@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is seen of a view: whether it can be read, its depths, a hash that stands for it in tests, and several made into
-// one by the z-buffer's own comparison, sample by sample:
+// Visibles: whether one can be read, its depths, a hash that represents it in tests, and merging several by the
+// z-buffer's own comparison, sample by sample:
 //
 //   (key, id) wins over (key', id')  where  key > key',  or  key == key' and id < id'
 //
-// The rule does not care which comes first or how often, so parts of a scene may be merged in any order, twice, or by a
+// The rule depends neither on order nor on repetition, so parts of a scene may be merged in any order, twice, or by a
 // tree of machines.
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 namespace frontmost {
 namespace {
 
-// FNV-1a, but over words of 64 bits where the original takes bytes: eight times as fast, and what is hashed is no text.
+// FNV-1a over words of 64 bits instead of bytes: eight times as fast, and the data is no text.
 constexpr std::uint64_t kOffset = 0xCBF29CE484222325u, kPrime = 0x100000001B3u;
 
 void hash_word(std::uint64_t& hash, std::uint64_t word) { hash = (hash ^ word) * kPrime; }
@@ -38,7 +38,8 @@ bool same_view(const View& a, const View& b) {
 
 constexpr std::size_t packed_at_once = 1u << 16;
 
-/// Without branches, so that the compiler takes several samples at a time. \returns the greatest new id of all seen.
+/// Merges a run of samples, without branches, so that the compiler uses vectors. \returns the greatest new id of all
+/// seen.
 std::uint64_t merge_run(Visible& into, const Visible& other, PrimitiveId first_id, std::size_t begin, std::size_t end) {
   PrimitiveId* ids = into.primitives.data();
   float* keys = into.keys.data();
@@ -49,7 +50,7 @@ std::uint64_t merge_run(Visible& into, const Visible& other, PrimitiveId first_i
     const bool is_seen = other_ids[i] != no_primitive;
     greatest = std::max(greatest, is_seen ? other_ids[i] : 0u);
     const PrimitiveId id = is_seen ? other_ids[i] + first_id : no_primitive;
-    // Bitwise, not logical: both sides are cheap, and a jump is not.
+    // Bitwise, not logical: both sides are cheap, and a branch is not.
     const bool wins = (other_keys[i] > keys[i]) | ((other_keys[i] == keys[i]) & (id < ids[i]));
     ids[i] = wins ? id : ids[i];
     keys[i] = wins ? other_keys[i] : keys[i];
@@ -70,7 +71,7 @@ void check_ids(std::span<const PrimitiveId> ids, std::uint32_t primitive_count, 
   std::atomic<bool> is_of_others{false};
   constexpr std::size_t ids_at_once = 1u << 17;
   parallel_for(execution, ids.size(), ids_at_once, [&](std::size_t begin, std::size_t end) {
-    // One more than each id, so that no_primitive becomes the least: one maximum, without a branch.
+    // One more than each id, so that no_primitive becomes the least: one maximum suffices, without a branch.
     std::uint32_t most = 0;
     for (std::size_t i = begin; i < end; ++i) most = std::max(most, ids[i] + 1);
     if (most > primitive_count) is_of_others = true;
@@ -86,7 +87,7 @@ void check_answer(const Visible& visible, std::uint32_t primitive_count, const c
 float depth_of_key(const View& view, float key) {
   const ClipDistances& clip = view.projection.clip;
   if (view.projection.orthographic) return float(clip.far - double(key) * (clip.far - clip.near));
-  // Kernels divide the near plane as a float by the distance: the same float here gives it back.
+  // Kernels divide the near plane as a float by the distance, so the same float recovers the distance here.
   return key > 0 ? float(double(float(clip.near)) / double(key)) : std::numeric_limits<float>::infinity();
 }
 
@@ -124,7 +125,7 @@ void merge(Visible& into, const Visible& other, PrimitiveId first_id, const Exec
     throw Error(ErrorCode::bad_argument, "merge", "the two views are not the same");
   check_planes(into, "merge");
   check_planes(other, "merge");
-  // Asked for once a run and not for every sample: an error is rare, and what was merged by then is lost anyhow.
+  // Tested once a run instead of at every sample: an error is rare, and the merged samples are lost then anyway.
   std::atomic<bool> is_full{false};
   constexpr std::size_t samples_at_once = 1u << 16;
   parallel_for(execution, into.keys.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
@@ -157,7 +158,7 @@ Visible unpack(const View& view, std::span<const std::uint64_t> packed, const Ex
   Visible visible{view, Buffer<PrimitiveId>(packed.size()), Buffer<float>(packed.size())};
   std::atomic<bool> is_wrong{false};
   parallel_for(execution, packed.size(), packed_at_once, [&](std::size_t begin, std::size_t end) {
-    constexpr std::uint32_t bits_of_one = 0x3F800000u;  // those of floats in [0, 1] are as ordered as these are
+    constexpr std::uint32_t bits_of_one = 0x3F800000u;  // bits of floats in [0, 1] are ordered like the floats
     std::uint32_t greatest = 0;
     for (std::size_t i = begin; i < end; ++i) {
       greatest = std::max(greatest, std::uint32_t(packed[i] >> 32));

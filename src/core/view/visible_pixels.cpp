@@ -15,7 +15,7 @@ bool is_mixed(const Visible& visible, int x, int y) {
   return false;
 }
 
-/// Whether every run finds what its mixed pixels see within `others`, and none of these lies beside the picture.
+/// Whether every run finds the samples of its mixed pixels within `others`, and no mixed pixel lies beside the picture.
 bool has_all_others(const VisiblePixels& pixels) {
   const int width = pixels.view.width, across = int(pixels.runs_across());
   const std::size_t each = std::size_t(pixels.view.samples - 1);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole way from surfaces to a figure: the painter's order, what is seen of it, colours, shapes and outlines.
+// All steps from surfaces to a figure: painting order, visibility, colours, shapes and outlines.
 //
 //    surfaces --painter()--> order --visible_parts()--> parts --colours, shapes, outlines (colored_order.h)--> Figure
 //
-// What hides is asked for twice, and not with the same answer. While the order is made, a triangle whose texture has
-// holes hides nothing: its polygon still covers its holes. After colouring, its holes are cut out, and what is left of
-// it hides what is behind.
+// Occluders are determined twice, with different results. Before colouring, a triangle whose texture has holes hides
+// nothing, because its polygon still covers the holes. After colouring, the holes are cut out, and the rest of the
+// triangle hides what is behind.
 #include <algorithm>
 
 #include "figures/colored_order.h"
@@ -18,11 +18,11 @@
 namespace frontmost {
 namespace {
 
-/// Pixels that a polygon reaches under its neighbours, against the hairlines of viewers that blend rims. No lines
-/// around polygons: they make everything wider, in poppler by much more than they are wide.
+/// Pixels that a polygon reaches under its neighbours, against hairlines in viewers that blend edges. Lines around
+/// polygons are no alternative: they widen everything, in poppler by much more than their width.
 constexpr double kTrap = 4;
 
-/// A triangle with holes is no occluder as long as they are not cut out.
+/// A triangle with holes is no occluder until the holes are cut out.
 enum class Holes : std::uint8_t { in_triangles, cut_out };
 
 Occluders occluders_of(const Surfaces& surfaces, const FigureOptions& options, Holes holes) {
@@ -37,7 +37,7 @@ Occluders occluders_of(const Surfaces& surfaces, const FigureOptions& options, H
   });
 }
 
-/// Next to the eye polygons are millions of pixels wide, and all of them would be looked at.
+/// Near the eye polygons are millions of pixels wide, and all of these would be sampled.
 bool reaches_beyond_picture(const PaintOrder& order) {
   const glm::dvec2 size(order.view.width, order.view.height);
   return std::any_of(order.corners.begin(), order.corners.end(), [&](const PaintCorner& corner) {
@@ -45,7 +45,7 @@ bool reaches_beyond_picture(const PaintOrder& order) {
   });
 }
 
-/// All of an order within the picture, hidden or not.
+/// All polygons of an order within the picture, hidden or not.
 VisibleParts all_parts(PaintOrder order, const Execution& execution) {
   if (reaches_beyond_picture(order)) return visible_parts(order, Occluders::none(), execution);
   return {order.view, std::move(order.polygons), std::move(order.corners)};
@@ -64,7 +64,7 @@ void check_count(std::size_t polygons, const FigureOptions& options) {
               std::to_string(polygons) + " polygons, more than " + std::to_string(options.most_polygons));
 }
 
-/// With what pictures before made ready.
+/// Draws a figure with the data that earlier pictures prepared.
 Figure figure_of(shading::PreparedScene& scene, const ShadeInput& input, const FigureOptions& options,
                  const Execution& execution) {
   const Surfaces& surfaces = scene.surfaces;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Outlines of a figure's shapes, with traps under what is painted later:
+// Outlines of a figure's shapes, with traps under later shapes:
 //
 //   ColoredOrder --polygons in groups--> make_traps() --> TrapList
 //        |                                                   |
@@ -21,7 +21,7 @@ using painter_detail::ScreenPolygon;
 using painter_detail::TrapList;
 using painter_detail::TrappedCorner;
 
-/// In groups of those that look the same. All of a group hides, or none.
+/// Polygons with a group number; a group looks the same everywhere. All polygons of a group hide, or none.
 std::vector<ScreenPolygon> polygons_in_groups(const ColoredOrder& colored, const Occluders& occluders) {
   std::vector<ScreenPolygon> polygons;
   polygons.reserve(colored.polygons.size());
@@ -44,10 +44,10 @@ std::vector<ScreenPolygon> polygons_in_groups(const ColoredOrder& colored, const
   return polygons;
 }
 
-/// Consecutive shapes of one sheet.
+/// Consecutive shapes of one blend group.
 struct PaintedSheet {
-  std::size_t begin, end;  ///< of ColoredOrder::polygons
-  bool has_traps;          ///< translucent, and of several shapes
+  std::size_t begin, end;  ///< range of ColoredOrder::polygons
+  bool has_traps;          ///< translucent, with several shapes
 };
 
 std::vector<PaintedSheet> sheets_of(const ColoredOrder& colored) {
@@ -65,8 +65,8 @@ std::vector<PaintedSheet> sheets_of(const ColoredOrder& colored) {
   return sheets;
 }
 
-/// By polygon. Opaque polygons have traps under those after them, translucent ones under others of their sheet. Others
-/// of the same shape hide a trap wherever they lie, and so do parts of the same primitive that have its colour.
+/// The traps of each polygon. Opaque polygons have traps under later ones, translucent ones under others of their blend
+/// group. Polygons of the same shape hide a trap, and so do parts of the same primitive with the same colour.
 TrapList find_traps(const ColoredOrder& colored, double width, const Occluders& occluders, const Execution& execution) {
   std::vector<ScreenPolygon> polygons = polygons_in_groups(colored, occluders);
   TrapList opaque = make_traps(polygons, colored.view, width, execution);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Corners are put on a grid of 1/4096 pixel first. Points are sorted by rows of the picture and by x within a row; the
-// points that may lie on a side are found by going through the rows that the side passes, in each only from where the
-// side enters it to where it leaves it.
+// Corners are first rounded to a grid of 1/4096 pixel. Points are sorted by rows of the picture, and by x within a row.
+// Points on a side are found in the rows that it passes, in each only between the places where the side enters and
+// leaves.
 //
 //    A ------------------ B           B's neighbour has a corner C on the side A-B. The side becomes A-C and C-B,
-//    |         C          |           so that each of the three polygons has the same sides as its neighbours,
-//    +---------+----------+           once to and once fro, and what is shared can be found by comparing numbers.
+//    |         C          |           so that each of the three polygons has the same sides as its neighbours, in
+//    +---------+----------+           opposite directions. Shared sides are then found by comparing numbers.
 #include "figures/side_net.h"
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 namespace frontmost::shading {
 namespace {
 
-constexpr double kUnits = 4096;  ///< of a pixel
-/// Units that a corner may lie beside a side that it is on: both were rounded.
+constexpr double kUnits = 4096;  ///< per pixel
+/// Units that a corner may lie beside its side: both were rounded.
 constexpr double kBesideSide = 1.5;
 
 glm::dvec2 pixels(const glm::i64vec2& p) { return glm::dvec2(p) / kUnits; }
@@ -67,7 +67,7 @@ std::uint32_t SideNet::number(const Point& p) const {
       std::lower_bound(begin + std::ptrdiff_t(rows_[row]), begin + std::ptrdiff_t(rows_[row + 1]), p, less) - begin);
 }
 
-/// Sets between_: the points on a side, in its direction.
+/// Sets between_ to the points on a side, in its direction.
 void SideNet::find_between(const Point& from, const Point& to) {
   between_.clear();
   const glm::dvec2 way(to - from);
@@ -77,7 +77,7 @@ void SideNet::find_between(const Point& from, const Point& to) {
     return std::clamp<std::int64_t>((y - low_y_) / row_height_, 0, std::int64_t(rows_.size()) - 2);
   };
   for (std::int64_t row = row_of(low - 2); row <= row_of(high + 2); ++row) {
-    // What the side spans in x while it passes the row.
+    // The range of x of the side within the row.
     double least = double(std::min(from.x, to.x)), greatest = double(std::max(from.x, to.x));
     if (low != high) {
       const auto x_at = [&](std::int64_t y) {
@@ -131,7 +131,7 @@ SideNet::Pairs SideNet::pairs_at(std::size_t begin) const {
 
 void SideNet::begin_rings() {
   left_.clear();
-  // As many of those to as of those fro go.
+  // Drops equal numbers of sides in both directions.
   for (std::size_t i = 0; i < sides_.size();) {
     const Pairs pairs = pairs_at(i);
     for (std::size_t k = i + pairs.count(); k < pairs.turn; ++k) left_.push_back(sides_[k]);
@@ -145,7 +145,7 @@ void SideNet::begin_rings() {
   next_ = 0;
 }
 
-/// Every point has as many sides that end as begin there, so whatever way is taken leads back.
+/// Every point has as many ending sides as beginning ones, so every walk returns.
 bool SideNet::next_ring() {
   while (next_ < left_.size() && is_used_[next_]) ++next_;
   if (next_ == left_.size()) return false;
@@ -164,7 +164,7 @@ bool SideNet::next_ring() {
   return true;
 }
 
-/// Leaves corners out where nothing turns.
+/// Removes corners at which nothing turns.
 void SideNet::straighten() {
   std::vector<Corner> kept;
   const std::size_t count = ring_.size();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Outlines that lie beside each other, without the sides that two of them share.
+// The outlines of adjacent polygons, without the sides that two of them share.
 //
-// What is left after shared sides have gone in pairs closes to rings by itself: every outline that was added was
-// closed, so as many sides end at a point as begin there.
+// After shared sides are removed in pairs, the remaining sides form closed rings: every added outline was closed, so as
+// many sides end at a point as begin there.
 #pragma once
 
 #include <algorithm>
@@ -14,22 +14,21 @@
 
 namespace frontmost::shading {
 
-/// Corners are rounded to 1/4096 pixel, and sides are parted where corners of others lie on them; so what lies beside
-/// each other has the same sides there, once to and once fro. O(n log n) in the number of corners, for sides that are
-/// short beside the whole.
+/// Corners are rounded to 1/4096 pixel, and sides are split at corners of others. So adjacent outlines have the same
+/// sides, in opposite directions. O(n log n) in the number of corners, for sides that are short beside the whole.
 class SideNet {
  public:
   using Corner = painter_detail::TrappedCorner;
 
-  /// Adds a closed outline, as number `outline` of the caller's.
+  /// Adds a closed outline, which the caller identifies as number `outline`.
   void add(std::span<const Corner> corners, std::uint32_t outline);
   void add(std::span<const glm::dvec2> corners, std::uint32_t outline);
   void clear() { raw_.clear(); }
-  /// Parts sides. All is to be added before.
+  /// Splits sides. Call it after all outlines were added.
   void weave();
 
-  /// Calls share(a, b) for outlines that share a side. Where several lie over each other there, those with the lowest
-  /// numbers share it, and so on.
+  /// Calls share(a, b) for outlines that share a side. Where several coincide there, outlines are paired in ascending
+  /// order.
   template <class Share>
   void for_each_shared(const Share& share) const {
     for (std::size_t i = 0; i < sides_.size();) {
@@ -38,7 +37,7 @@ class SideNet {
       i = pairs.end;
     }
   }
-  /// Calls keep(corners) for every closed ring of what is left without shared sides.
+  /// Calls keep(corners) for every closed ring of the sides that are not shared.
   template <class Keep>
   void for_each_ring(const Keep& keep) {
     begin_rings();
@@ -55,7 +54,7 @@ class SideNet {
     std::uint32_t outline, trap;
   };
 
-  /// Sides between two points: those to begin at some place, those fro at the turn.
+  /// All sides between two points: in the direction low to high they are [begin, turn), in the other [turn, end).
   struct Pairs {
     std::size_t begin, turn, end;
     [[nodiscard]] std::size_t count() const { return std::min(turn - begin, end - turn); }
@@ -71,18 +70,17 @@ class SideNet {
 
   std::vector<Raw> raw_;
   std::vector<Point> points_;      ///< by rows, and by x in a row
-  std::vector<std::size_t> rows_;  ///< where each begins
+  std::vector<std::size_t> rows_;  ///< by row: index of its first point
   std::int64_t low_y_ = 0, row_height_ = 1;
   std::vector<std::pair<double, std::uint32_t>> between_;
-  std::vector<Side> sides_;  ///< those between the same points together
-  std::vector<Side> left_;   ///< by where they begin
+  std::vector<Side> sides_;  ///< sides between the same points are consecutive
+  std::vector<Side> left_;   ///< sorted by first point
   std::vector<std::uint8_t> is_used_;
   std::size_t next_ = 0;
   std::vector<Corner> ring_;
 };
 
-/// Numbers that are put together into sets, as those of polygons that share sides. Each set is known by its greatest
-/// number.
+/// Disjoint sets of numbers, as of polygons that share sides (union-find). The greatest number of a set identifies it.
 class Sets {
  public:
   explicit Sets(std::size_t count) : above_(count) { std::iota(above_.begin(), above_.end(), 0u); }

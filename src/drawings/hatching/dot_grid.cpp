@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // R. Ulichney. The Void-and-Cluster Method for Dither Array Generation. 1993: ranks for the cells of a torus, so that
-// those below any rank are spread evenly.
+// the cells below any rank are spread evenly.
 //
-// Dots are put where the largest gap is, again and again, and the order in which they came is their rank. Below any
-// rank they are spread evenly, so one table serves for every darkness. The table is made once for all threads, and is
-// the same with every C library: exponentials are rounded to floats before they are added up.
+// A dot is repeatedly put into the largest gap; the order of dots is their rank. So one table serves for every
+// darkness. The table is made once for all threads. It is the same with every C library, because exponentials are
+// rounded to floats before they are added.
 #include "hatching/dot_grid.h"
 
 #include <array>
@@ -14,8 +14,8 @@ namespace {
 
 constexpr int cells_along = DotGrid::side, cell_count = cells_along * cells_along;
 
-/// How crowded each cell is by those that are taken. Its loops are as compilers take many cells at a time: in others it
-/// is most of what few dots cost.
+/// How crowded each cell is by taken cells. The loops are written so that compilers vectorize them; otherwise they take
+/// most of the time of a picture with few dots.
 class Torus {
  public:
   Torus() {
@@ -24,7 +24,7 @@ class Torus {
       for (int x = 0; x < 2 * cells_along; ++x) {
         const int from_x = std::min(x % cells_along, cells_along - x % cells_along),
                   from_y = std::min(y, cells_along - y);
-        // As a float it is the same with every C library.
+        // Rounded to a float, the exponential is the same with every C library.
         near_[std::size_t(2 * cells_along * y + x)] =
             float(std::exp(-(from_x * from_x + from_y * from_y) / (2 * 1.9 * 1.9)));
       }
@@ -42,7 +42,7 @@ class Torus {
       for (int i = 0; i < cells_along; ++i) crowd[i] += sign * double(near[i]);
     }
   }
-  /// Of the taken cells the most crowded, or of the free ones the least; of equals the first.
+  /// The most crowded of the taken cells, or the least crowded of the free ones; the first of equals.
   [[nodiscard]] int extreme(bool taken) const {
     const double sign = taken ? 1 : -1;
     const auto value = [&](int cell) { return sign * crowd_[std::size_t(cell)] + barred_[taken][std::size_t(cell)]; };
@@ -65,13 +65,13 @@ class Torus {
  private:
   static constexpr double never = -1e300;
 
-  std::array<float, 2 * cell_count> near_{};  ///< by the distance, from minus to plus the size of a row
+  std::array<float, 2 * cell_count> near_{};  ///< by distance, from minus to plus the size of a row
   std::array<double, cell_count> crowd_{};
   std::array<std::array<double, cell_count>, 2>
-      barred_{};  ///< of those that are free, and taken: 0, and never for others
+      barred_{};  ///< 0 for cells in the state (free, taken), `never` for others
 };
 
-/// The same numbers everywhere.
+/// A generator of the same numbers on every machine.
 class Shuffle {
  public:
   std::uint32_t next() {
@@ -93,7 +93,7 @@ std::vector<int> ranks() {
     torus.set(cell, true);
     ++taken;
   }
-  // From the thickest crowd to the widest void, until that is where it came from.
+  // Moves a dot from the thickest crowd to the widest gap, until that is the place it came from.
   for (int i = 0; i < cell_count; ++i) {
     const int from = torus.extreme(true);
     torus.set(from, false);
@@ -120,12 +120,12 @@ std::vector<int> ranks() {
 
 DotGrid::DotGrid(double spacing, double width)
     : cell_(cell_of(spacing)), width_(width), columns_(std::int32_t(width / cell_) + 1) {
-  // A quarter of the cells at most: where more were taken their rows would show.
+  // At most a quarter of the cells are taken; with more, their rows would show.
   constexpr double most = cell_count / 4.0;
   static const std::vector<int> rank_of = ranks();
   Shuffle shuffle;
   for (const int rank : rank_of) {
-    // Darkness grows with the square root of the share of dots: few that are far apart look darker than they are.
+    // Darkness grows with the square root of the share of dots, because few dots far apart look darker than they are.
     const auto darkness = float(std::sqrt((rank + 0.5) / most));
     const float shift = 0.3f + 0.4f * float(shuffle.next() & 0xFFFF) / 65536.0f;
     places_.push_back({shift, 0.95f - darkness});

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where dots may be, and how dark it has to be for each: blue noise, the same everywhere.
+// The places of dots, with the darkness at which each appears: blue noise, the same on every machine.
 //
 //    row 3   .  o    .   o      Each square cell holds one place, a little off its middle so that no columns
-//    row 2     .   o  .   .     show. A place has a dot (o) where it is darker than the place asks for; the
-//    row 1   o   .    o   .     places ask in the order of their ranks, so dots thin out evenly.
+//    row 2     .   o  .   .     show. A place has a dot (o) where the picture is darker than the place's limit;
+//    row 1   o   .    o   .     limits follow the ranks, so dots thin out evenly.
 #pragma once
 
 #include <algorithm>
@@ -13,18 +13,18 @@
 
 namespace frontmost::lines_detail {
 
-/// Rows of places, one to a square cell, each asking for a darkness of its own. However dark it is, those that are
-/// drawn lie about equally far apart. Repeats after 64 cells, 32 times the spacing.
+/// Rows of places, one per square cell, each with its own limit of darkness. At every darkness the drawn dots are about
+/// equally far apart. The pattern repeats after 64 cells, 32 times the spacing.
 class DotGrid {
  public:
   static constexpr int side = 64;
 
-  /// Pixels: between dots where it is darkest, and of the picture.
+  /// `spacing` of dots where it is darkest, and `width` of the picture, both in pixels.
   DotGrid(double spacing, double width);
   [[nodiscard]] static double cell_of(double spacing) { return spacing / 2; }
 
-  /// Calls visit(place along the row, brightness below which it has a dot) for the places from `low` to `high`, but for
-  /// the latter, within the picture.
+  /// Calls visit(place along the row, brightness below which it has a dot) for the places in [low, high) within the
+  /// picture.
   template <class Visit>
   void for_each(std::int32_t row, double low, double high, const Visit& visit) const {
     const double first = std::clamp(low / cell_ - 2, 0.0, double(columns_)),
@@ -38,7 +38,7 @@ class DotGrid {
 
  private:
   struct Place {
-    float shift;  ///< of the dot within its cell, 0 to 1
+    float shift;  ///< place of the dot within its cell, 0 to 1
     float below;
   };
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A line on the screen is a plane through the eye, and a corner's height over it a function that is linear in eye
-// space: its signs at the corners say which sides of the triangle the line crosses, also where some lie behind the eye.
+// A line on the screen is a plane through the eye. A vertex' height over it is a linear function in eye space. Signs at
+// the vertices tell which sides of the triangle the line crosses, even if some lie behind the eye.
 //
-// Corners exactly on a line count as above it. So a line passes a triangle through two of its sides or not at all, and
-// goes through every fan of triangles without a gap: both triangles at a side get the same place on it, from the side's
-// lower vertex.
+// A vertex exactly on a line counts as above it. So a line crosses two sides of a triangle or none, and passes fans of
+// triangles without a gap: both triangles at a side compute the same place, from the side's lower vertex.
 #include "hatching/hatch_rows.h"
 
 #include <algorithm>
@@ -13,7 +12,7 @@
 namespace frontmost::lines_detail {
 namespace {
 
-/// Sines differ between C libraries in their last bit, as floats they do not.
+/// Sines differ between C libraries in their last bit, but not as floats.
 glm::dvec2 direction_of(double angle) {
   return glm::normalize(glm::dvec2(float(std::cos(angle)), -float(std::sin(angle))));
 }
@@ -56,7 +55,7 @@ HatchRows::Range HatchRows::range_of(const HatchedTriangle& triangle) const {
     low = std::min(low, height);
     high = std::max(high, height);
   }
-  // One more on each side: the division rounds, the signs in segment() decide. Clamped before they are integers.
+  // One more on each side, because the division rounds; the signs in segment() decide. Clamped before the conversion.
   const auto number = [&](double height) {
     return std::clamp((height - offset_) / spacing_, picture_.first - 2.0, picture_.last + 2.0);
   };
@@ -75,13 +74,13 @@ std::optional<HatchSegment> HatchRows::segment(const HatchedTriangle& triangle, 
   for (int k = 0; k < 3; ++k) {
     int p = k, q = k == 2 ? 0 : k + 1;
     if ((heights[p] >= 0) == (heights[q] >= 0)) continue;
-    // From the lower vertex, whoever asks.
+    // Computed from the lower vertex, for both triangles.
     if (triangle.vertices[p] > triangle.vertices[q]) std::swap(p, q);
     const double from_p = std::abs(heights[p]), t = from_p / (from_p + std::abs(heights[q]));
     const glm::dvec3 &from = triangle.places[p], &to = triangle.places[q];
     places[count] = t <= 0.5 ? from + (to - from) * t : to + (from - to) * (1 - t);
     on[count] = {triangle.vertices[p], triangle.vertices[q]};
-    // A place that is a corner lies in all planes of that corner.
+    // A place at a vertex lies in all planes of that vertex.
     if (places[count] == from) on[count][1] = on[count][0];
     if (places[count] == to) on[count][0] = on[count][1];
     (count == 0 ? segment.from : segment.to) = {p, q, t};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines of a hatch set on the screen, and where they meet triangles.
+// The lines of a hatch set on the screen, and their intersections with triangles.
 //
 //      line 2  - - -/- - -\- - -      Lines are parallel and evenly spaced, and are numbered across their direction.
-//      line 1  - - / - - - \ - -      Where a line meets a triangle is a segment in space, with both ends on sides of
-//      line 0  - -/_________\- -      the triangle, so that its visible parts and its light are found in space too.
+//      line 1  - - / - - - \ - -      A line meets a triangle in a segment in space with both ends on the triangle's
+//      line 0  - -/_________\- -      sides, so that visible parts and light are computed in space, too.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace frontmost::lines_detail {
 
-/// What hatch lines are drawn on.
+/// A triangle that is hatched.
 struct HatchedTriangle {
   std::uint32_t number;
   glm::uvec3 vertices;
@@ -22,7 +22,7 @@ struct HatchedTriangle {
   glm::dvec3 in_eye[3];  ///< as Sight::in_eye()
 };
 
-/// What a line meets of a triangle, with the share of the way between two corners at which its ends lie.
+/// The segment of a line in a triangle. Each end lies between two vertices, at a share of the way.
 struct HatchSegment {
   SightedEdge edge;
   struct Share {
@@ -30,7 +30,7 @@ struct HatchSegment {
     double t = 0;
   } from, to;
 
-  /// Of something that is known at the corners.
+  /// A value at an end, interpolated from values at the vertices.
   [[nodiscard]] static glm::dvec3 at(const Share& share, const std::array<glm::dvec3, 3>& corners) {
     return corners[std::size_t(share.p)] * (1 - share.t) + corners[std::size_t(share.q)] * share.t;
   }
@@ -46,13 +46,13 @@ class HatchRows {
   };
   /// The numbers of lines that may pass the triangle within the picture.
   [[nodiscard]] Range range_of(const HatchedTriangle& triangle) const;
-  /// Where the line meets the triangle. A corner that lies on it counts as above, so that lines pass from triangle to
-  /// triangle at one place, to the bit.
+  /// The segment of the line in the triangle. A vertex on the line counts as above, so that a line passes from triangle
+  /// to triangle at one place, to the bit.
   [[nodiscard]] std::optional<HatchSegment> segment(const HatchedTriangle& triangle, std::int32_t line) const;
 
-  /// Pixels along the line, of a point on it.
+  /// The position along the line, in pixels, of a point on it.
   [[nodiscard]] double along(const glm::dvec2& screen) const { return glm::dot(screen, direction_); }
-  /// The nearest place along the line that is in the picture.
+  /// The nearest position along the line within the picture.
   [[nodiscard]] double within_picture(std::int32_t line, double along) const;
   [[nodiscard]] glm::dvec2 point(std::int32_t line, double along) const {
     return across_ * height_of(line) + direction_ * along;
@@ -61,7 +61,7 @@ class HatchRows {
  private:
   [[nodiscard]] double height_of(std::int32_t line) const { return offset_ + line * spacing_; }
   [[nodiscard]] double weight(const glm::dvec3& in_eye) const { return is_parallel_ ? 1 : in_eye.z; }
-  /// Pixels across the lines, times the weight.
+  /// The distance across the lines in pixels, times the weight.
   [[nodiscard]] double weighted_height(const glm::dvec3& in_eye) const {
     return glm::dot(plane_, {in_eye.x, in_eye.y, weight(in_eye)});
   }

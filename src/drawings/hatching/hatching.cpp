@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each line is cut out of every triangle that it passes, then cut again where it is hidden or bright (toned_scene.h).
-// The pieces of one line are sorted along it and united where they lie on each other or go on from triangle to
-// triangle: rounding parts them by less than a hundredth of a pixel.
+// Each line is intersected with every triangle that it passes, then cut where it is hidden or bright (toned_scene.h).
+// The pieces of one line are sorted along it and united where they overlap or continue in the next triangle: rounding
+// separates them by less than a hundredth of a pixel.
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -17,9 +17,9 @@ namespace {
 using namespace lines_detail;
 
 constexpr std::size_t most_sets = 16;
-constexpr double touching = 0.01;  // pixels: the same line goes on
+constexpr double touching = 0.01;  // pixels: a smaller gap is no gap
 
-/// Sorted, without what lies on what came before, and joined where it goes on.
+/// Sorts pieces, removes overlaps, and joins pieces that touch.
 std::vector<HatchPiece> united(std::vector<HatchPiece> pieces) {
   std::sort(pieces.begin(), pieces.end());
   std::vector<HatchPiece> whole;
@@ -37,7 +37,7 @@ std::vector<HatchPiece> united(std::vector<HatchPiece> pieces) {
   return whole;
 }
 
-/// Each set and instance by itself.
+/// Orders the lines of each set and instance separately.
 std::vector<HatchLine> in_pen_order(std::vector<HatchLine> lines, const Execution& execution) {
   const auto is_before = [](const HatchLine& a, const HatchLine& b) {
     return std::tie(a.set, a.instance) < std::tie(b.set, b.instance);
@@ -58,7 +58,7 @@ std::vector<HatchLine> in_pen_order(std::vector<HatchLine> lines, const Executio
   return lines;
 }
 
-/// As TonedScene::Task has it.
+/// The bits of TonedScene::Task::sets_by_material.
 std::vector<std::uint32_t> sets_by_material(const std::vector<HatchSet>& sets, std::size_t materials) {
   const auto is_everywhere = [](const HatchSet& set) { return set.materials.empty(); };
   if (std::all_of(sets.begin(), sets.end(), is_everywhere)) return {};

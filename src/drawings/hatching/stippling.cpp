@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dots are points of lines that are hatched as far as they are seen.
+// Stippling hatches the rows of a grid and draws dots on their visible parts.
 //
-// A row of the grid of dots is a hatch line of its own, so that what is hidden or bright is found as for hatching. The
-// darkness at a dot is asked for on its line, at the dot's place, and the dot is drawn if its place in the grid asks
-// for no more.
+// Each row of the grid of dots is a hatch line, so hidden and bright parts are found as for hatching. A dot is drawn if
+// the darkness on the line at the dot's place reaches the limit of that place.
 #include <algorithm>
 #include <tuple>
 
@@ -19,7 +18,7 @@ using namespace lines_detail;
 
 constexpr double most_dots = 2e7;
 
-/// By row, from the left; each once where surfaces coincide.
+/// Sorts dots by row, then from the left; coincident dots of coinciding surfaces become one.
 void sort(std::vector<HatchPiece>& dots) {
   std::sort(dots.begin(), dots.end());
   const auto is_same = [](const HatchPiece& a, const HatchPiece& b) { return a.line == b.line && a.begin == b.begin; };

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A normal that changes evenly along a segment is darker than a limit where a quadratic function is negative, so the
-// ends of dark stretches are roots and no sampling is needed. Which side of a root is dark is asked in the middle
-// between two of them.
+// A normal that changes linearly along a segment is darker than a limit where a quadratic function is negative. So the
+// ends of dark stretches are roots, without sampling. The middle between two roots shows which side is dark.
 //
-// Normals at corners are means over the triangles around them, left out where the surface folds by more than the crease
-// angle. The weights are those that are exact on a sphere, however it is cut into triangles.
+// Normals at vertices are means over the triangles around them. Triangles beyond a fold of more than the crease angle
+// do not count. The weights are exact on a sphere, for any tessellation.
 #include "hatching/tone.h"
 
 #include <algorithm>
@@ -13,7 +12,7 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::size_t most_at_vertex = 256;  // the tip of a cone of more sides is flat: its normal means nothing
+constexpr std::size_t most_at_vertex = 256;  // the tip of a cone with more sides is flat: its normal means nothing
 
 glm::dvec3 unit(const glm::dvec3& v, const glm::dvec3& otherwise) {
   const double length = glm::length(v);
@@ -30,7 +29,7 @@ double NormalAlong::cosine_at(double t, const glm::dvec3& to_light) const {
 
 void find_dark(const NormalAlong& normal, const glm::dvec3& to_light, double limit, std::vector<Interval>& dark) {
   dark.clear();
-  // (N.L)^2 = limit^2 N.N, a quadratic equation: its roots are where N.L = +-limit |N|.
+  // (N.L)^2 = limit^2 N.N is a quadratic equation; its roots are where N.L = +-limit |N|.
   const glm::dvec3 step = normal.to - normal.from;
   const double p = glm::dot(normal.from, to_light), q = glm::dot(step, to_light), square = limit * limit;
   const double a = q * q - square * glm::dot(step, step), b = p * q - square * glm::dot(normal.from, step),
@@ -41,7 +40,7 @@ void find_dark(const NormalAlong& normal, const glm::dvec3& to_light, double lim
     if (t > 0 && t < 1) cuts[count++] = t;
   };
   if (const double discriminant = b * b - a * c; discriminant > 0) {
-    // Of the two forms of each root the one whose sum does not cancel.
+    // Each root has two forms; the one without cancellation is used.
     const double sum = -b - std::copysign(std::sqrt(discriminant), b);
     if (a != 0) cut_at(sum / a);
     if (sum != 0) cut_at(c / sum);
@@ -69,8 +68,8 @@ CornerNormals::CornerNormals(const SeenMesh& seen, const Surfaces& surfaces, dou
 
 glm::dvec3 CornerNormals::unit_normal(std::uint32_t triangle) const { return unit(normals_[triangle], glm::dvec3(0)); }
 
-/// Weighted as by N. Max (Weights for Computing Vertex Normals from Facet Normals, 1999), right on spheres however they
-/// are cut.
+/// The mean with weights by N. Max (Weights for Computing Vertex Normals from Facet Normals, 1999), exact on spheres
+/// for any tessellation.
 glm::dvec3 CornerNormals::at(std::uint32_t triangle, int corner, const glm::dvec3& own) const {
   const std::uint32_t vertex = mesh_.triangles[triangle][corner];
   const std::span<const Corner> around = corners_[vertex];
@@ -81,7 +80,7 @@ glm::dvec3 CornerNormals::at(std::uint32_t triangle, int corner, const glm::dvec
     const std::uint32_t other = one.triangle();
     const glm::dvec3& normal = normals_[other];
     const double cosine = glm::dot(unit(normal, glm::dvec3(0)), own);
-    // Where neighbours are wound otherwise, they are turned around.
+    // Neighbours with the opposite winding are reversed.
     if (other != triangle && (std::abs(cosine) < cosine_ || surfaces_.source(mesh_.ids[other]).instance != instance))
       continue;
     const glm::dvec3 &place = mesh_.positions[vertex], &next = mesh_.positions[one.next(mesh_)],

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How bright the points of a triangle are, but for what stands in the light. Brightness is the cosine of the angle
-// between the normal and the direction to the light, with normals that go smoothly across edges that are no creases: so
-// hatching follows a curved surface and not its triangles.
+// The brightness of a triangle's points, without shadows: the cosine of the angle between the normal and the direction
+// to the light. Normals are smooth across edges that are no creases, so hatching follows a curved surface, not its
+// triangles.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace frontmost::lines_detail {
 
-/// A normal from point to point of a segment, from t = 0 to 1; of any length between.
+/// A normal that is linear along a segment, from t = 0 to 1; not of unit length in between.
 struct NormalAlong {
   glm::dvec3 from, to;
 
@@ -21,16 +21,16 @@ struct NormalAlong {
   [[nodiscard]] double cosine_at(double t, const glm::dvec3& to_light) const;
 };
 
-/// Where that cosine is less than `limit`, in order: at most three intervals.
+/// The intervals in which that cosine is less than `limit`, in order: at most three.
 void find_dark(const NormalAlong& normal, const glm::dvec3& to_light, double limit, std::vector<Interval>& dark);
 
-/// Normals at the corners of triangles, across edges that are no creases.
+/// Vertex normals of triangles, smooth across edges that are no creases.
 class CornerNormals {
  public:
   CornerNormals(const SeenMesh& seen, const Surfaces& surfaces, double crease_angle, const Execution& execution);
 
-  /// Of unit length, at the corners of a triangle, on the side from which it is counter-clockwise. O(triangles at its
-  /// vertices); where there are very many, the triangle's own.
+  /// The unit normals at the vertices of a triangle, on the side from which it is counter-clockwise. Vertices with very
+  /// many triangles have the triangle's own normal. O(triangles at its vertices).
   [[nodiscard]] std::array<glm::dvec3, 3> of(std::uint32_t triangle) const;
 
  private:

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //    line in a triangle --seen from the eye?--> visible parts --dark?--> dark parts --lit?--> pieces, each for its set
 //
-// What is seen and what is lit is the same question from two eyes: the light's view has an occluder grid and cutters of
-// its own. A triangle is asked for its normals only when one of its lines is seen at all. Triangles at one place are
-// hatched once: the others are taken for seen from no side.
+// Visibility and lighting are the same question for two eyes: the light's view has its own occluder grid and cutters.
+// Normals of a triangle are computed only if a line in it is visible. Coincident triangles are hatched once: all but
+// the first count as seen from no side.
 #include "hatching/toned_scene.h"
 
 #include <algorithm>
@@ -21,10 +21,10 @@ namespace {
 constexpr std::size_t triangles_per_part = 256, triangles_per_poll = 16;
 constexpr std::size_t most_pieces = std::size_t(1) << 26, pieces_per_tally = 1 << 16;
 constexpr std::uint32_t lines_per_poll = 256;
-/// Boxes of triangles that lines are held against.
+/// The most boxes of triangles that lines are compared with.
 constexpr std::uint64_t most_boxes = std::uint64_t(1) << 33, most_boxes_of_triangle = 1 << 14;
 
-/// \returns where the light is, of unit length.
+/// \returns the unit direction to the light.
 glm::dvec3 light_of(const ToneOptions& tone, const View& view) {
   if (!(tone.crease_angle >= 0 && tone.crease_angle <= std::numbers::pi))
     throw Error(ErrorCode::bad_argument, "hatch", "the crease angle must be from 0 to pi");
@@ -43,7 +43,7 @@ View view_from_light(const Surfaces& surfaces, const glm::dvec3& to_light) {
   return frame(surfaces, 1024, 1024, options);
 }
 
-/// Of triangles at one place one hides as much as all, and has the same lines: the others are not seen from anywhere.
+/// Coincident triangles hide no more and have no other lines than one of them, so only the first is kept.
 SeenMesh see_once(const WeldedMesh& mesh, const std::vector<std::uint32_t>& twins, const Sight& sight,
                   const Execution& execution) {
   SeenMesh seen = see(mesh, sight, execution);
@@ -119,12 +119,12 @@ class TonedScene::Hatcher {
   }
 
  private:
-  /// A place that may have a dot: along its line, and along the segment.
+  /// A possible dot: its position along the line, and along the segment.
   struct Dot {
     double along, t, below;
   };
 
-  /// A bit for each set that the triangle's material has.
+  /// One bit for each set with which the triangle's material is hatched.
   [[nodiscard]] std::uint32_t sets_of(std::uint32_t triangle) const {
     if (task_.sets_by_material.empty()) return ~0u;
     const PrimitiveSource source = scene_.surfaces_.source(scene_.mesh_.ids[triangle]);
@@ -154,7 +154,7 @@ class TonedScene::Hatcher {
       }
   }
 
-  /// Dots on the segment whose place is seen, and darker than they ask for.
+  /// Appends the dots of the segment that are visible and dark enough.
   void add_dots(const HatchSegment& segment, HatchPiece piece, std::vector<HatchPiece>& pieces) {
     find_dots(segment.edge, piece);
     if (dots_.empty()) return;
@@ -174,7 +174,7 @@ class TonedScene::Hatcher {
     }
   }
 
-  /// Those from the segment's one end to its other.
+  /// Finds the possible dots between the ends of the segment.
   void find_dots(const SightedEdge& edge, const HatchPiece& piece) {
     dots_.clear();
     const Sight& sight = scene_.eye_.sight;
@@ -186,7 +186,7 @@ class TonedScene::Hatcher {
     if (!std::isfinite(a) || !std::isfinite(b)) return;
     const double low = is_before_eye ? std::min(a, b) : -1e300, high = is_before_eye ? std::max(a, b) : 1e300;
     task_.dots->for_each(piece.line, low, high, [&](double along, double below) {
-      // What is linear on the screen is not along the segment.
+      // A linear function on the screen is not linear along the segment.
       const double part = w0 * (along - a), rest = w1 * (b - along), t = part / (part + rest);
       if (t >= 0 && t < 1) dots_.push_back({along, t, below});
     });
@@ -198,8 +198,8 @@ class TonedScene::Hatcher {
     std::erase_if(parts_, [](const DrawnPart& part) { return part.hidden_by != 0; });
   }
 
-  /// On the side that is seen. A triangle that is turned away from the light has no shadows: its brightness is what is
-  /// left at the rim between light and dark.
+  /// Normals on the visible side. A triangle that faces away from the light gets no shadows: its smooth normals give
+  /// what brightness is left near the terminator.
   void find_normals(std::uint32_t triangle) {
     if (has_normals_) return;
     has_normals_ = true;
@@ -218,11 +218,11 @@ class TonedScene::Hatcher {
   }
 
   [[nodiscard]] double along(const SightedEdge& edge, double t, const HatchPiece& piece) const {
-    // From the nearer end, so that both ends are met.
+    // Interpolated from the nearer end, so that both ends are exact.
     const glm::dvec3 place =
         t <= 0.5 ? edge.from + (edge.to - edge.from) * t : edge.to + (edge.from - edge.to) * (1 - t);
     const Sight& sight = scene_.eye_.sight;
-    // It is within the view; rounding may say otherwise of triangles that are very much larger.
+    // The point is within the view; rounding may put it outside for triangles that are very much larger.
     glm::dvec3 in_eye = sight.in_eye(place);
     in_eye.z = std::max(in_eye.z, sight.near());
     const HatchRows& row = rows_[piece.set];
@@ -257,7 +257,7 @@ std::vector<HatchPiece> TonedScene::pieces(const Task& task, const std::vector<H
     for (std::size_t i = begin; i < end; ++i) {
       if (i % triangles_per_poll == 0) hatcher->tell();
       hatcher->hatch(std::uint32_t(i), list);
-      // A triangle alone may have as many as there are others before it, for every line.
+      // A single triangle may have as many pieces as there are triangles before it, for every line.
       if (list.size() - counted < pieces_per_tally && i + 1 < end) continue;
       if ((found += list.size() - counted) > most_pieces)
         throw Error(ErrorCode::limit_exceeded, "hatch",

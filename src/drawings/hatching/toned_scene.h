@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene as hatching sees it: what the eye sees of its triangles, and what the light does.
+// A scene prepared for hatching: visibility of its triangles from the eye and from the light.
 //
-//    eye's view     what is seen of a triangle's lines      an occluder grid and a cutter, as for edges
-//    light's view   what of that is lit                     the same, seen from where the light is
-//    normals        what of that is dark by its angle       a quadratic function along each line
+//    eye's view     visible parts of a triangle's lines     an occluder grid and a cutter, as for edges
+//    light's view   lit parts of these                      the same, seen from the light
+//    normals        dark parts of these by the angle        a quadratic function along each line
 //
-// Hatching and stippling ask for the same pieces, for lines of several sets at once or for rows of dots.
+// Hatching and stippling use the same pieces, for lines of several sets at once or for rows of dots.
 #pragma once
 
 #include "frontmost/lines.h"
@@ -15,7 +15,7 @@
 
 namespace frontmost::lines_detail {
 
-/// A piece of line `line` of a set, in pixels along it; a dot where it has no length.
+/// A piece of line `line` of a set, from `begin` to `end` in pixels along the line; a dot has no length.
 struct HatchPiece {
   std::uint32_t set;
   std::int32_t line;
@@ -27,13 +27,13 @@ struct HatchPiece {
   }
 };
 
-/// A view, and what hides in it.
+/// A view with its occluders.
 struct Scenery {
-  /// `twins` are triangles at the place of others.
+  /// `twins` are triangles that coincide with others.
   Scenery(const WeldedMesh& mesh, const std::vector<std::uint32_t>& twins, const View& its_view,
           const Execution& execution);
 
-  Scenery(const Scenery&) = delete;  // it looks at itself
+  Scenery(const Scenery&) = delete;  // members refer to each other
   Scenery& operator=(const Scenery&) = delete;
 
   const View view;
@@ -43,7 +43,7 @@ struct Scenery {
   const EdgeOccluders occlusion;
 };
 
-/// Everything that answers how dark a scene is along lines.
+/// Answers how dark a scene is along lines.
 class TonedScene {
  public:
   /// Borrows the surfaces. \throws Error bad_argument for options out of range.
@@ -52,11 +52,11 @@ class TonedScene {
   struct Task {
     const std::vector<HatchSet>& sets;
     bool by_instance = true;
-    const DotGrid* dots = nullptr;  ///< of sets[0]: pieces are its dots
-    /// A bit for each set that a material has, and last those of what has none. Empty: all have all.
+    const DotGrid* dots = nullptr;  ///< of sets[0]: then pieces are dots
+    /// One bit for each set of a material; the last entry is for triangles without material. Empty: all have all sets.
     std::vector<std::uint32_t> sets_by_material{};
   };
-  /// In no order that matters.
+  /// The order of pieces does not matter.
   [[nodiscard]] std::vector<HatchPiece> pieces(const Task& task, const std::vector<HatchRows>& rows,
                                                const Execution& execution) const;
 
@@ -70,7 +70,7 @@ class TonedScene {
   const WeldedMesh mesh_;
   const std::vector<std::uint32_t> twins_;
   const Scenery eye_;
-  std::optional<Scenery> light_;  ///< none: nothing stands in it
+  std::optional<Scenery> light_;  ///< empty if shadows are off
   const CornerNormals normals_;
 };
 

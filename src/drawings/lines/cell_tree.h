@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The index of both crowds of this room: of triangles that may hide an edge, and of lines that may lie on another.
+// This index serves both crowds of this room: triangles that may hide an edge, and lines that may lie on another line.
 //
-//   +-------+-------+-------+      A grid of square cells lies over the plane. A cell in which much
-//   |       |+-+-+-+|       |      comes together is divided into 4 x 4 cells, and these again.
-//   |    .--++-+-+-+|       |      A segment visits the undivided cells that it passes, with a box
-//   |.--'   |+-+-+-+|       |      around what of it may lie in each.
+//   +-------+-------+-------+      A grid of square cells lies over the plane. A crowded cell is divided
+//   |       |+-+-+-+|       |      into 4 x 4 cells, and these may be divided again.
+//   |    .--++-+-+-+|       |      A segment visits the undivided cells that it passes, each with a box
+//   |.--'   |+-+-+-+|       |      around the part of the segment that may lie in the cell.
 //   +-------+-------+-------+
 //
-// The tree knows cells by their numbers alone. What lies in them is kept by those who ask, in arrays by number.
+// The tree knows cells only by their numbers. Callers keep the contents of cells in arrays, by cell number.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 
 namespace frontmost::lines_detail {
 
-/// A square of a plane, from its low corner on.
+/// An axis-aligned square of a plane; (x, y) is its low corner.
 struct Square {
   double x, y, size = 1;
 };
@@ -41,12 +41,13 @@ struct SquareGrid {
   }
 
   /// Calls visit(x, y, low, high) for the squares that the segment from `a` to `b` passes within `pad`, row by row from
-  /// low to high, with a box of what of the segment may lie in each, until it returns false. \returns false if it did.
+  /// low to high, until `visit` returns false. `low` and `high` are a box around the part of the segment that may lie
+  /// in the square. \returns false if `visit` did.
   template <class Visitor>
   bool visit_along(const glm::dvec2& a, const glm::dvec2& b, double pad, const Visitor& visit) const {
     const glm::dvec2& bottom = a.y < b.y ? a : b;
     const glm::dvec2& top = a.y < b.y ? b : a;
-    // Nearly level ones lie in one row, or in both that they touch, from end to end.
+    // A nearly level segment lies in one row, or in both rows that it touches, from end to end.
     const double slope = top.y - bottom.y > 1e-3 * pad ? (top.x - bottom.x) / (top.y - bottom.y) : 0;
     const int last_row = std::min(row(top.y + pad), rows - 1);
     for (int y = std::max(row(bottom.y - pad), 0); y <= last_row; ++y) {
@@ -75,7 +76,7 @@ struct SquareGrid {
   }
 
  private:
-  /// From -1 to `count`.
+  /// The square's index along one axis, from -1 to `count`; both of these lie outside of the grid.
   [[nodiscard]] int index(double offset, int count) const {
     return int(std::clamp(offset / size + 1, 0.0, count + 1.0)) - 1;
   }
@@ -83,15 +84,15 @@ struct SquareGrid {
   [[nodiscard]] int row(double y) const { return index(y - low.y, rows); }
 };
 
-/// A cell that a segment passes, and a box around what of the segment may lie in it.
+/// A cell that a segment passes, and a box around the part of the segment that may lie in the cell.
 struct PassedCell {
   std::uint32_t cell;
   Square square;
   glm::dvec2 low, high;
 };
 
-/// A grid whose crowded cells are divided. Its cells are numbered row by row, and the parts of a cell, 16 at a time,
-/// behind those that were there before.
+/// A grid whose crowded cells are divided. The cells of the grid are numbered row by row. The 16 parts of a divided
+/// cell take the next free numbers.
 class CellTree {
  public:
   static constexpr int side = 4, parts = side * side;
@@ -99,7 +100,7 @@ class CellTree {
   CellTree() : CellTree(SquareGrid{}) {}
   explicit CellTree(const SquareGrid& grid) : grid_(grid), whole_(grid.count()), division_(whole_, no_index) {}
 
-  /// How many cells there are, divided ones included; and how many of them are the grid's.
+  /// The number of all cells, divided ones included; and the number of the grid's own cells.
   [[nodiscard]] std::size_t count() const { return division_.size(); }
   [[nodiscard]] std::size_t whole_count() const { return whole_; }
   [[nodiscard]] const SquareGrid& grid() const { return grid_; }
@@ -109,7 +110,7 @@ class CellTree {
     return cell < whole_ ? grid_.square(cell) : divisions_[(cell - whole_) / parts].square((cell - whole_) % parts);
   }
 
-  /// What the parts of a square are.
+  /// The 4 x 4 parts of a square.
   [[nodiscard]] static SquareGrid parts_of(const Square& square) {
     return {{square.x, square.y}, square.size / side, side, side};
   }
@@ -123,7 +124,7 @@ class CellTree {
     return first;
   }
 
-  /// Divides an undivided cell as cell 0 of `other` is: the cells of `other` from 1 on follow those that are there.
+  /// Divides an undivided cell as cell 0 of `other` is divided. The cells of `other` from 1 on take the next numbers.
   void graft(std::uint32_t cell, const CellTree& other) {
     const auto shifted = [shift = std::uint32_t(divisions_.size())](std::uint32_t division) {
       return division == no_index ? no_index : division + shift;
@@ -156,7 +157,7 @@ class CellTree {
 
   SquareGrid grid_;
   std::size_t whole_;
-  std::vector<std::uint32_t> division_;  ///< by cell: of `divisions_`, or no_index
+  std::vector<std::uint32_t> division_;  ///< by cell: index into `divisions_`, or no_index
   std::vector<SquareGrid> divisions_;
 };
 

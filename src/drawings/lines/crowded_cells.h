@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A cell in which much comes together, divided: what both indices of this room do with their crowds.
+// Division of a crowded cell, for both indices of this room.
 //
-// Details of a large scene are tiny, and all of their triangles and lines share a few cells, where each would be held
-// against all others. In the parts of such a cell they meet only what is near them.
+// The details of a large scene are tiny, so all of their triangles and lines share a few cells. Each would be compared
+// with all others there. In the parts of a divided cell they meet only what is near them.
 #pragma once
 
 #include <array>
@@ -13,40 +13,40 @@
 
 namespace frontmost::lines_detail {
 
-/// A cell and what it holds.
+/// A cell and its items.
 template <class Item>
 struct CrowdedCell {
   Square square;
   std::vector<Item> items;
 };
 
-/// The parts of a cell, row by row. Items may be in several of them.
+/// The parts of a cell, row by row. An item may be in several parts.
 template <class Item>
 using CellParts = std::array<CrowdedCell<Item>, CellTree::parts>;
 
-/// What has become of a cell: cell 0 of the tree.
+/// A divided cell, as a tree in which it is cell 0.
 template <class Item>
 struct DividedCell {
   CellTree cells;
-  std::vector<std::vector<Item>> items;  ///< by cell; none of those that are divided
+  std::vector<std::vector<Item>> items;  ///< by cell; divided cells have none
 };
 
-/// When cells are left as they are.
+/// Limits beyond which a cell is not divided.
 struct DivisionLimits {
-  std::size_t few = 64;       ///< items that are not worth dividing
-  double least_size = 0;      ///< of a cell's square
-  std::size_t most_held = 9;  ///< so many times as many items as there are may the parts hold: what bounds memory
+  std::size_t few = 64;       ///< so many items are not worth dividing
+  double least_size = 0;      ///< least side length of a cell's square
+  std::size_t most_held = 9;  ///< the parts may hold so many times as many items as the cell: this bounds memory
 };
 
-/// What asking in a cell costs if there is a question for each of its items: each is held against all, and visiting the
-/// cell costs as much as a hundred more.
+/// The cost of one query for each item of a cell. Each query compares with all items, and the visit to the cell costs
+/// as much as 128 more.
 template <class Item>
 double cost_of_asking(const CrowdedCell<Item>& cell) {
   constexpr double visit = 128;
   return double(cell.items.size()) * (double(cell.items.size()) + visit);
 }
 
-/// Whether parts cost less than the whole: all of them together, or all but one, which may be divided again.
+/// Whether the parts cost less than the whole: all parts together, or all but one, which may be divided again.
 template <class Item>
 bool is_worth_dividing(const CrowdedCell<Item>& whole, const CellParts<Item>& parts) {
   double sum = 0, most = 0;
@@ -57,10 +57,11 @@ bool is_worth_dividing(const CrowdedCell<Item>& whole, const CellParts<Item>& pa
   return sum < 0.75 * cost_of_asking(whole) || sum - most < 0.5 * cost_of_asking(whole);
 }
 
-/// Divides a cell, its parts, and theirs, as long as that leaves less to ask. `split(CrowdedCell)` gives the CellParts.
+/// Divides a cell, its parts, and theirs, as long as that makes queries cheaper. `split(CrowdedCell)` gives the
+/// CellParts.
 ///
-/// Cost: n items that lie apart in small enough parts leave O(n log n) to ask. Where n lie upon each other within all
-/// parts, n^2 remains.
+/// Cost of all queries afterwards: O(n log n) for n items that lie apart in small enough parts; n^2 for n items that
+/// lie upon each other in all parts.
 template <class Item, class Split>
 [[nodiscard]] DividedCell<Item> divide_cell(CrowdedCell<Item> cell, const DivisionLimits& limits, const Split& split) {
   DividedCell<Item> divided{CellTree({{cell.square.x, cell.square.y}, cell.square.size, 1, 1}), {}};
@@ -79,7 +80,7 @@ template <class Item, class Split>
         const std::uint32_t first = divided.cells.divide(number);
         divided.items.resize(divided.cells.count());
         whole.items = {};
-        // Each may hold what it has, and of what is left of the room as much as there is to gain.
+        // Each part may hold its own items and a share of the remaining room, in proportion to its cost.
         for (std::uint32_t i = 0; i < parts.size(); ++i) {
           const std::size_t own = parts[i].items.size();
           const auto share = std::size_t(double(room - held) * (cost_of_asking(parts[i]) / costs));

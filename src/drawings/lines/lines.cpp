@@ -8,7 +8,7 @@
 //                              |                             |
 //                              +--> candidates --EdgeCutter--+--> parts, seen and hidden
 //
-// Edges are cut in parts of 64, in parallel, and the parts' lists are joined in order: so a drawing is the same for any
+// Edges are cut in parts of 64, in parallel, and the parts' lists are joined in order. So a drawing is the same for any
 // number of threads.
 #include "frontmost/lines.h"
 
@@ -32,15 +32,15 @@ using namespace lines_detail;
 
 constexpr std::size_t kEdgesPerPart = 64, kEdgesPerPoll = 16;
 constexpr std::size_t kPartsPerTally = 1 << 16;
-/// So many parts, and a few more for each edge: five times what a city has.
+/// The most parts of a drawing is kMostParts and kMostPartsOfEdge for each edge: five times what a city has.
 constexpr std::size_t kMostParts = std::size_t(1) << 21, kMostPartsOfEdge = 4;
-/// Boxes of triangles that edges are held against, at 0.6 nanoseconds each: sixty times what a city takes.
+/// The most boxes of triangles that are compared with edges, at 0.6 nanoseconds each: sixty times what a city takes.
 constexpr std::uint64_t kMostBoxes = std::uint64_t(1) << 35, kMostBoxesOfEdge = 1024;
-/// The Buffers of a drawing together, and rather more: 260 for the bunny.
+/// Memory of all Buffers of a drawing together, with room to spare: the bunny takes 260.
 constexpr std::size_t kBytesPerTriangle = 400;
-constexpr double kCutFrom = 0.3;  // of the progress
+constexpr double kCutFrom = 0.3;  // share of the progress at which cutting begins
 
-/// All that is drawn, before it is cut.
+/// All edges that will be drawn, before they are cut.
 class Candidates {
  public:
   Candidates(const WeldedMesh& mesh, std::vector<FeatureEdge> features, std::vector<Crossing> crossings)
@@ -101,7 +101,7 @@ void cut_all(const Candidates& candidates, const EdgeOccluders& occlusion, const
     for (std::size_t i = begin; i < end; ++i) {
       if (i % kEdgesPerPoll == 0) tell(*cutter);
       cutter->cut(candidates.sighted(i), std::uint32_t(i), list);
-      // An edge alone may have as many as there are triangles.
+      // A single edge may have as many parts as there are triangles.
       if (list.size() - counted < kPartsPerTally && i + 1 < end) continue;
       if ((parts += list.size() - counted) > most_parts)
         throw Error(ErrorCode::limit_exceeded, "lines", "more than " + std::to_string(most_parts) + " parts of edges");
@@ -110,7 +110,7 @@ void cut_all(const Candidates& candidates, const EdgeOccluders& occlusion, const
     tell(*cutter);
     report_progress(execution, "lines", 1 - (1 - kCutFrom) * double(count - (done += end - begin)) / double(count));
   };
-  // The edges are listed while others are cut.
+  // The edges are listed while other threads cut.
   parallel_for(execution, lists.size() + 1, 1, [&](std::size_t part, std::size_t) {
     if (part > 0) return cut(lists[part - 1], (part - 1) * kEdgesPerPart, std::min(count, part * kEdgesPerPart));
     for (std::size_t i = 0; i < count; ++i) {
@@ -121,7 +121,7 @@ void cut_all(const Candidates& candidates, const EdgeOccluders& occlusion, const
   drawing.parts = joined(lists, execution);
 }
 
-/// Adds to what a limit says where most triangles lie over each other.
+/// Adds to the message of a limit where most triangles lie over each other.
 Error with_place(const Error& error, const OccluderGrid& grid, const WeldedMesh& mesh, const Surfaces& surfaces) {
   const OccluderGrid::Crowd crowd = grid.largest_crowd();
   if (error.code() != ErrorCode::limit_exceeded || crowd.count == 0) return error;
@@ -152,7 +152,7 @@ Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions
   const Sight sight(view);
   SeenMesh seen = see_closed(mesh, sight, execution);
   Features features = find_features(seen, surfaces, options, execution);
-  // Of many at one place one hides as much as all.
+  // Coincident triangles hide no more than one of them, so only the first is kept.
   if (!options.counts_hidden)
     for (const std::uint32_t twin : features.twins) seen.facing[twin] = 0;
   report_progress(execution, "lines", 0.1);

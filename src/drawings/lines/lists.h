@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists that many threads make, put together and sorted. Whoever makes a list by parts joins them in the order of the
-// parts, so that results do not depend on which thread made which part; sorting in parts has the same result as sorting
-// at once, but can be stopped between two parts and uses all threads.
+// Lists that many threads make in parts, joined and sorted. Lists are joined in the order of the parts, so results do
+// not depend on which thread made which part. Sorting in parts gives the same result as sorting at once, but uses all
+// threads and can be stopped between two parts.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace frontmost::lines_detail {
 
-/// One list after the other, as one list.
+/// The lists one after the other, as one list.
 template <class T>
 [[nodiscard]] std::vector<T> joined(const std::vector<std::vector<T>>& lists,
                                     const Execution& execution = {.threads = 1}) {
@@ -24,8 +24,8 @@ template <class T>
   return all;
 }
 
-/// Sorts as std::sort does by an order without equals, or of which equals are the same, and can be stopped. Parts are
-/// sorted by themselves, and neighbours merged until one is left: O(n log n) on one thread, n on many.
+/// Sorts like std::sort and can be stopped. Precondition: equal values are identical, or there are none. Parts are
+/// sorted on their own, and neighbours are merged until one is left: O(n log n) on one thread, O(n) on many.
 template <class T, class Less>
 void sort_in_parts(std::vector<T>& values, const Less& less, const Execution& execution) {
   constexpr std::size_t part = 1 << 15;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of three coordinates, each of which is a vector of lanes, with what kernels of this room do with them:
-// differences, products, and normals with bounds on what rounding did to them.
+// Vectors of three coordinates, each of which is a vector of lanes. Kernels of this room take differences and products
+// of them, and normals with bounds on rounding errors.
 
-// Included once for every target.
+// This file is included once for every target.
 #if defined(FRONTMOST_LINES_VECTOR3_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FRONTMOST_LINES_VECTOR3_INL_H_
 #undef FRONTMOST_LINES_VECTOR3_INL_H_
@@ -38,13 +38,13 @@ template <class V>
 HWY_INLINE Lanes3<V> Abs(const Lanes3<V>& v) {
   return {hn::Abs(v.x), hn::Abs(v.y), hn::Abs(v.z)};
 }
-/// In the order of glm::dot().
+/// Sums in the order of glm::dot().
 template <class V>
 HWY_INLINE V Dot(const Lanes3<V>& a, const Lanes3<V>& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
 
-/// BoundedNormal of base/exact_vector.h, operation by operation, for doubles.
+/// Lane form of BoundedNormal in base/exact_vector.h: the same operations in the same order, in doubles.
 template <class V>
 struct BoundedNormals {
   Lanes3<V> value, error;
@@ -58,7 +58,7 @@ struct BoundedNormals {
                            HWY_ATTR { return hn::Mul(rounding, hn::Add(hn::Mul(s, t), hn::Mul(u, v))); };
     error = {bound(p.y, q.z, p.z, q.y), bound(p.z, q.x, p.x, q.z), bound(p.x, q.y, p.y, q.x)};
   }
-  /// As bounded_dot(): by how much n.v may be wrong.
+  /// A bound on the rounding error of n.v, like bounded_dot().
   HWY_INLINE V ErrorOfDot(const Lanes3<V>& v) const {
     const Lanes3<V> a = Abs(v);
     return hn::Add(Dot(error, a), hn::Mul(hn::Set(hn::DFromV<V>(), kRounding), Dot(Abs(value), a)));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a bulge to the circle, and back from arcs that follow one another to the one circle that they are parts of.
+// From a bulge to its circle, and from consecutive arcs to the one circle on which they lie.
 //
-// Which angles and radii are the same is asked in millimetres of paper, with what rounding to thousandths leaves open.
+// Angles and radii are compared in millimetres of paper, with a tolerance for rounding to thousandths.
 #include "pages/arc.h"
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace frontmost::detail {
 
 std::optional<Arc> arc_between(const glm::dvec2& from, const glm::dvec2& to, double bulge) {
-  constexpr double flat = 1e-4;  // a tenth of what coordinates are rounded to
+  constexpr double flat = 1e-4;  // a tenth of the rounding unit of coordinates
   const glm::dvec2 chord = to - from;
   const double length = glm::length(chord);
   if (std::abs(bulge) * length * 0.5 < flat) return std::nullopt;  // the height of the arc over its chord
@@ -39,7 +39,7 @@ std::optional<Arc> whole_arc(const PageGroup& group, const PagePath& path) {
     if (!same) return std::nullopt;
     whole->turn += arc->turn;
   }
-  // More than once around is some other figure.
+  // More than once around is another shape.
   if (whole && std::abs(whole->turn) > 6.2832) return std::nullopt;
   return whole;
 }

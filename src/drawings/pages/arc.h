@@ -2,11 +2,11 @@
 // Circular arcs from the bulges of pages.
 //
 //              . - .
-//          .-'   |   '-.         1 at a half circle: the height of the arc over half of its chord
-//        from ---+--- to         0 on a straight line
+//          .-'   |   '-.         the bulge is the height of the arc by half of its chord:
+//        from ---+--- to         1 for a half circle, 0 for a straight line
 //
-// The bulge of a join is the tangent of a quarter of the angle through which its arc turns. Formats want other numbers:
-// a radius and flags, a centre and angles, or curves that come near.
+// The bulge of a join is the tangent of a quarter of the angle through which its arc turns. Formats need other numbers:
+// a radius and flags, a centre and angles, or approximating curves.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -16,17 +16,17 @@
 
 namespace frontmost::detail {
 
-/// Angles in radians from +x towards +y; `turn` is negative where it runs the other way.
+/// Angles in radians from +x towards +y; `turn` is negative in the opposite direction.
 struct Arc {
   glm::dvec2 centre{0};
   double radius = 0, begin = 0, turn = 0;
 };
 
-/// The arc from `from` to `to`; none where it is straight: without bulge, without length, or so flat that it stays
-/// within a ten-thousandth of a millimetre of its chord.
+/// The arc from `from` to `to`. None for a straight join: without bulge, without length, or within a ten-thousandth of
+/// a millimetre of its chord.
 [[nodiscard]] std::optional<Arc> arc_between(const glm::dvec2& from, const glm::dvec2& to, double bulge);
 
-/// The join that begins at point `i` of a path: its end, and its bulge.
+/// The join that begins at point `i` of a path: its ends, and its bulge.
 struct Join {
   glm::dvec2 from, to;
   double bulge;
@@ -39,7 +39,7 @@ struct Join {
   return path.is_closed ? path.count : path.count - 1;
 }
 
-/// The one circle that all of a path runs along, in one direction; none otherwise.
+/// The circle on which a whole path lies, in one direction; none otherwise.
 [[nodiscard]] std::optional<Arc> whole_arc(const PageGroup& group, const PagePath& path);
 
 }  // namespace frontmost::detail

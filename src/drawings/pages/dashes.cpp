@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dashes as lines of their own.
+// Turns dashes into paths of their own.
 //
-// A path is a ruler from corner to corner; between two corners the pattern is stretched so that it begins and ends with
-// a dash (ISO 128-2, 5.2), which then meets the next one around the corner.
+// A path is measured from corner to corner. Between two corners the pattern is stretched so that it begins and ends
+// with a dash (ISO 128-2, 5.2), which then meets the next one around the corner.
 //
 //   corner                                     corner
-//     +-----  -----  -----  -----  -----  -------+        one span: a whole number of periods, and a dash more
+//     +-----  -----  -----  -----  -----  -------+        one span: a whole number of periods, and one more dash
 //                                                |
 //                                                |        around the corner the two dashes are one path
 //   a closed path without corners has no span: its pattern goes around a whole number of times
@@ -28,7 +28,7 @@ struct Span {
   double begin, end;
 };
 
-/// A path by its length.
+/// A path, addressed by length.
 class Ruler {
  public:
   Ruler(const PageGroup& group, const PagePath& path) : is_closed_(path.is_closed) {
@@ -44,7 +44,7 @@ class Ruler {
   [[nodiscard]] double length() const { return length_; }
   [[nodiscard]] bool is_empty() const { return legs_.empty(); }
 
-  /// From corner to corner. A closed path is one span where it has none, and otherwise begins at one.
+  /// The spans from corner to corner. A closed path begins at a corner, or is one span if it has none.
   [[nodiscard]] std::vector<Span> spans() const {
     std::vector<double> corners;
     if (!is_closed_) corners.push_back(0);
@@ -61,7 +61,7 @@ class Ruler {
     return spans;
   }
 
-  /// Adds what lies within the span, which may reach once over the end of a closed path, as a path.
+  /// Adds the part of the path within the span as a path. On a closed path, the span may cross the end once.
   void cut(const Span& span, PageGroup& group) const {
     PagePath path{std::uint32_t(group.points.size()), 0, false};
     for (int round = 0; round < (is_closed_ ? 2 : 1); ++round)
@@ -86,7 +86,7 @@ class Ruler {
     double begin, length;
   };
 
-  /// The last leg that begins at `along` or before; the first where none does.
+  /// The last leg that begins at `along` or before; the first leg if there is none.
   [[nodiscard]] std::vector<Leg>::const_iterator first_leg(double along) const {
     const auto after = std::upper_bound(legs_.begin(), legs_.end(), along,
                                         [](double place, const Leg& leg) { return place < leg.begin; });
@@ -99,7 +99,7 @@ class Ruler {
   }
 
   [[nodiscard]] static glm::dvec2 at(const Leg& leg, double along) {
-    // The ends to the bit.
+    // The ends are exact, to the bit.
     if (along <= 0) return leg.join.from;
     if (along >= leg.length) return leg.join.to;
     if (!leg.arc) return leg.join.from + (leg.join.to - leg.join.from) * (along / leg.length);
@@ -118,17 +118,17 @@ class Ruler {
   double length_ = 0;
 };
 
-/// A pen's dashes: drawn, left out, drawn and so on.
+/// The dashes of a pen: drawn, gap, drawn and so on.
 class Pattern {
  public:
   explicit Pattern(const std::vector<double>& dashes) : dashes_(dashes) {
     for (const double dash : dashes) period_ += dash;
   }
 
-  /// About how many dashes a line of that length has.
+  /// The approximate number of dashes on a line of that length.
   [[nodiscard]] double count_on(double length) const { return length / period_ * double(dashes_.size() / 2); }
 
-  /// The dashes of a span that begins and ends with the first of them; all of it where it is too short for a gap.
+  /// Appends the dashes of a span, which begins and ends with the first one; a span too short for a gap is one dash.
   void fill(const Span& span, std::vector<Span>& drawn) const {
     const double length = span.end - span.begin, times = std::round((length - dashes_[0]) / period_);
     if (times < 1) return append(span, drawn);
@@ -138,7 +138,7 @@ class Pattern {
     append({at, span.end}, drawn);
   }
 
-  /// Dashes all around a closed line without corners.
+  /// Appends dashes all around a closed line without corners.
   void fill_around(double length, std::vector<Span>& drawn) const {
     const double times = std::max(1.0, std::round(length / period_));
     double at = 0;
@@ -155,7 +155,7 @@ class Pattern {
     return at;
   }
 
-  /// Goes on with a dash that ends where this one begins: around a corner.
+  /// Appends a dash, or extends the last one if it ends where this one begins, around a corner.
   static void append(const Span& span, std::vector<Span>& drawn) {
     if (!drawn.empty() && drawn.back().end == span.begin)
       drawn.back().end = span.end;
@@ -167,10 +167,10 @@ class Pattern {
   double period_ = 0;
 };
 
-/// Turns one group's dashes into paths.
+/// Turns the dashes of a group into paths.
 class DashCutter {
  public:
-  /// `most` is how many dashes there may be.
+  /// `most` is the greatest number of dashes.
   DashCutter(const PageGroup& group, std::size_t most, const Execution& execution)
       : group_(group),
         most_(double(most)),
@@ -209,7 +209,7 @@ class DashCutter {
     std::vector<Span> drawn;
     for (const Span& span : spans) pattern_.fill(span, drawn);
     if (spans.empty()) pattern_.fill_around(ruler.length(), drawn);
-    // The last dash of a closed path goes on with the first.
+    // The last dash of a closed path continues in the first.
     if (is_closed && drawn.size() > 1 && drawn.back().end == drawn.front().begin + ruler.length()) {
       drawn.back().end = drawn.front().end + ruler.length();
       drawn.erase(drawn.begin());
@@ -217,7 +217,7 @@ class DashCutter {
     return drawn;
   }
 
-  /// Now and then: looking at the watch takes longer than a dash.
+  /// Polls only sometimes: a check takes longer than a dash.
   void poll() {
     if (++steps_ % 1024 == 0) check_cancelled(execution_);
   }

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// DXF of AutoCAD release 12 (AC1009), which everything reads: pairs of lines, a group code and its value.
+// DXF of AutoCAD release 12 (AC1009), which all programs read: pairs of lines, a group code and its value.
 //
-//   0           a group code: what follows is the kind of an entity
+//   0           a group code: the value is the kind of an entity
 //   LINE
-//   8           the layer that it is on
+//   8           the entity's layer
 //   2_VISIBLE
 //   10          its first x
 //   297.000
 //
-// Release 12 has neither groups nor widths, so what a page says by them is said by layers: each group is one, and has
-// its line type and colour from there. Layers have names of 31 characters at most, in which the page's layer comes
-// first, so that programs can choose all of it. A page's y runs down and DXF's up: places are turned over, and arcs
-// change their direction.
+// Release 12 has neither groups nor line widths, so layers represent both: each group is a layer, which gives its line
+// type and colour. Layer names have at most 31 characters; the page's layer comes first, so that programs can select
+// all of it. The y axis of a page points down and that of DXF up, so places are flipped and arcs change their
+// direction.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -26,7 +26,7 @@
 namespace frontmost::detail {
 namespace {
 
-/// Release 12 takes capitals, digits, $, - and _.
+/// Release 12 allows capitals, digits, $, - and _.
 std::string table_text(const std::string& name) {
   std::string clean;
   for (const char c : name) {
@@ -40,7 +40,7 @@ std::string table_text(const std::string& name) {
   return clean;
 }
 
-/// Names that differ, of at most 31 characters.
+/// Distinct names of at most 31 characters.
 class TableNames {
  public:
   std::string add(const std::string& name) {
@@ -53,11 +53,11 @@ class TableNames {
   }
 
  private:
-  std::set<std::string> taken_ = {"0"};  // every drawing has that one
+  std::set<std::string> taken_ = {"0"};  // every drawing has this layer
   std::map<std::string, int> next_;
 };
 
-/// More in one list are of no use to anybody.
+/// A longer list of layers helps nobody.
 constexpr std::size_t most_layers = 1000;
 
 struct Layer {
@@ -66,12 +66,12 @@ struct Layer {
   int color = 7;
 };
 
-/// The nearest of the colours that have a number everywhere.
+/// The nearest of the colours with a standard number.
 int color_number(const PageColor& color) {
   struct Numbered {
     int number, red, green, blue;
   };
-  // 7 is black on white paper and white on a black screen.
+  // Colour 7 is black on white paper and white on a black screen.
   constexpr Numbered all[] = {{7, 0, 0, 0},   {1, 255, 0, 0},   {2, 255, 255, 0},   {3, 0, 255, 0},    {4, 0, 255, 255},
                               {5, 0, 0, 255}, {6, 255, 0, 255}, {8, 128, 128, 128}, {9, 192, 192, 192}};
   const auto distance = [&](const Numbered& n) {
@@ -83,18 +83,18 @@ int color_number(const PageColor& color) {
       ->number;
 }
 
-/// What a layer's lines are coloured: black ones by their class, which a page's layers begin their names with, so that
-/// programs and lasers can tell them apart; release 12 has no widths that could.
+/// The colour of a layer's lines. Black lines get a colour by their class, the digit at which the page layer's name
+/// begins. So programs and lasers can distinguish classes; release 12 has no line widths for that.
 int layer_color(const std::string& page_layer, const Pen& pen) {
   const int color = color_number(pen.color);
-  // Hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame, sections: all are seen on black and
-  // on white.
+  // Hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame, sections: all are visible on black
+  // and on white.
   constexpr int of_classes[] = {7, 6, 7, 5, 8, 9, 1, 3, 4, 3};
   const bool is_numbered = !page_layer.empty() && page_layer[0] >= '0' && page_layer[0] <= '9';
   return color == 7 && is_numbered ? of_classes[page_layer[0] - '0'] : color;
 }
 
-/// The DXF layers of a page, and which of them each group is on.
+/// The DXF layers of a page, and the layer of each group.
 struct Layers {
   explicit Layers(const Page& page) {
     std::size_t groups = 0;
@@ -108,7 +108,7 @@ struct Layers {
       for (const PageGroup& group : layer.groups) {
         if (groups <= most_layers && !group.name.empty()) {
           of_groups.back().push_back(list.size());
-          // The class comes whole, so that programs can choose all of it.
+          // The class is not shortened, so that programs can select all of it.
           list.push_back({names.add(of_class.substr(0, 11) + "-" + table_text(group.name)), group.pen,
                           layer_color(layer.name, group.pen)});
           continue;
@@ -123,7 +123,7 @@ struct Layers {
   }
 
   std::vector<Layer> list;
-  std::vector<std::vector<std::size_t>> of_groups;  ///< by layer of the page
+  std::vector<std::vector<std::size_t>> of_groups;  ///< by layer of the page: for each group, its index in `list`
 };
 
 constexpr int by_layer = 256;
@@ -167,7 +167,7 @@ class DxfWriter {
     text(2, name);
   }
   void end_section() { text(0, "ENDSEC"); }
-  /// From y down to y up.
+  /// Flips y from down to up.
   void point(const glm::dvec2& p, int code = 10) {
     number(code, p.x);
     number(code + 10, page_.height - p.y);
@@ -178,7 +178,7 @@ class DxfWriter {
     section("HEADER");
     text(9, "$ACADVER");
     text(1, "AC1009");
-    // Later than release 12, which skips what it does not know: 4 is millimetres.
+    // $INSUNITS is later than release 12, whose readers skip it: 4 is millimetres.
     text(9, "$INSUNITS");
     integer(70, 4);
     text(9, "$MEASUREMENT");
@@ -196,8 +196,9 @@ class DxfWriter {
     end_section();
   }
 
-  /// Some readers know line types by their standard names alone, and draw all others solid. A name says how many dashes
-  /// a period has; "2" and "X2" behind it stand for a period about half or twice as long as that of the first such pen.
+  /// The line type of a pen. Some readers know only standard names and draw all others solid. A name tells how many
+  /// dashes a period has. The suffix "2" or "X2" means a period about half or twice as long as that of the first such
+  /// pen.
   [[nodiscard]] std::string type_name(const Pen& pen) const {
     constexpr const char* names[] = {"CONTINUOUS", "HIDDEN", "CENTER", "PHANTOM"};
     const std::string name = names[std::min(pen.dashes.size() / 2, std::size(names) - 1)];
@@ -256,7 +257,7 @@ class DxfWriter {
     }
   }
 
-  /// What is not said is as the layer has it, and changes with it.
+  /// Properties that are not written are those of the layer, and change with it.
   void entity(std::string_view kind, const std::string& layer) {
     text(0, kind);
     text(8, layer);
@@ -279,10 +280,10 @@ class DxfWriter {
     }
   }
 
-  /// DXF counts degrees anticlockwise with y up: the other way round, and from the other end. An ARC between two equal
-  /// angles would be nothing to some readers, so a whole turn is a CIRCLE, whether its path is closed or not.
+  /// DXF angles are degrees anticlockwise with y up, so the direction is reversed. Some readers draw nothing for an ARC
+  /// between two equal angles, so a whole turn is a CIRCLE, whether its path is closed or not.
   void write_arc(const Arc& arc, bool is_closed, const std::string& layer) {
-    constexpr double whole = 6.28318529;  // short of it by less than the last digit of an angle
+    constexpr double whole = 6.28318529;  // short of a whole turn by less than the last digit of an angle
     const bool is_whole = is_closed || std::abs(arc.turn) > whole;
     entity(is_whole ? "CIRCLE" : "ARC", layer);
     point(arc.centre);
@@ -319,7 +320,7 @@ class DxfWriter {
   PageText out_;
   WritingProgress progress_;
   std::map<std::string, std::vector<double>> types_{{"CONTINUOUS", {}}};  ///< line types: the dashes of each name
-  /// Of the group that is written, where it differs from its layer.
+  /// Properties of the current group where they differ from its layer; else empty or by_layer.
   std::string own_type_;
   int own_color_ = by_layer;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures as pages: shapes are filled paths, and what has its opacity together is a group.
+// Figures as pages: shapes are filled paths, and each blend group is a group with an opacity.
 #include <span>
 
 #include "frontmost/sheets.h"
@@ -7,7 +7,7 @@
 namespace frontmost {
 namespace {
 
-/// A pixel as style sheets define it, so that a figure is as large on a page as the picture in a browser.
+/// The size of a pixel in style sheets, so that a figure is as large on a page as the picture in a browser.
 constexpr double kMillimetres = 25.4 / 96;
 
 PageColor page_color(const glm::u8vec4& color) { return {color.r, color.g, color.b, color.a}; }
@@ -23,7 +23,7 @@ PageGroup backdrop(const glm::vec3& color, const Page& page) {
   return group;
 }
 
-/// Where a sheet of several shapes ends; of what is none, where the next one begins.
+/// The end of a blend group of several shapes; otherwise the begin of the next such group.
 std::size_t end_of_group(std::span<const FigureShape> shapes, std::size_t begin) {
   const auto goes_on = [&](std::size_t i) { return i + 1 < shapes.size() && shapes[i + 1].sheet == shapes[i].sheet; };
   std::size_t end = begin;
@@ -35,7 +35,7 @@ std::size_t end_of_group(std::span<const FigureShape> shapes, std::size_t begin)
   return end;
 }
 
-/// Those of one sheet have their opacity together.
+/// The page group of these shapes. A blend group has one opacity for all of its shapes.
 PageGroup group_of(const Figure& figure, std::span<const FigureShape> shapes) {
   PageGroup group{"surfaces", Pen{}};
   group.pen.width = 0;

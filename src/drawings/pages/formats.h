@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The formats behind save(page), and how they walk over a page.
+// The formats behind save(page), and their common parts.
 //
-//   Page --validate()--> layers --> groups --> paths --paint_of()--> is it filled, has it a line, which colours?
+// Page --validate()--> layers --> groups --> paths --paint_of()--> fill and line colours
 //
-// A writer is a class over one page that appends text to a PageText; none of them keeps the page in another form. What
-// a path looks like is worked out in one place for all formats, so that a picture is the same in each.
+// A writer is a class over one page that appends text to a PageText; no writer converts the page first. The appearance
+// of a path is computed in one place for all formats, so that all formats give the same picture.
 #pragma once
 
 #include "base/output_file.h"
@@ -12,18 +12,18 @@
 
 namespace frontmost::detail {
 
-/// Writers get pages that are valid, and do not commit the file.
+/// Writers get valid pages, and do not commit the file.
 void save_svg(const Page& page, OutputFile& file, const Execution& execution);
 void save_pdf(std::span<const Page> pages, OutputFile& file, const Execution& execution);
-/// \throws Error unsupported where something is filled, before anything is written.
+/// \throws Error unsupported if some path is filled, before anything is written.
 void save_dxf(const Page& page, OutputFile& file, const Execution& execution);
 void save_json(const Page& page, OutputFile& file, const Execution& execution);
 
-/// Tells the watch how far writing is, path by path.
+/// Reports the progress of writing, path by path.
 class WritingProgress {
  public:
   WritingProgress(std::span<const Page> pages, const Execution& execution);
-  /// One path more. \throws Error cancelled.
+  /// Counts one path. \throws Error cancelled.
   void step() {
     if (++done_ % paths_between == 0) tell();
   }
@@ -36,7 +36,7 @@ class WritingProgress {
   std::size_t done_ = 0, count_ = 0;
 };
 
-/// What a path looks like with its group's pen: whether it is filled, and with which line around it.
+/// The appearance of a path with its group's pen: the colours of its fill and its line.
 struct PathPaint {
   std::optional<PageColor> fill, line;
   friend bool operator==(const PathPaint&, const PathPaint&) = default;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A page as JSON, for programs that do something else with it.
+// A page as JSON, for further processing by programs.
 //
 //   {"width": ..., "layers": [{"name": ..., "groups": [{"pen": {...}, "paths": [{"points": [[x, y], ...]}, ...]}]}]}
 //
-// Everything that a page holds is there under the names of the library's types, with as many digits as other formats
-// have.
+// The file contains all data of a page under the names of the library's types, with as many digits as other formats.
 #include "pages/formats.h"
 #include "pages/page_text.h"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages are checked at this door, so that their writers have no error paths. What is checked is what a format could not
-// write: numbers that are not finite or have too many digits, lists that do not belong together, paths of points that
-// are not there.
+// Pages are validated here, so that their writers have no error paths. Refused is whatever a format could not write:
+// numbers that are not finite or have too many digits, lists of different lengths, paths with missing points.
 #include <cmath>
 #include <filesystem>
 
@@ -20,7 +19,7 @@ constexpr double least_side = 0.01, most_side = 1e5, farthest = 1e6, most_width 
 }
 
 void check_pen(const Pen& pen, const std::string& where) {
-  // Written so that NaN fails, here as below.
+  // The condition is written so that NaN fails, here and below.
   if (!(pen.width >= 0 && pen.width <= most_width)) refuse(where, "the pen's width must be from 0 to 1000 mm");
   if (pen.dashes.size() % 2 != 0) refuse(where, "dashes and gaps must come in pairs");
   for (const double dash : pen.dashes)

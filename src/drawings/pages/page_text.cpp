@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers by hand, digit by digit, and names as each format may hold them.
+// Numbers, written digit by digit, and names in the encodings of the formats.
 //
-// A drawing is millions of numbers of a few digits. They are integers by then (thousandths of a millimetre), so writing
+// A drawing has millions of numbers of a few digits. They are integers here (thousandths of a millimetre), so writing
 // them needs no library that rounds, and gives the same bytes everywhere.
 #include "pages/page_text.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr char32_t replacement = 0xFFFD;
 
-/// How many bytes follow the first of a character in UTF-8, and the bits of the first that count; none: not a first.
+/// The number of bytes after the first byte of a UTF-8 character, the data bits of the first byte, and the least code.
 struct Lead {
   int following;
   char32_t bits, least;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text of drawings: numbers in fixed point, names made harmless, through a buffer to wherever bytes go.
+// Text of drawings: numbers in fixed point and escaped names, through a buffer to a sink of bytes.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace frontmost::detail {
 
-/// Where text goes.
+/// A destination of bytes.
 class ByteSink {
  public:
   ByteSink() = default;
@@ -31,11 +31,11 @@ class FileSink final : public ByteSink {
   OutputFile& file_;
 };
 
-/// Thousandths, as coordinates are rounded: millimetres come in as doubles of at most 1e9, so that they fit.
+/// Coordinates are rounded to thousandths. Millimetres are doubles of at most 1e9, so the result fits.
 [[nodiscard]] inline std::int64_t thousandths(double value) { return std::llround(value * 1000); }
 [[nodiscard]] inline glm::i64vec2 thousandths(const glm::dvec2& p) { return {thousandths(p.x), thousandths(p.y)}; }
 
-/// A buffer in front of a sink. Numbers by hand: nine nanoseconds each, to_chars takes eighty.
+/// A buffer in front of a sink. Its own number formatting takes nine nanoseconds per number; to_chars takes eighty.
 class PageText {
  public:
   explicit PageText(ByteSink& sink) : sink_(sink), buffer_(capacity, '\0') {}
@@ -46,13 +46,14 @@ class PageText {
     buffer_[used_++] = character;
     return *this;
   }
-  /// Decimal, without a fraction.
+  /// Writes a decimal number without a fraction.
   PageText& integer(std::int64_t value);
-  /// value / 10^digits, without zeros at its end. `digits` from 1 to 9.
+  /// Writes value / 10^digits without trailing zeros. `digits` is 1 to 9.
   PageText& fixed(std::int64_t value, int digits = 3);
-  /// Rounded to `digits`, with the zero before the point that JSON and DXF want and the others do without.
+  /// Writes a number rounded to `digits`, with the zero before the point, which JSON and DXF need and other formats do
+  /// not.
   PageText& decimal(double value, int digits = 3);
-  /// Bytes taken so far.
+  /// Number of bytes written so far.
   [[nodiscard]] std::uint64_t size() const { return passed_on_ + used_; }
   /// Must be called at the end.
   void flush() { pass_on(); }
@@ -67,14 +68,15 @@ class PageText {
   std::uint64_t passed_on_ = 0;
 };
 
-/// Takes the first character of UTF-8 away; not empty. A byte that begins none is taken alone, as U+FFFD.
+/// Removes and returns the first character of UTF-8 text that is not empty. An invalid byte is removed alone, as
+/// U+FFFD.
 [[nodiscard]] char32_t take_character(std::string_view& text);
 
-/// For element content and attributes of XML 1.0, as printable_text() writes what it does not allow.
+/// A name for element content and attributes of XML 1.0; printable_text() replaces characters that XML forbids.
 [[nodiscard]] std::string xml_text(std::string_view name);
-/// With its quotes, as utf8_text() writes it.
+/// A JSON string with quotes, encoded by utf8_text().
 [[nodiscard]] std::string json_text(std::string_view name);
-/// A PDF text string in UTF-16, as printable_text() writes it, as hexadecimal digits with their brackets.
+/// A PDF text string in UTF-16, cleaned by printable_text(), as hexadecimal digits in brackets.
 [[nodiscard]] std::string pdf_text(std::string_view name);
 
 }  // namespace frontmost::detail

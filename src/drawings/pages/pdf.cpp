@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// PDF 1.5, or 1.6 where a page needs a unit of its own: of each page one compressed stream of drawing operators, layers
-// as optional content, groups with an opacity as forms that are transparency groups. No date and no file identifier, so
-// that a page always gives the same bytes.
+// PDF 1.5, or 1.6 if a page needs its own unit. Each page is one compressed stream of drawing operators, with layers as
+// optional content, and groups with an opacity as forms that are transparency groups. There is no date and no file
+// identifier, so a page always gives the same bytes.
 //
 //   content of a page      /OC /L0 BDC                layer 0 begins
 //                            0.5 w [] 0 d             a group: its pen
 //                            10 20 m 30 40 l S        a path: move, line, stroke
-//                            q /F128 gs /G0 Do Q      a group with an opacity: form 0, laid on as a whole
+//                            q /F128 gs /G0 Do Q      a group with an opacity: form 0, composited as a whole
 //                          EMC
 //
-// Objects are written as they come, and where each begins is noted for the table at the end; so memory does not grow
-// with the page, but for the places of a few objects.
+// Objects are written immediately, and their offsets are recorded for the table at the end. So memory does not grow
+// with the page, except for a few offsets.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,10 +23,10 @@
 namespace frontmost::detail {
 namespace {
 
-constexpr std::size_t points_per_stroke = 4096;  // paths are held whole by viewers
+constexpr std::size_t points_per_stroke = 4096;  // viewers hold whole paths in memory
 constexpr double points_per_millimetre = 72 / 25.4;
 
-/// The operators that draw all layers.
+/// Writes the operators that draw all layers.
 class PdfContent {
  public:
   PdfContent(const Page& page, PageText& out, double scale, WritingProgress& progress)
@@ -34,7 +34,7 @@ class PdfContent {
 
   void write() {
     std::size_t form = 0;
-    // Millimetres with y down, as the page has them; round ends and corners.
+    // Millimetres with y down, like the page; round ends and joins.
     out_.fixed(std::llround(scale_ * 1e9), 9) << " 0 0 ";
     out_.fixed(-std::llround(scale_ * 1e9), 9) << " 0 ";
     out_.fixed(std::llround(page_.height * scale_ * 1e6), 6) << " cm 1 J 1 j\n";
@@ -52,7 +52,7 @@ class PdfContent {
     }
   }
 
-  /// The operators of a form, which begins with the page's colours.
+  /// Writes the operators of a form, which begins with the page's default colours.
   void write_alone(const PageGroup& group) {
     out_ << "0 0 0 rg 0 0 0 RG\n";
     write_group(group);
@@ -79,7 +79,7 @@ class PdfContent {
     std::size_t points = 0;
     for (std::size_t i = 0; i < group.paths.size(); ++i) {
       progress_.step();
-      if (group.paths[i].is_part && !group.fills.empty()) continue;  // drawn with what it is part of
+      if (group.paths[i].is_part && !group.fills.empty()) continue;  // drawn with the path that it is part of
       const PathPaint paint = paint_of(group, i);
       if (!paint.is_seen()) continue;
       set(paint);
@@ -87,7 +87,7 @@ class PdfContent {
       points += group.paths[i].count;
       for (std::size_t k = i + 1; paint.fill && k < group.paths.size() && group.paths[k].is_part; ++k)
         write_path(group, group.paths[k]);
-      // Lines share a painting operator. Fills do not: where they overlap, the later one lies above.
+      // Lines share a painting operator. Fills do not: where they overlap, the later one is above.
       if (paint.fill) {
         out_ << (paint.line ? "B\n" : "f\n");
         points = 0;
@@ -99,7 +99,7 @@ class PdfContent {
     if (points > 0) out_ << "S\n";
   }
 
-  /// What is so already is not said again.
+  /// Writes only the colours that change.
   void set(const PathPaint& paint) {
     if (paint.fill) set(*paint.fill, fill_, "rg\n", "/F", fill_opacities_);
     if (paint.line) set(*paint.line, line_, "RG\n", "/S", line_opacities_);
@@ -135,7 +135,7 @@ class PdfContent {
       const Join join = join_of(group, path, i);
       if (const std::optional<Arc> arc = arc_between(join.from, join.to, join.bulge)) {
         turn(*arc, join.to);
-      } else if (i + 1 < path.count) {  // h draws the last one of a closed path
+      } else if (i + 1 < path.count) {  // h draws the last join of a closed path
         point(join.to);
         out_ << "l\n";
       }
@@ -143,7 +143,7 @@ class PdfContent {
     if (path.is_closed) out_ << "h\n";
   }
 
-  /// Cubic curves of at most 45 degrees, which leave the circle by less than 5e-6 of its radius.
+  /// Writes cubic curves of at most 45 degrees, which deviate from the circle by less than 5e-6 of its radius.
   void turn(const Arc& arc, const glm::dvec2& to) {
     const int pieces = int(std::ceil(std::abs(arc.turn) / 0.7854));
     const double by = arc.turn / pieces, handle = arc.radius * 4 / 3 * std::tan(by / 4);
@@ -164,26 +164,26 @@ class PdfContent {
   PageText& out_;
   const double scale_;
   WritingProgress& progress_;
-  PageColor fill_, line_;  ///< black and opaque, as a page begins, and a form
+  PageColor fill_, line_;  ///< black and opaque at the begin of a page or a form
   Opacities fill_opacities_{}, line_opacities_{};
 };
 
-/// A page of a file, and which objects it is.
+/// A page of a file, with the numbers of its objects.
 struct PdfPage {
   struct Form {
     const PageGroup* group;
-    std::size_t object;  ///< that of its length follows
+    std::size_t object;  ///< the object of its length is the next one
   };
 
   const Page* page;
   std::size_t object, contents, length;
-  std::vector<std::size_t> layers;  ///< by layer of the page, its place among all layers
+  std::vector<std::size_t> layers;  ///< by layer of the page: its index among all layers
   std::vector<Form> forms;
   double unit;   ///< viewers refuse pages of more than 14400 units
-  double scale;  ///< units in a millimetre
+  double scale;  ///< units per millimetre
 };
 
-/// The objects of a file, and where they begin.
+/// Writes the objects of a file, and records their offsets.
 class PdfWriter {
  public:
   PdfWriter(std::span<const Page> pages, OutputFile& file, const Execution& execution)
@@ -192,7 +192,7 @@ class PdfWriter {
   }
 
   void write() {
-    // Optional content came with 1.5, the unit with 1.6. pdfTeX warns of all above 1.5.
+    // Optional content needs 1.5, the unit 1.6. pdfTeX warns about versions above 1.5.
     const bool has_unit = std::any_of(pages_.begin(), pages_.end(), [](const PdfPage& p) { return p.unit > 1; });
     out_ << (has_unit ? "%PDF-1.6" : "%PDF-1.5") << "\n%\xE2\xE3\xCF\xD3\n";
     for (const PdfPage& page : pages_) {
@@ -207,11 +207,11 @@ class PdfWriter {
 
  private:
   enum Object : std::size_t { none, catalog, page_tree, first_page, info = first_page + 3, first_free };
-  /// The opacities that a stream names.
+  /// The opacities that a stream uses.
   struct States {
     PdfContent::Opacities fills, lines;
   };
-  /// What viewers switch on and off: those of one name on several pages together.
+  /// A layer that viewers switch on and off; layers of one name on several pages are one.
   struct Layer {
     const std::string* name;
     std::size_t object;
@@ -226,7 +226,7 @@ class PdfWriter {
     const double unit = std::max(1.0, std::ceil(std::max(page.width, page.height) * points_per_millimetre / 14400));
     PdfPage& sheet =
         pages_.emplace_back(PdfPage{&page, object, object + 1, object + 2, {}, {}, unit, points_per_millimetre / unit});
-    std::vector<bool> is_taken(layers_.size());  // a page may have several of one name
+    std::vector<bool> is_taken(layers_.size());  // a page may have several layers of one name
     for (const PageLayer& layer : page.layers) {
       std::size_t at = 0;
       while (at < is_taken.size() && (is_taken[at] || *layers_[at].name != layer.name)) ++at;
@@ -248,7 +248,7 @@ class PdfWriter {
   }
   PageText& reference(std::size_t object) { return out_.integer(std::int64_t(object)) << " 0 R "; }
 
-  /// The end of a stream's dictionary, the stream, and its length as an object of its own.
+  /// Writes the end of a stream's dictionary, the stream, and its length as a separate object.
   template <class Write>
   States write_stream(const PdfPage& page, std::size_t length_object, const Write& write) {
     out_ << "/Length ";
@@ -267,7 +267,7 @@ class PdfWriter {
     return {content.fill_opacities(), content.line_opacities()};
   }
 
-  /// Resources are named before it is known which a form needs: all that its group has.
+  /// Resources are written before it is known which of them a form uses, so all opacities of its group are listed.
   void write_form(const PdfPage& page, const PdfPage::Form& form) {
     const PageGroup& group = *form.group;
     glm::dvec2 low(0), high(page.page->width, page.page->height);
@@ -317,7 +317,8 @@ class PdfWriter {
   void write_page(const PdfPage& page, const States& states) {
     begin(page.object) << "<< /Type /Page /Parent 2 0 R /Contents ";
     reference(page.contents) << "/MediaBox [0 0 ";
-    out_.fixed(std::int64_t(page.page->width * page.scale * 1e6), 6) << ' ';  // rounded down: rasterisers round up
+    out_.fixed(std::int64_t(page.page->width * page.scale * 1e6), 6) << ' ';  // rounded down, because rasterizers round
+                                                                              // up
     out_.fixed(std::int64_t(page.page->height * page.scale * 1e6), 6) << "]";
     if (page.unit > 1) {
       out_ << " /UserUnit ";

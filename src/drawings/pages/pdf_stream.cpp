@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams of PDF files, compressed.
+// Compressed streams of PDF files.
 #include "pages/pdf_stream.h"
 
 #include <zlib.h>

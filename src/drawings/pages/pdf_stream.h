@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The operators of a page on their way into a PDF file: compressed by zlib, or as they are in builds without it.
+// The stream of a page's operators in a PDF file: compressed by zlib, or plain in builds without it.
 #pragma once
 
 #include <memory>
@@ -9,19 +9,19 @@
 
 namespace frontmost::detail {
 
-/// What the dictionary of such a stream says of it, with a space at the end; nothing where it is not compressed.
+/// The filter entry in the dictionary of such a stream, with a space at the end; empty if it is not compressed.
 extern const std::string_view pdf_stream_filter;
 
 class PdfStream final : public ByteSink {
  public:
-  /// Keeps a reference to what it writes to.
+  /// Keeps a reference to `out`.
   explicit PdfStream(PageText& out);
   ~PdfStream() override;
   PdfStream(const PdfStream&) = delete;
   PdfStream& operator=(const PdfStream&) = delete;
 
   void write(std::string_view bytes) override;
-  /// Nothing is written after it.
+  /// Ends the stream; nothing may be written after it.
   void finish();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands for pdf_stream.cpp in builds without zlib: streams are not compressed.
+// Replaces pdf_stream.cpp in builds without zlib: streams are not compressed.
 #include "pages/pdf_stream.h"
 
 namespace frontmost::detail {

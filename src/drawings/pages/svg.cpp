@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// SVG 1.1, without anything that a plotter's or a journal's software might not know.
+// SVG 1.1, limited to features that software of plotters and journals knows.
 //
 //   <g inkscape:groupmode="layer">        a layer
-//     <g stroke="#000000" ...>            a group: what its paths have in common
+//     <g stroke="#000000" ...>            a group: common properties of its paths
 //       <path d="M10 20l5 0 0 5z"/>       a path: a place, and steps from there
 //
-// Paths run in steps from point to point (lower case commands), which takes half the bytes of places. Steps are
-// differences of rounded places, so that nothing adds up. A command that is the one before is left out, and so is a
-// blank before a minus sign.
+// Paths use steps from point to point (lower case commands), which take half the bytes of places. Steps are differences
+// of rounded places, so errors do not add up. A command that repeats the last one is left out, and so is a blank before
+// a minus sign.
 #include "pages/arc.h"
 #include "pages/formats.h"
 #include "pages/page_text.h"
@@ -15,7 +15,7 @@
 namespace frontmost::detail {
 namespace {
 
-/// Nobody takes a single dot: many make an element, but few enough for editors to stay quick.
+/// Dots per element: nobody edits single dots, but elements must be small enough for editors to stay quick.
 constexpr std::size_t dots_per_element = 4096;
 
 class SvgWriter {
@@ -84,7 +84,7 @@ class SvgWriter {
     }
   }
 
-  /// Each line is an element, so that editors can take it away or bend it without its neighbours.
+  /// Each line is an element, so that editors can remove or change it alone.
   void write_lines(const PageGroup& group) {
     std::size_t dots = 0;  // in the open element
     for (const PagePath& path : group.paths) {
@@ -137,7 +137,7 @@ class SvgWriter {
     glm::i64vec2 at = thousandths(group.points[path.first]);
     number(at.x);
     number(at.y);
-    if (path.count == 1) step({0, 0});  // a dot: the pen's own round ends
+    if (path.count == 1) step({0, 0});  // a dot: the pen's round ends
     const std::uint32_t joins = join_count(path);
     for (std::uint32_t i = 0; i < joins; ++i) {
       const Join join = join_of(group, path, i);
@@ -171,7 +171,7 @@ class SvgWriter {
     number(by.y);
   }
 
-  /// A command that is the last one again is left out.
+  /// Writes a command, unless it repeats the last one.
   void command(char letter) {
     if (command_ == letter) return;
     command_ = letter;

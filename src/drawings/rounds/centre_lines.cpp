@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Centre lines of a view. All are pieces of straight lines: those along one line are joined where they meet, or where a
-// drafter would not lift the pen, so that concentric circles have one cross and a stepped bore one axis.
+// The centre lines of a view. Pieces on one straight line are joined where they meet or where a drafter would not lift
+// the pen. So concentric circles share a cross, and a stepped bore has one axis.
 //
-//           |                 A circle that is seen along its axis has a cross, a cylinder from the side has its axis,
-//        .--+--.              both a little longer than what they are drawn for. All are pieces of lines: sorted by
-//     --(---+---)--           direction, by how far the line is from the corner of the picture, and along it.
-//        '--+--'
+//           |                 A circle seen along its axis has a cross; a cylinder seen from the side has its axis.
+//        .--+--.              Both are a little longer than the round itself. All are pieces of straight lines,
+//     --(---+---)--           sorted by direction, by the line's distance from the corner of the picture, and along
+//        '--+--'              the line.
 //           |
 //
-// A piece is joined with the one before it on the same line if the gap is one over which a drafter would draw on. Axes
-// are joined before they are made longer, so that their gaps are those of the bores themselves.
+// A piece is joined to the one before on the same line if a drafter would draw across the gap. Axes are joined before
+// they are lengthened, so that gaps are those between the bores themselves.
 #include "rounds/centre_lines.h"
 
 #include <algorithm>
@@ -22,21 +22,22 @@
 namespace frontmost {
 namespace {
 
-constexpr double kSquare = 2e-3;         // sine of the angle at which an axis counts as seen along, or from the side
+constexpr double kSquare = 2e-3;         // sine of the greatest angle at which an axis counts as along the view, or
+                                         // across it
 constexpr double kSameDirection = 2e-4;  // radians
-constexpr double kLeastDrawn = 0.2;      // of a round's own length
-constexpr double kLeastSize = 1.0 / 6;   // of the overshoot: radius of the smallest circle
+constexpr double kLeastDrawn = 0.2;      // share of a round's own length that must be drawn
+constexpr double kLeastSize = 1.0 / 6;   // radius of the smallest circle, as a share of the overshoot
 constexpr double kLeastOvershoot = 1.0 / 3;
-constexpr double kSameLine = 1.0 / 6;      // of the overshoot: two widths of the line
-constexpr double kWidestGap = 10.0 / 3;    // of the overshoot: between bores of one axis
-constexpr double kWidestGapInRadii = 4.0;  // where that is more
+constexpr double kSameLine = 1.0 / 6;      // as a share of the overshoot: two widths of the line
+constexpr double kWidestGap = 10.0 / 3;    // as a share of the overshoot: between bores of one axis
+constexpr double kWidestGapInRadii = 4.0;  // applies where it is more
 
-/// A part of a straight line.
+/// A piece of a straight line.
 struct AxisPiece {
-  glm::dvec2 direction;  ///< of unit length
-  double offset;         ///< of the line, to the left of its direction
-  double begin, end;     ///< along it
-  double radius;         ///< of what it is drawn for
+  glm::dvec2 direction;  ///< unit length
+  double offset;         ///< distance of the line from the origin, to the left of its direction
+  double begin, end;     ///< along the line
+  double radius;         ///< radius of the round that it belongs to
 };
 
 AxisPiece piece_between(const glm::dvec2& from, const glm::dvec2& to, double radius) {
@@ -49,7 +50,7 @@ AxisPiece piece_between(const glm::dvec2& from, const glm::dvec2& to, double rad
   return {d, (glm::dot(left, from) + glm::dot(left, to)) / 2, std::min(a, b), std::max(a, b), radius};
 }
 
-/// Joins pieces of one line where `joins` says so of a gap between two; in the order of directions and places.
+/// Joins pieces of one line where `joins` accepts the gap; the result is sorted by direction and place.
 template <class Joins>
 std::vector<AxisPiece> joined_pieces(std::vector<AxisPiece> pieces, double same_line, const Joins& joins) {
   const auto angle = [](const AxisPiece& p) { return std::atan2(p.direction.y, p.direction.x); };
@@ -92,7 +93,7 @@ class CentreLiner {
     if (glm::length(glm::cross(round.axis, view_.forward())) <= kSquare) {
       if (drawn >= kLeastDrawn * round.turn * radius) add_cross(on_screen(view_, round.from), radius);
     } else if (std::abs(glm::dot(round.axis, view_.forward())) <= kSquare && drawn >= kLeastDrawn * length) {
-      // Circles are seen as lines; they have no length along their axes, but may lengthen those of others.
+      // Circles appear as lines; they have no length along their axes, but may lengthen the axes of others.
       if (drawn < kLeastDrawn * radius) return;
       const glm::dvec2 middle = on_screen(view_, (round.from + round.to) * 0.5);
       const glm::dvec2 ahead = on_screen(view_, (round.from + round.to) * 0.5 + round.axis) - middle;
@@ -136,7 +137,7 @@ class CentreLiner {
 
   const View& view_;
   const double overshoot_;
-  double pixels_;  ///< to the unit of the scene
+  double pixels_;  ///< pixels per unit of the scene
   std::vector<AxisPiece> axes_, crosses_;
 };
 

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs of corners on a circle are made twice as long while they fit, and then halved, as those of arcs on paper are:
-// a circle through its first, its middle and its last corner is right to the rounding of corners, one through three
-// neighbours is not.
+// The length of a run of vertices on a circle is doubled while it fits, and then halved, as for arcs of strokes. A
+// circle through the first, middle and last vertex is as precise as the vertices; one through three neighbours is not.
 //
 //    corners of a chain     0   1   2   3   4   5   6   7   8   9 ...
 //    tried                  |---------------|  4 sides fit
 //                           |-------------------------------|  8 fit
 //                           |---------------------------------------- ...  16 do not
-//    then halved            the longest run that fits, in a number of tries that grows with its logarithm
+//    then halved            the longest run that fits, in a logarithmic number of tries
 //
-// Arcs of one circle are then put together, in whatever chains they were found: a rim is parted wherever another edge
-// meets it. Circles are looked up by the cells of a grid that their centres lie in; what counts as the same is less
-// than half a cell apart, so eight cells are asked.
+// Arcs of one circle are then united, whatever chains they are in: a rim is split wherever another edge meets it.
+// Circles are looked up by the grid cells of their centres. Equal circles are less than half a cell apart, so eight
+// cells are searched.
 #include <algorithm>
 #include <map>
 #include <numbers>
@@ -25,8 +24,8 @@ namespace {
 
 constexpr double kShortestArc = 40 * std::numbers::pi / 180;
 constexpr double kWhole = 2 * std::numbers::pi;
-constexpr double kSmallestRadius = 50;  // in noise: below that nothing is known to be round
-constexpr double kSameCircle = 64;      // in noise: centres of short arcs are that uncertain
+constexpr double kSmallestRadius = 50;  // in units of noise: smaller circles cannot be told from polygons
+constexpr double kSameCircle = 64;      // in units of noise: the uncertainty of the centres of short arcs
 constexpr std::size_t kLongestTry = std::size_t(1) << 20;
 
 class RunFinder {
@@ -41,15 +40,15 @@ class RunFinder {
         return;
       }
     }
-    // A closed chain is a run from its first corner, which may lie in the middle of an arc: such come in two parts,
-    // and are put together as all arcs of one circle are.
+    // A closed chain is a run from its first vertex, which may lie in the middle of an arc. Such an arc comes in two
+    // parts, which are united later.
     for (std::size_t at = 0; at + kFewestSides <= sides_;) {
       const std::size_t end = longest_run(at);
       if (end == at) {
         ++at;
         continue;
       }
-      // A circle through three points runs the way they do.
+      // A circle through three points has their orientation.
       if (const auto arc = fit(at, end); arc->second >= kShortestArc)
         found.push_back({arc->first, {{corner(at), corner(end), arc->second}}, triangles_of(at, end)});
       at = end;
@@ -61,7 +60,7 @@ class RunFinder {
     return mesh_.mesh.positions[chain_.vertices[i % chain_.vertices.size()]];
   }
 
-  /// How far around the circle the sides from `first` to `last` go, if they are its chords.
+  /// The angle around the circle of the sides from `first` to `last`; none if they are not chords of it.
   [[nodiscard]] std::optional<double> turn_along(const Circle3& circle, std::size_t first, std::size_t last) const {
     if (!(circle.radius >= kSmallestRadius * mesh_.noise)) return std::nullopt;
     double turn = 0;
@@ -120,7 +119,7 @@ class RunFinder {
   const std::size_t sides_;
 };
 
-/// Puts together the arcs that lie on one circle.
+/// Unites arcs that lie on one circle.
 class ArcJoiner {
  public:
   ArcJoiner(double noise, std::vector<FoundCircle>& circles) : same_(kSameCircle * noise), circles_(circles) {}
@@ -130,7 +129,7 @@ class ArcJoiner {
     const Key middle{std::int64_t(std::floor(cell.x)), std::int64_t(std::floor(cell.y)),
                      std::int64_t(std::floor(cell.z))};
     for (int i = 0; i < 8; ++i) {
-      // The neighbours on the nearer sides: what is the same is less than half a cell away.
+      // The neighbours on the nearer sides: equal circles are less than half a cell away.
       const auto moved = [&](int axis) {
         const bool is_high = cell[axis] - std::floor(cell[axis]) >= 0.5;
         return (i >> axis & 1) == 0 ? 0 : is_high ? 1 : -1;
@@ -168,7 +167,7 @@ class ArcJoiner {
 }  // namespace
 
 double covered(const FoundCircle& circle) {
-  std::vector<std::pair<double, double>> spans;  // angles from the first arc's begin on
+  std::vector<std::pair<double, double>> spans;  // angles from the begin of the first arc
   for (const FoundCircle::Arc& arc : circle.arcs) {
     double begin = circle.circle.turn_between(circle.arcs[0].from, arc.from);
     if (begin < 0) begin += kWhole;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cylinders of so few sides that they count as polygons: two rims of corners on one circle each, about one axis.
+// Cylinders of few sides, which count as polygons: two rims about one axis, each with its corners on a circle.
 //
-// A rim is a closed chain of sharp edges. Rims are sorted by where their axes pass zero, along a direction
-// that is parallel to no usual row of holes, so that the other rim of a cylinder is among the next ones.
+// A rim is a closed chain of sharp edges. Rims are sorted by the point of their axis nearest to the origin, along a
+// direction that is parallel to no usual row of holes. So the other rim of a cylinder is among the next ones.
 #include <algorithm>
 #include <numbers>
 
@@ -12,17 +12,18 @@ namespace frontmost::lines_detail {
 namespace {
 
 constexpr std::size_t kFewestPrismSides = 7, kMostPrismSides = 17;
-constexpr double kWidestPrismTurn = 0.91;  // radians: 52 degrees, a little more than between two of seven sides
+constexpr double kWidestPrismTurn = 0.91;  // 52 degrees in radians, a little more than the turn between two of seven
+                                           // sides
 constexpr double kSamePrism = 1e-3;        // of the radius
 constexpr std::size_t kMostLookedAt = 4096;
 
 struct PrismRim {
   Circle3 circle;
-  double key, slack;  ///< where the axis is nearest to zero, along one direction; how uncertain that is
+  double key, slack;  ///< `key`: the axis' nearest point to the origin, along one direction; `slack`: its uncertainty
   bool is_used = false;
 };
 
-/// The circle that all corners of a chain lie on, if the chain goes around it once.
+/// The circle through all corners of a chain, if the chain goes around it once.
 std::optional<Circle3> circle_of(const SmoothMesh& mesh, const SharpChain& chain) {
   const std::size_t sides = chain.edges.size();
   if (!chain.is_closed || sides < kFewestPrismSides || sides > kMostPrismSides) return std::nullopt;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rings with corners at equal angles weigh the same in all directions across their axis. So the axis goes through the
-// mean of the corners, in the direction that their second moments tell from two others that are equal. Scans fail that
-// test, and most else; what passes it is looked at ring by ring.
+// Rings with corners at equal angles have equal moments in all directions across their axis. So the axis passes through
+// the mean of the corners, in the direction whose second moment differs from two equal ones. Scans and most other
+// meshes fail this test; regions that pass are checked ring by ring.
 //
 //    smooth region --> its corners, each once --> mean and moments --> axis --> rings about it?
-//                                                     no odd direction: none       discs, walls and whole spheres: none
+//                                                     no odd direction: none       discs, walls, whole spheres: none
 //
-// Moments are sums, so the axis is as good as all corners together, and nothing has to be tried.
+// Moments are sums, so the axis is as precise as all corners together, without any search.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -20,20 +20,20 @@ namespace {
 
 constexpr std::size_t kFewestCorners = 19;  // a ring and a tip
 constexpr double kEqualMoments = 1e-5;      // of the largest
-constexpr double kSameRing = 8;             // in noise: as far as corners of one ring may be apart
-constexpr double kSmallestRevolved = 400;   // in noise
+constexpr double kSameRing = 8;             // in units of noise: the greatest distance within a ring
+constexpr double kSmallestRevolved = 400;   // in units of noise
 
-/// A corner, seen from an axis.
+/// A vertex relative to an axis.
 struct Polar {
   double height, radius, angle;
 };
 
-/// The triangles that are smooth with a first one, whole.
+/// Whole regions of triangles that are connected by smooth edges.
 class Regions {
  public:
   explicit Regions(const SmoothMesh& mesh) : mesh_(mesh), is_taken_(mesh.mesh.triangles.size()) {}
 
-  /// Empty where the first one is part of a region before.
+  /// The region that contains `first`; empty if an earlier call returned it.
   [[nodiscard]] std::vector<std::uint32_t> from(std::uint32_t first) {
     std::vector<std::uint32_t> region;
     if (is_taken_[first]) return region;
@@ -56,10 +56,10 @@ class Regions {
   std::vector<bool> is_taken_;
 };
 
-/// The direction whose second moment differs from two equal ones. None where all are alike, or none.
+/// The direction whose second moment differs from two equal ones; none if all are equal or all differ.
 std::optional<glm::dvec3> odd_direction(const glm::dmat3& moments) {
-  // With the equal moments m: moments = m * 1 + (odd - m) * outerProduct(axis, axis), so that the trace and the
-  // square's trace give m by a quadratic equation, of which either root may be the one.
+  // With the equal moments m: moments = m * 1 + (odd - m) * outerProduct(axis, axis). The traces of this and of its
+  // square give a quadratic equation for m; either root may be right.
   const double trace = moments[0][0] + moments[1][1] + moments[2][2], mean = trace / 3;
   glm::dmat3 deviator = moments;
   for (int k = 0; k < 3; ++k) deviator[k][k] -= mean;
@@ -103,20 +103,20 @@ class RevolvedFinder {
     const auto [thinnest, widest] = std::minmax_element(polar.begin(), polar.end(), by_radius);
     const auto [lowest, highest] = std::minmax_element(polar.begin(), polar.end(), by_height);
     const double radius = widest->radius, low = lowest->height, high = highest->height;
-    // Discs have no axis to be drawn, walls are cylinders, and whole spheres are round about any axis.
+    // Discs need no axis, walls are cylinders, and whole spheres are round about any axis.
     if (high - low <= slack_ || radius - thinnest->radius <= slack_ || is_sphere(middle, corners)) return std::nullopt;
     if (radius < kSmallestRevolved * mesh_.noise || !is_in_rings(polar)) return std::nullopt;
     return FoundRevolved{middle + low * *axis, middle + high * *axis, *axis, radius, std::move(region)};
   }
 
  private:
-  /// Each once.
+  /// The vertices of the region, each once.
   [[nodiscard]] std::vector<glm::dvec3> corners_of(const std::vector<std::uint32_t>& region) {
     std::vector<glm::dvec3> corners;
     for (const std::uint32_t t : region)
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t vertex = mesh_.mesh.triangles[t][k];
-        // A region is known by its first triangle.
+        // A region is identified by its first triangle.
         if (region_of_[vertex] == region.front()) continue;
         region_of_[vertex] = region.front();
         corners.push_back(mesh_.mesh.positions[vertex]);
@@ -141,7 +141,7 @@ class RevolvedFinder {
     return polar;
   }
 
-  /// Calls use(begin, end) for the runs of those whose values, in their order, are no farther apart than a ring's.
+  /// Calls use(begin, end) for each run of vertices whose sorted values are within a ring's tolerance of each other.
   template <class Value, class Use>
   [[nodiscard]] bool all_runs(std::span<Polar> polar, const Value& value, const Use& use) const {
     std::sort(polar.begin(), polar.end(), [&](const Polar& a, const Polar& b) { return value(a) < value(b); });
@@ -152,7 +152,7 @@ class RevolvedFinder {
     return true;
   }
 
-  /// Every corner is one of a ring that goes all the way round, or lies on the axis.
+  /// Whether every vertex lies on the axis, or in a ring that is closed around it.
   [[nodiscard]] bool is_in_rings(std::vector<Polar>& polar) const {
     const auto is_ring = [&](std::span<Polar> ring) {
       if (ring.front().radius <= slack_) return true;
@@ -171,7 +171,7 @@ class RevolvedFinder {
 
   const SmoothMesh& mesh_;
   const double slack_;
-  std::vector<std::uint32_t> region_of_;  ///< by vertex, the last that it was in
+  std::vector<std::uint32_t> region_of_;  ///< by vertex: the last region that it was in
 };
 
 }  // namespace

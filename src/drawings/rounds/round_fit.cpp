@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A circle is fitted by I. Kasa's method: x^2 + y^2 = 2 a x + 2 b y + c is linear in a, b and c, so least squares are
-// two equations with two unknowns about the points' middle. It would be biased on short arcs of noisy points, but
-// corners of meshes lie on their circles to six digits and more.
+// A circle is fitted by I. Kasa's method: x^2 + y^2 = 2 a x + 2 b y + c is linear in a, b and c, so least squares about
+// the points' mean give two equations for two unknowns. The method is biased on short arcs of noisy points, but
+// vertices of meshes lie on their circles to six digits or more.
 #include "rounds/round_fit.h"
 
 namespace frontmost::lines_detail {
@@ -42,7 +42,8 @@ std::optional<Tube> tube_through(std::span<const glm::dvec3> points, const glm::
 glm::dvec3 common_perpendicular(std::span<const glm::dvec3> vectors) {
   glm::dmat3 sum(0);
   for (const glm::dvec3& n : vectors) sum += glm::outerProduct(n, n);
-  // The adjugate's powers tend to the eigenvector of the least eigenvalue; its longest column is one step.
+  // The adjugate's powers converge to the eigenvector of the least eigenvalue; taking the longest column is one more
+  // step.
   const auto adjugate = [](const glm::dmat3& m) {
     return glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
   };

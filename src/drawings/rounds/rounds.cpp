@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What users are given of all that was found: rounds that are there for most of their circumference, each with its
-// triangles by their ids. Less than 160 degrees of a circle are a fillet or a corner, and nobody puts a diameter to it.
+// The public result: rounds that cover most of their circumference, each with the ids of its triangles. Less than 160
+// degrees of a circle is a fillet or a corner and gets no diameter.
 #include <algorithm>
 #include <numbers>
 
@@ -15,7 +15,7 @@ using namespace lines_detail;
 
 constexpr double kLeastTurn = 160 * std::numbers::pi / 180;
 
-/// Appends a round of those triangles of the mesh.
+/// Appends a round with these triangles of the mesh.
 void append(Round round, const std::vector<std::uint32_t>& triangles, const WeldedMesh& mesh, Rounds& all) {
   std::vector<PrimitiveId> ids;
   for (const std::uint32_t t : triangles) ids.push_back(mesh.ids[t]);

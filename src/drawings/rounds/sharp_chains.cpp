@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// At a vertex where several sharp edges meet, those go on in each other that turn least, pair by pair: so the rim of a
-// hole is followed across the edges that end in it. Chains are followed from their open ends first; what is left
-// closes.
+// Where several sharp edges meet at a vertex, pairs of them continue each other, the straightest pair first. So the rim
+// of a hole is followed across edges that end in it. Chains are followed from their open ends first; the others are
+// closed.
 //
-//       |                  at the vertex (o) the edges from left and right go on in each other, the one from
-//    ---o---               above ends
+//       |                  at the vertex (o) the edges from left and right continue each other; the one from above
+//    ---o---               ends
 #include <algorithm>
 #include <span>
 
@@ -16,7 +16,7 @@ namespace frontmost::lines_detail {
 namespace {
 
 constexpr std::size_t kSharpPerPart = 4096;
-/// More edges at one vertex belong to no circle, and take the square of their number.
+/// More edges at one vertex belong to no circle, and would take the square of their number.
 constexpr std::size_t kMostAtVertex = 16;
 
 std::vector<SharpEdge> sharp_edges(const SmoothMesh& mesh, const Execution& execution) {
@@ -35,7 +35,7 @@ std::vector<SharpEdge> sharp_edges(const SmoothMesh& mesh, const Execution& exec
   return joined(lists, execution);
 }
 
-/// An end of an edge: of edge i the ends 2 i and 2 i + 1.
+/// An end of an edge: edge i has the ends 2 i and 2 i + 1.
 using ChainEnd = std::uint32_t;
 
 class Chainer {
@@ -50,7 +50,7 @@ class Chainer {
   void run(const Execution& execution) {
     join_all(execution);
     std::vector<bool> is_done(edges_.size());
-    // Open chains from their ends, then what is left: closed ones.
+    // First open chains from their ends, then the rest, which are closed.
     for (const bool closed : {false, true})
       for (std::uint32_t edge = 0; edge < edges_.size(); ++edge) {
         if (edge % 65536 == 0) check_cancelled(execution);
@@ -67,7 +67,7 @@ class Chainer {
     return end % 2 == 0 ? edges_[end / 2].from : edges_[end / 2].to;
   }
 
-  /// Away from the end, along its edge.
+  /// The unit direction of the edge, away from this end.
   [[nodiscard]] glm::dvec3 direction(ChainEnd end) const {
     const glm::dvec3 along = mesh_.mesh.positions[vertex(end ^ 1)] - mesh_.mesh.positions[vertex(end)];
     const double length = glm::length(along);
@@ -88,7 +88,7 @@ class Chainer {
     }
   }
 
-  /// Those that turn least first.
+  /// Joins the straightest pairs first.
   void join(std::span<const std::pair<std::uint32_t, ChainEnd>> ends) {
     struct Pair {
       double cosine;
@@ -97,7 +97,7 @@ class Chainer {
     std::vector<Pair> pairs;
     for (std::size_t i = 0; i < ends.size(); ++i)
       for (std::size_t k = 0; k < i; ++k) {
-        // An edge of a surface that is there twice leads nowhere else.
+        // Copies of an edge, from duplicate surfaces, do not continue each other.
         if (vertex(ends[i].second ^ 1) == vertex(ends[k].second ^ 1)) continue;
         const double cosine = -glm::dot(direction(ends[i].second), direction(ends[k].second));
         if (cosine >= least_cosine_) pairs.push_back({cosine, ends[k].second, ends[i].second});
@@ -112,7 +112,7 @@ class Chainer {
     }
   }
 
-  /// From the edge of which `ahead` is the far end.
+  /// Follows a chain from the edge whose far end is `ahead`.
   void follow(ChainEnd ahead, bool closed, std::vector<bool>& is_done) {
     SharpChain chain;
     chain.is_closed = closed;
@@ -132,7 +132,7 @@ class Chainer {
   const SmoothMesh& mesh_;
   const std::vector<SharpEdge>& edges_;
   std::vector<SharpChain>& chains_;
-  std::vector<ChainEnd> next_;  ///< by end the one that it goes on from, or no_index
+  std::vector<ChainEnd> next_;  ///< by end: the end that continues it, or no_index
   double least_cosine_;         ///< of a turn
 };
 

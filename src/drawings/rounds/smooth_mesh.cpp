@@ -27,7 +27,7 @@ Buffer<glm::dvec3> normals_of(const WeldedMesh& mesh, const Execution& execution
   return normals;
 }
 
-/// Fillers of T-junctions have no area, and would part what is whole.
+/// Fillers of T-junctions have no area and would split smooth surfaces.
 void close_all_seams(WeldedMesh& mesh, const Execution& execution) {
   Buffer<std::int8_t> may_be_flat(mesh.triangles.size());
   for (std::size_t i = 0; i < may_be_flat.size(); ++i) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh with its triangles' neighbours, what is smooth between them, and its edges that are not, one after the other.
+// A mesh with the neighbours of its triangles, the smoothness between them, and chains of its sharp edges.
 //
-// An edge is smooth where its two triangles turn by no more than one step of a circle of eighteen sides. All smooth
-// neighbours together are one surface, from which rounds are told; sharp edges are its rims, among which circles are
-// looked for.
+// An edge is smooth if its two triangles turn by at most one step of a circle of eighteen sides. Connected smooth
+// triangles form one surface, in which cylinders and other rounds are found. Sharp edges are its rims, among which
+// circles are found.
 #pragma once
 
 #include <vector>
@@ -13,8 +13,8 @@
 
 namespace frontmost::lines_detail {
 
-/// 20.01 degrees: between two neighbours that turn by more there is an edge, and between two sides of a polygon a
-/// corner. As arcs have it.
+/// 20.01 degrees: a larger turn between two neighbours is an edge, and between two sides of a polygon a corner. The
+/// same limit as for arcs of strokes.
 inline constexpr double kWidestStep = 0.34924038;
 inline constexpr double kWidestCosine = 0.93963;
 
@@ -40,14 +40,14 @@ struct SmoothMesh {
 /// O(triangles log triangles at a vertex). \throws Error limit_exceeded for more than EdgeNeighbours::most_triangles.
 [[nodiscard]] SmoothMesh smooth_mesh(const Surfaces& surfaces, const Execution& execution);
 
-/// An edge and the triangles at it; `right` may be no_index.
+/// An edge and its triangles; `right` may be no_index.
 struct SharpEdge {
   std::uint32_t from, to, left, right;
 };
 
 struct SharpChain {
-  std::vector<std::uint32_t> vertices;  ///< of a closed one the first comes once
-  std::vector<std::uint32_t> edges;     ///< the i-th goes from the i-th vertex to the next
+  std::vector<std::uint32_t> vertices;  ///< a closed chain has its first vertex once
+  std::vector<std::uint32_t> edges;     ///< edge i goes from vertex i to the next
   bool is_closed = false;
 };
 
@@ -56,10 +56,11 @@ struct SharpChains {
   std::vector<SharpChain> chains;
 };
 
-inline constexpr std::size_t kFewestSides = 4;  ///< of an arc
+inline constexpr std::size_t kFewestSides = 4;  ///< the fewest of an arc
 
-/// Each edge is in one chain, but for those of chains that are shorter than an arc. Where several meet, those go on in
-/// each other that turn least, and none whose turn has a cosine below `least_cosine`. O(edges log edges at a vertex).
+/// Each edge is in one chain, except edges of chains that are shorter than an arc. Where several edges meet, the
+/// straightest pairs continue each other, unless the cosine of the turn is below `least_cosine`. O(edges log edges at a
+/// vertex).
 [[nodiscard]] SharpChains sharp_chains(const SmoothMesh& mesh, const Execution& execution,
                                        double least_cosine = kWidestCosine);
 

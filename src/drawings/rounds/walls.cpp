@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A wall grows over all neighbours that are smooth, stand upright about its axis and have their corners at its radius.
-// It begins at a circle of sharp edges, or where there is none, as between fillets, at two neighbours. Those know
-// little of their axis, so that it is found anew whenever there are twice as many.
+// A wall grows over all smooth neighbours that are parallel to its axis and have their vertices at its radius. It
+// begins at a circle of sharp edges or, where there is none, as between fillets, at two neighbours. Two neighbours
+// determine the axis poorly, so the axis is fitted again whenever the number of triangles has doubled.
 //
-//    circle ==> triangles at it that stand upright ==> their smooth neighbours, whose corners lie on the tube
-//    seed   ==> two triangles that turn about a common side ==> the same; the tube is fitted anew as they get more
+//    circle ==> parallel triangles at it ==> their smooth neighbours, whose vertices lie on the tube
+//    seed   ==> two triangles that turn about a common side ==> the same; the tube is fitted again as they get more
 //
-// Walls from circles come first, because a circle says where the axis is better than a few triangles do. What was
-// looked at by a wall that came to nothing is free for another, if it was short: it may belong to one that begins with
-// a better axis.
+// Walls from circles come first, because a circle determines the axis better than a few triangles. The triangles of a
+// failed wall are freed if it was short: they may belong to a wall that begins with a better axis.
 #include <algorithm>
 #include <numbers>
 
@@ -21,14 +20,14 @@ namespace {
 
 constexpr std::size_t kSeedsPerPart = 4096;
 constexpr double kFlat = 0.9999999;  // cosine of 0.026 degrees: the two halves of a plane
-constexpr double kUpright = 0.01;    // radians from the axis, of neighbours of two
+constexpr double kUpright = 0.01;    // radians from the axis, for neighbours of the two triangles
 constexpr double kRoughlyUpright = 0.1;
-constexpr double kFacesOut = 0.9;       // the cosine of normals with the direction from the axis
-constexpr double kWholeSagitta = 1.05;  // of that of the mean side
+constexpr double kFacesOut = 0.9;       // least cosine between the normal and the direction from the axis
+constexpr double kWholeSagitta = 1.05;  // times the sagitta of the mean side
 constexpr double kSmallestTube = 50;
 constexpr std::size_t kFewestTriangles = 8;
 
-/// Two triangles that might lie about the axis along their common side.
+/// Two triangles that might lie about an axis along their common side.
 struct Seed {
   std::uint32_t triangle;
   int side;
@@ -47,8 +46,8 @@ class Seeds {
   }
 
  private:
-  /// Beyond `triangle`, seen from `before`, there is a smooth neighbour that stands upright, and no other one that is
-  /// part of a surface bent both ways.
+  /// Whether `triangle` has, apart from `before`, a smooth neighbour parallel to the axis, and no other smooth
+  /// neighbour that is part of a doubly curved surface.
   [[nodiscard]] bool goes_on(std::uint32_t triangle, std::uint32_t before, const glm::dvec3& side) const {
     const double length = glm::length(side);
     const glm::dvec3 axis = side / length;
@@ -64,9 +63,9 @@ class Seeds {
     return has_one;
   }
 
-  /// Whether the next ring leans twice as much as the triangle does. So it is beside a ring of a sphere or torus, which
-  /// is no cylinder, and no higher than the next. A fillet leans by half a step where it begins at a wall and by three
-  /// halves next; a slight chamfer leans on as it did.
+  /// Whether the next ring leans twice as much as this triangle. Then the triangle is beside a ring of a sphere or
+  /// torus, which is no cylinder and no higher than the next ring. In contrast, a fillet leans by half a step where it
+  /// begins at a wall and by three halves next; a slight chamfer does not lean more.
   [[nodiscard]] bool leans_on(std::uint32_t triangle, const glm::dvec3& axis) const {
     const double first = lean(triangle, axis);
     const auto is_twice = [&](std::uint32_t t) { return std::abs(lean(t, axis) / first - 2) < 0.4; };
@@ -81,14 +80,14 @@ class Seeds {
     return false;
   }
 
-  /// How far a triangle reaches along the axis.
+  /// The extent of a triangle along the axis.
   [[nodiscard]] double height(std::uint32_t triangle, const glm::dvec3& axis) const {
     double at[3];
     for (int k = 0; k < 3; ++k) at[k] = glm::dot(mesh_.corner(triangle, k), axis);
     return *std::max_element(at, at + 3) - *std::min_element(at, at + 3);
   }
 
-  /// The angle of a triangle with the axis; 0 where it stands upright.
+  /// The angle between a triangle and the axis; 0 if it is parallel to the axis.
   [[nodiscard]] double lean(std::uint32_t triangle, const glm::dvec3& axis) const {
     return std::asin(std::clamp(glm::dot(mesh_.normals[triangle], axis), -1.0, 1.0));
   }
@@ -100,15 +99,15 @@ class WallGrower {
  public:
   explicit WallGrower(const SmoothMesh& mesh) : mesh_(mesh), is_used_(mesh.mesh.triangles.size()) {}
 
-  /// None where the seed's surface is no cylinder, or already part of one. What was looked at is not looked at again.
+  /// None if the seed's surface is no cylinder, or already part of one. Visited triangles are not visited again.
   [[nodiscard]] std::optional<FoundWall> grow(const Seed& seed) {
     const std::uint32_t other = mesh_.across(seed.triangle, seed.side);
     if (is_used_[seed.triangle] || is_used_[other] || !start(seed, other)) return std::nullopt;
     return grown(true);
   }
 
-  /// Likewise from a side of a circle whose triangle stands upright on it. `may_be_cut`: corners may lie within the
-  /// wall's sides, as where something else cuts it; a circle is known well enough to allow that.
+  /// Grows a wall from a side of a circle whose triangle is parallel to the axis. `may_be_cut`: vertices may lie on
+  /// chords, inside of the radius, where something else cuts the wall; a circle is precise enough to allow that.
   [[nodiscard]] std::optional<FoundWall> grow(const Circle3& circle, double step, std::uint32_t triangle,
                                               bool may_be_cut) {
     if (is_used_[triangle]) return std::nullopt;
@@ -123,7 +122,7 @@ class WallGrower {
   }
 
  private:
-  /// From the triangles that are there. A circle knows the axis better than few triangles do, and is not fitted.
+  /// Grows the current triangles. The axis of a circle is better than a fit to few triangles, so it is not fitted.
   std::optional<FoundWall> grown(bool fits) {
     std::size_t fitted = std::max(triangles_.size(), kFewestTriangles / 2);
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
@@ -136,7 +135,7 @@ class WallGrower {
       if (!fits || (fit() && holds_all())) return measured();
       return std::nullopt;
     }
-    // A short run of triangles may belong to another that begins with a better axis.
+    // A short run of triangles may belong to a wall that begins with a better axis.
     for (const std::uint32_t t : triangles_) is_used_[t] = false;
     return std::nullopt;
   }
@@ -191,7 +190,7 @@ class WallGrower {
   bool fit() {
     std::vector<glm::dvec3> normals, points;
     for (const std::uint32_t t : triangles_) {
-      // The first ring of a fillet may lie within the slack of the radius, and is no part of it.
+      // The first ring of a fillet may lie within the tolerance of the radius, but is not part of the wall.
       if (std::abs(glm::dot(mesh_.normals[t], tube_.axis)) > kUpright) continue;
       normals.push_back(mesh_.normals[t]);
       for (int k = 0; k < 3; ++k) points.push_back(mesh_.corner(t, k));
@@ -229,7 +228,7 @@ class WallGrower {
   const SmoothMesh& mesh_;
   std::vector<bool> is_used_;
   Tube tube_{};
-  double slack_ = 0, within_ = 0, outside_ = 1;  ///< how far corners may be beyond the radius, and within it
+  double slack_ = 0, within_ = 0, outside_ = 1;  ///< how far vertices may be outside of the radius, and inside
   std::vector<std::uint32_t> triangles_;
 };
 
@@ -264,7 +263,7 @@ std::vector<FoundWall> find_walls(const SmoothMesh& mesh, const std::vector<Foun
     check_cancelled(execution);
     for (const Seed& seed : list) keep(grower.grow(seed));
   }
-  // Of what is left, so that whole walls are known as well as they can be.
+  // Cut walls come last, so that whole walls are found as precisely as possible.
   grow_from_circles(true);
   return walls;
 }

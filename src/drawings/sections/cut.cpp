@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each object is cut by itself, and closed with a face where the plane passed through it:
+// Each object is cut separately, and closed with a face where the plane passes through it:
 //
-//        before            behind the plane        A triangle with one corner behind leaves a triangle, one with two
-//      /\      .           /|                      leaves two. The side along the plane is kept as a segment, with what
-//     /  \     .  plane   / |  cut face            was cut on its left; all segments of an object make its outlines,
-//    /____\    .         /__|                      and these the regions that the face is made of.
+//        before            behind the plane        A triangle with one vertex behind leaves a triangle, one with two
+//      /\      .           /|                      leaves two. The side along the plane is kept as a segment, with the
+//     /  \     .  plane   / |  cut face            removed part on its left. The segments of an object form outlines,
+//    /____\    .         /__|                      and the outlines bound the regions of the cut face.
 //
-// Where an edge meets the plane is worked out from its lesser end, so that both triangles at the edge get the same
-// place to the bit: outlines close without a tolerance.
+// The intersection of an edge with the plane is computed from the edge's lesser end. So both triangles at the edge get
+// the same place to the bit, and outlines close without a tolerance.
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -25,7 +25,7 @@ using namespace lines_detail;
 
 constexpr std::size_t triangles_per_poll = 1 << 14;
 
-/// Where an edge meets the plane: from the same end, whichever triangle asks.
+/// The intersection of an edge with the plane, computed from the same end for both triangles.
 glm::vec3 meeting(const PlaneAxes& plane, glm::vec3 p, glm::vec3 q) {
   if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(p, q);
   const int across = plane.across();
@@ -36,7 +36,7 @@ glm::vec3 meeting(const PlaneAxes& plane, glm::vec3 p, glm::vec3 q) {
   return place + 0.0f;  // -0 is 0
 }
 
-/// One object: what is left of it, and where it was cut.
+/// One object: the remaining part, and the segments of the cut.
 class ObjectCutter {
  public:
   ObjectCutter(const PlaneAxes& plane, const Mesh& mesh, bool is_mirrored)
@@ -59,7 +59,7 @@ class ObjectCutter {
   void add(std::uint32_t number) {
     glm::uvec3 corners = mesh_.triangles[number];
     if (is_mirrored_) std::swap(corners.y, corners.z);
-    int behind = 0, odd = 0;  // odd: of three corners the one that is alone on its side
+    int behind = 0, odd = 0;  // odd: the corner that is alone on its side
     bool is_behind[3];
     for (int k = 0; k < 3; ++k) {
       if (!is_finite(left.positions[corners[k]])) return;
@@ -100,7 +100,7 @@ class ObjectCutter {
   const bool is_mirrored_;
 };
 
-/// Fills what was cut of an object with triangles of the face's material.
+/// Fills the cut of an object with triangles of the face's material.
 CutFace close(const std::vector<CutSegment>& segments, const PlaneAxes& plane, std::uint32_t material, Mesh& mesh,
               const Execution& execution) {
   CutFace face;
@@ -126,7 +126,7 @@ CutFace close(const std::vector<CutSegment>& segments, const PlaneAxes& plane, s
   return face;
 }
 
-/// Everything but objects. Textures would need coordinates.
+/// The scene without objects. Materials lose their textures, for which the face has no coordinates.
 Scene without_objects(const Scene& from) {
   Scene scene;
   scene.name = from.name;
@@ -140,7 +140,7 @@ Scene without_objects(const Scene& from) {
   return scene;
 }
 
-/// As the rest of the object, under its name.
+/// The material of the object's other triangles, under the object's name.
 Material material_of_face(const Scene& scene, const Instance& instance, const Mesh& mesh) {
   Material material;
   if (const std::uint32_t own = mesh.material_of(0); own != no_index) material = scene.materials[own];

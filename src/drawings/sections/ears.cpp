@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Holes are joined to the outer line by a side that is there twice; then ears are cut off, corners between whose
-// neighbours one sees, until three corners are left (G. Meisters. Polygons Have Ears. 1975).
+// Holes are joined to the outer line by a bridge, a side that is there twice. Then ears are cut off until three corners
+// are left; an ear is a corner whose neighbours see each other (G. Meisters. Polygons Have Ears. 1975).
 //
 //      outer line with a hole                after the bridge           an ear at b: a, b, c turn left, and no other
 //     +-----------------+                   +-----------------+         corner lies in the triangle that they make
@@ -9,10 +9,10 @@
 //     |      +---+      |                   |      +---+      |             / .
 //     +-----------------+                   +-----------------+            a   c
 //
-// All turns are exact signs, so no ear overlaps another. Only corners at which the polygon turns right may lie in an
-// ear, and those are looked for in the cells of a grid. Where outlines cross there may be no ear at all: then flat
-// corners are cut, then any corner that turns left, and then any corner. So each side of an outline is a side of one
-// triangle, and what is left of the object is closed even there; triangles of turns to the right overlap others.
+// All turns are exact signs, so no ear overlaps another. Only reflex corners, at which the polygon turns right, may lie
+// in an ear; they are found in a grid. Where outlines cross there may be no ear: then flat corners are cut, then any
+// corner that turns left, then any corner. So each side of an outline belongs to one triangle, and the cut object is
+// closed even there. Triangles at right turns overlap others.
 #include <algorithm>
 #include <cmath>
 
@@ -27,12 +27,12 @@ namespace {
 constexpr std::size_t corners_per_poll = 1 << 10;
 constexpr int most_cells = 1 << 10;  // along an axis
 
-/// A corner of the polygon that is left.
+/// A remaining corner of the polygon.
 struct Link {
   std::uint32_t last, next;
 };
 
-/// Corners in rings; the first is the outer line, until holes are joined to it.
+/// Corners in rings. The first ring is the outer line, to which the holes are joined.
 class Rings {
  public:
   explicit Rings(const Region& region) {
@@ -51,14 +51,14 @@ class Rings {
     links_[links_[i].next].last = links_[i].last;
   }
 
-  /// Joins the rings of two corners at one place: sides without length would have no direction.
+  /// Joins the rings of two corners at one place, where a bridge would have no length.
   void splice(std::uint32_t a, std::uint32_t b) {
     std::swap(links_[a].next, links_[b].next);
     links_[links_[a].next].last = a;
     links_[links_[b].next].last = b;
   }
 
-  /// A side from corner a to b and back: both are there twice from now on, the other ones last of all.
+  /// Adds a side from corner a to b and back. Both corners are duplicated, with the copies at the end of the list.
   void bridge(std::uint32_t a, std::uint32_t b) {
     const auto a2 = std::uint32_t(size()), b2 = a2 + 1;
     places_.push_back(places_[a]);
@@ -71,7 +71,7 @@ class Rings {
     links_[b].last = a;
   }
 
-  /// Whether the side from corner i to a place runs into the polygon there, and not along its sides.
+  /// Whether the side from corner i to `to` runs into the polygon at i, and not along its sides.
   [[nodiscard]] bool runs_inside(std::uint32_t i, const glm::vec2& to) const {
     const glm::vec2 &before = at(last(i)), &here = at(i), &behind = at(next(i));
     const bool left_of_next = orientation(here, behind, to) > 0, right_of_last = orientation(here, before, to) < 0;
@@ -101,7 +101,7 @@ class Joiner {
   void run() {
     std::vector<std::uint32_t> leftmost;
     for (std::size_t k = 1; k < rings_.firsts().size(); ++k) leftmost.push_back(leftmost_of(rings_.firsts()[k]));
-    // From the left, so that each sees something of what is joined already, or of the outer line.
+    // From the left, so that each hole sees a part of the outer line or of a joined hole.
     std::sort(leftmost.begin(), leftmost.end(),
               [&](std::uint32_t a, std::uint32_t b) { return is_left_of(rings_.at(a), rings_.at(b)); });
     add_joined(rings_.firsts()[0]);
@@ -109,7 +109,7 @@ class Joiner {
       check_cancelled(execution_);
       const std::uint32_t other = nearest_in_sight(corner);
       add_joined(corner);
-      if (other == no_index) continue;  // the outlines cross; it is filled as if it were not there
+      if (other == no_index) continue;  // the outlines cross; the hole is filled as if it were not there
       if (rings_.at(other) == rings_.at(corner)) {
         rings_.splice(other, corner);
         continue;
@@ -143,7 +143,7 @@ class Joiner {
     std::vector<std::pair<double, std::uint32_t>> near;
     for (const std::uint32_t i : joined_)
       if (!is_left_of(from, rings_.at(i))) near.emplace_back(distance(i), i);
-    // Nearly always the first is in sight.
+    // The first is nearly always in sight.
     const auto is_farther = [](const auto& a, const auto& b) { return a > b; };
     std::make_heap(near.begin(), near.end(), is_farther);
     while (!near.empty()) {
@@ -158,7 +158,7 @@ class Joiner {
   [[nodiscard]] bool sees(std::uint32_t corner, std::uint32_t other) const {
     const glm::vec2 &a = rings_.at(corner), &b = rings_.at(other);
     if (!rings_.runs_inside(other, a != b ? a : rings_.at(rings_.next(corner)))) return false;
-    // Sides of outlines alone: bridges lie between places of theirs, and cross nothing that is in sight.
+    // Tests sides of outlines only: bridges connect corners of these and cross nothing that is in sight.
     for (std::uint32_t i = 0; i < rings_.size(); ++i) {
       const glm::vec2 &p = rings_.at(i), &q = rings_.at(rings_.next(i));
       if (p == a || q == a || p == b || q == b) continue;
@@ -171,7 +171,7 @@ class Joiner {
     return !has_place_between(a, b);
   }
 
-  /// Of two segments of one line.
+  /// Precondition: both segments lie on one line.
   static bool overlap(const glm::vec2& a, const glm::vec2& b, const glm::vec2& p, const glm::vec2& q) {
     const auto [low, high] = is_left_of(a, b) ? std::pair(a, b) : std::pair(b, a);
     const auto [first, second] = is_left_of(p, q) ? std::pair(p, q) : std::pair(q, p);
@@ -188,11 +188,11 @@ class Joiner {
 
   Rings& rings_;
   const Execution& execution_;
-  const std::size_t count_;  ///< of corners without bridges
+  const std::size_t count_;  ///< number of corners without bridges
   std::vector<std::uint32_t> joined_;
 };
 
-/// Reflex corners by the cells of a grid: only they may lie in an ear.
+/// Reflex corners in the cells of a grid: only these may lie in an ear.
 class ReflexGrid {
  public:
   ReflexGrid(const Rings& rings, const std::vector<std::uint32_t>& corners) : low_(rings.at(corners[0])), high_(low_) {
@@ -211,7 +211,7 @@ class ReflexGrid {
     }
   }
 
-  /// Whether `test` holds for any corner that may lie between the two places.
+  /// Whether `test` holds for any corner that may lie in the box from `low` to `high`.
   template <class Test>
   [[nodiscard]] bool any(const glm::vec2& low, const glm::vec2& high, const Test& test) const {
     const glm::ivec2 first = cell_of(low), last = cell_of(high);
@@ -264,7 +264,7 @@ class EarCutter {
   }
 
  private:
-  /// What is cut off when there is nothing better.
+  /// The kind of corner that may be cut off; later kinds are used when there are no earlier ones.
   enum class Patience : std::uint8_t { ears, flat, crossing, any };
 
   [[nodiscard]] bool may_go(std::uint32_t i, Patience patience) const {
@@ -279,7 +279,7 @@ class EarCutter {
       if (is_cut_[k] || k == i || k == rings_.last(i) || k == rings_.next(i)) return false;
       const glm::vec2& p = rings_.at(k);
       if (p == a || p == c) return false;
-      // Another corner at the same place is in the way where its sides lead into the ear.
+      // Another corner at the same place blocks the ear if one of its sides leads into it.
       if (p == b) return leads_into(i, rings_.at(rings_.last(k))) || leads_into(i, rings_.at(rings_.next(k)));
       return orientation(a, b, p) >= 0 && orientation(b, c, p) >= 0 && orientation(c, a, p) >= 0;
     };
@@ -291,7 +291,7 @@ class EarCutter {
     return orientation(a, b, p) > 0 && orientation(b, c, p) > 0;
   }
 
-  /// An ear, and the spikes that it leaves: without width they would hide which way the sides beside them lead.
+  /// Cuts an ear, and spikes that it leaves: these have no width and would hide the direction of the sides beside them.
   void cut(std::uint32_t i) {
     std::uint32_t ends[] = {rings_.last(i), rings_.next(i)};
     take(i);

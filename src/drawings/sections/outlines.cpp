@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments are joined at places that are equal to the bit. At a place where several go on, the leftmost is taken, so
+// Segments are joined at places that are equal to the bit. Where several continue at a place, the leftmost is taken, so
 // that outlines touch but never cross:
 //
-//        \ | /          coming from below, the left one is taken; the others are taken when a walk
-//         \|/           comes by again, or begins there
+//        \ | /          a walk from below takes the left one; another walk that comes by, or begins there,
+//         \|/           takes the others
 //          o
 //          |
 //
-// Models have gaps. A line that does not close is closed with the end of another, or its own, that is nearer than a
-// hundred-thousandth of the section's size; what is still open is counted and left out.
+// Models have gaps. A line that does not close is joined to another line, or to itself, where their ends are within a
+// hundred-thousandth of the section's size. Lines that are still open are counted and left out.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -21,15 +21,15 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr double joined_gap = 1e-5;  // of the size of all
+constexpr double joined_gap = 1e-5;  // of the size of the section
 constexpr std::size_t steps_per_poll = 1 << 14;
 
-/// A segment between two of the places.
+/// A segment between two places, by their numbers.
 struct Step {
   std::uint32_t from, to;
 };
 
-/// Segments as steps, each once, but for those that are there as often in the other direction.
+/// Segments as steps without duplicates. Pairs in opposite directions cancel out.
 std::vector<Step> steps_of(const std::vector<CutSegment>& segments, std::vector<glm::vec2>& places) {
   for (const CutSegment& segment : segments) {
     places.push_back(segment.from);
@@ -94,7 +94,7 @@ class Walker {
         at_(places.size(), no_index) {}
 
   void run() {
-    // Those that do not close begin where they have no step before them.
+    // Open lines begin at places with more steps out than in.
     for (std::uint32_t i = 0; i < steps_.size(); ++i)
       if (out_.at(steps_[i].from).size() > in_.at(steps_[i].from).size()) walk(i);
     for (std::uint32_t i = 0; i < steps_.size(); ++i) walk(i);
@@ -120,7 +120,7 @@ class Walker {
     for (const std::uint32_t place : path_) at_[place] = no_index;
   }
 
-  /// The path's end has met its own place number `begin`.
+  /// Takes the loop of a path whose end has met its own place number `begin`.
   void take_loop(std::size_t begin) {
     if (path_.size() - begin > 2) closed.push_back(points_from(begin));
     for (std::size_t i = begin + 1; i < path_.size(); ++i) at_[path_[i]] = no_index;
@@ -140,7 +140,7 @@ class Walker {
     return is_turned ? steps_[step].from : steps_[step].to;
   }
 
-  /// \returns where the leftmost step from the path's end leads to; no_index where there is none.
+  /// \returns the place to which the leftmost step from the path's end leads; no_index if there is none.
   std::uint32_t next() {
     const std::uint32_t end = path_.back();
     std::uint32_t best = no_index;
@@ -152,7 +152,7 @@ class Walker {
     return no_index;
   }
 
-  /// Whether, from the path's end, place a comes before b clockwise from where the path came from.
+  /// Whether place a comes before place b, clockwise around the path's end from the direction the path came from.
   [[nodiscard]] bool is_before(std::uint32_t a, std::uint32_t b) const {
     if (path_.size() < 2) return false;
     const glm::vec2 &from = places_[path_[path_.size() - 2]], &end = places_[path_.back()];
@@ -170,7 +170,7 @@ class Walker {
   std::size_t taken_ = 0;
 };
 
-/// Which of the lines begins nearest to the end of each, no farther than `gap`; none begins after two of them.
+/// For each line, the line that begins nearest to its end, within `gap`. No line succeeds two others.
 std::vector<std::uint32_t> successors(const std::vector<SectionOutline>& lines, double gap) {
   std::vector<std::uint32_t> order(lines.size()), next(lines.size(), no_index);
   std::iota(order.begin(), order.end(), 0u);
@@ -193,7 +193,7 @@ std::vector<std::uint32_t> successors(const std::vector<SectionOutline>& lines, 
   return next;
 }
 
-/// Joins lines over small gaps. \returns those that close; `open_count` is of the others.
+/// Joins lines across small gaps. \returns the closed ones; `open_count` counts the others.
 std::vector<SectionOutline> close_gaps(const std::vector<SectionOutline>& lines, double gap, std::size_t& open_count) {
   const std::vector<std::uint32_t> next = successors(lines, gap);
   std::vector<std::uint8_t> is_done(lines.size()), has_before(lines.size());

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coordinates in a cutting plane. Planes lie across one of the axes of the world, so coordinates are picked and never
-// worked out: what lies in the plane stays there to the bit, and corners of the cut face are corners of the walls
-// beside it.
+// Coordinates in a cutting plane. The plane is perpendicular to a world axis, so coordinates are selected and never
+// computed. Points in the plane stay there to the bit, and vertices of the cut face are vertices of the walls beside
+// it.
 #pragma once
 
 #include "frontmost/lines.h"
 
 namespace frontmost::lines_detail {
 
-/// Points of a plane from left to right, and from below up where neither is.
+/// Orders points of a plane from left to right, and upwards for equal x.
 [[nodiscard]] inline bool is_left_of(const glm::vec2& a, const glm::vec2& b) {
   return a.x != b.x ? a.x < b.x : a.y < b.y;
 }
 
-/// Two axes within the plane and one across it, in this order right-handed with CuttingPlane::towards.
+/// Two axes within the plane and one across it, right-handed in this order with CuttingPlane::towards.
 class PlaneAxes {
  public:
   explicit PlaneAxes(const CuttingPlane& plane)

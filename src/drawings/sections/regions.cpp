@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-//        +-----------+          Lines lie in each other, and every line is told how many times the plane winds
-//        |  +-----+  |          around what is left and right of it. It bounds a region where one side is filled
-//        |  | (o) |  |          and the other is not: the outer line of a region, or a hole in the smallest
-//        |  +-----+  |          region around it.
+//        +-----------+          Lines are nested, and each line has a winding number on its left and on its right.
+//        |  +-----+  |          It bounds a region if one side is filled and the other is not: as the outer line
+//        |  | (o) |  |          of a region, or as a hole in the smallest region around it.
+//        |  +-----+  |
 //        +-----------+
 //
-// Areas are summed about a point of the line; what is no more than the rounding of that sum counts as nothing, unless
-// the line crosses itself, as an hourglass: then it is filled all the same.
+// Areas are summed about a point of the line. An area within the rounding error of that sum counts as 0, unless the
+// line crosses itself, like an hourglass: then it is filled all the same.
 #include "sections/regions.h"
 
 #include <algorithm>
@@ -19,13 +19,13 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr double area_rounding = 1e-12;  // of the sum of what it is the sum of
-constexpr double crossed_area = 1e-6;    // likewise: of lines that go around as much one way as the other
+constexpr double area_rounding = 1e-12;  // of the sum of absolute terms
+constexpr double crossed_area = 1e-6;    // likewise, for lines that turn as much one way as the other
 
-/// A closed line, and what is asked of it.
+/// A closed line with its properties.
 struct Ring {
   SectionOutline points;
-  double area = 0;  ///< negative where it runs clockwise
+  double area = 0;  ///< negative if clockwise
   glm::vec2 low{0}, high{0};
 };
 
@@ -65,7 +65,7 @@ RegionPlace place_in(const SectionOutline& ring, const glm::vec2& p) {
   return is_inside ? RegionPlace::inside : RegionPlace::outside;
 }
 
-/// Of two that do not cross.
+/// Precondition: the rings do not cross.
 bool lies_in(const Ring& inner, const Ring& outer) {
   const bool may = inner.low.x >= outer.low.x && inner.low.y >= outer.low.y && inner.high.x <= outer.high.x &&
                    inner.high.y <= outer.high.y;
@@ -76,7 +76,7 @@ bool lies_in(const Ring& inner, const Ring& outer) {
   return std::abs(inner.area) < std::abs(outer.area);
 }
 
-/// By ring: those that it lies in.
+/// By ring: the rings that contain it.
 std::vector<std::vector<std::uint32_t>> rings_around(const std::vector<Ring>& rings, const Execution& execution) {
   std::vector<std::vector<std::uint32_t>> around(rings.size());
   for (std::uint32_t i = 0; i < rings.size(); ++i) {
@@ -87,7 +87,7 @@ std::vector<std::vector<std::uint32_t>> rings_around(const std::vector<Ring>& ri
   return around;
 }
 
-/// -1: it has a hole within it; 1: what is filled; 0: neither.
+/// -1: a hole begins within the ring; 1: a filled region; 0: neither.
 int boundary_of(const std::vector<Ring>& rings, const std::vector<std::uint32_t>& around, std::uint32_t ring,
                 bool by_winding) {
   const auto turn = [&](std::uint32_t k) { return rings[k].area > 0 ? 1 : -1; };

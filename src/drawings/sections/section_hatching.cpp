@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts that touch have different hatching, as drawing standards ask for: two angles and three spacings, six styles.
-// Parts get them in the order of their numbers, each the style that is used least by the parts beside it, in all
-// sections together, so that a part looks the same wherever it is cut. Thin walls are hatched so closely that they look
-// filled, because few lines of the wide hatching would pass through them.
+// Parts that touch have different hatching, as drawing standards require. Two angles and three spacings give six
+// styles. Each part, in the order of numbers, gets the style that its neighbours in all sections use least. So a part
+// looks the same wherever it is cut. Thin walls are hatched densely and look filled, because few lines of wide hatching
+// would cross them.
 #include <algorithm>
 
 #include "frontmost/lines.h"
@@ -25,7 +25,7 @@ bool may_touch(const Box& a, const Box& b) {
   return glm::all(glm::lessThanEqual(a.low, b.high)) && glm::all(glm::lessThanEqual(b.low, a.high));
 }
 
-/// Of a long strip its width.
+/// Twice the area by the perimeter: about the width of a long strip.
 double thickness_of(const CutFace& face) {
   double around = 0;
   for (const std::vector<glm::vec3>& outline : face.outlines)
@@ -34,7 +34,7 @@ double thickness_of(const CutFace& face) {
   return around > 0 ? 2 * face.area / around : 0;
 }
 
-/// A face among those of several sections.
+/// A cut face among those of several sections.
 struct PlacedFace {
   std::uint32_t instance;
   std::size_t section;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sheet from its options to its page: views, their places, their lines, and what is written about them.
+// From the options of a sheet to its page: views, their places, their lines, and annotations.
 //
 //    options --> views are drawn --> cells --> plan: paper, scale, places
 //                                                 --> strokes, hatching, dimensions, frame --> Page
 //
-// Lines are found before the scale is known, because what is drawn says how much room it takes. Whatever is measured in
-// millimetres of paper comes after the plan: dashes, hatching, numbers.
+// Lines are found before the scale is known, because the drawn lines determine how much room a view takes. Everything
+// measured in millimetres of paper comes after the plan: dashes, hatching, numbers.
 #include <algorithm>
 
 #include "base/parallel.h"
@@ -20,7 +20,7 @@ namespace {
 using namespace detail;
 
 constexpr double gap_between_views = 15;  // millimetres
-constexpr double page_rim = 5;            // millimetres, in which printers do not print
+constexpr double page_rim = 5;            // millimetres in which printers do not print
 
 std::vector<DimensionedView> dimensioned_views(const std::vector<PlannedView>& views) {
   std::vector<DimensionedView> all;
@@ -30,14 +30,14 @@ std::vector<DimensionedView> dimensioned_views(const std::vector<PlannedView>& v
     view.drawing = &planned.drawing;
     view.rounds = planned.rounds.get();
     view.with_hidden = planned.shows_hidden;
-    // What is cut is not all of the model.
+    // A section does not show the size of the whole model.
     view.is_dimensioned = !is_at_an_angle(*planned.direction) && !planned.section;
     view.taken = planned.taken;
   }
   return all;
 }
 
-/// Lets cells keep room for the overall sizes of their views.
+/// Reserves room in the cells for the overall sizes of their views.
 void keep_room_for_sizes(std::vector<ViewCell>& cells, const std::vector<PlannedView>& views) {
   const std::vector<OverallSizes> sizes = overall_sizes_of(dimensioned_views(views));
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -47,7 +47,7 @@ void keep_room_for_sizes(std::vector<ViewCell>& cells, const std::vector<Planned
   }
 }
 
-/// Lays the views out. \returns the plan; the views know their places from now on.
+/// Lays out the views and sets their places. \returns the plan.
 SheetPlan place_views(std::vector<PlannedView>& views, const Surfaces& surfaces, const SheetOptions& options) {
   Cells all = cells_of(views, surfaces, options);
   place_sections(all.cells, views);
@@ -73,7 +73,7 @@ void draw_in_places(std::vector<PlannedView>& views, const SheetOptions& options
   }
 }
 
-/// Puts dimensions on the page, clear of its rim, or of the frame and title block that it is to have, and of `marks`.
+/// Adds dimensions to the page, clear of its rim or of its later frame and title block, and of `marks`.
 void add_dimensions(Sheet& sheet, const std::vector<PlannedView>& views, const std::vector<PageBox>& marks,
                     const Scene& scene, const SheetOptions& options) {
   DimensionOptions numbers;
@@ -98,14 +98,14 @@ void add_dimensions(Sheet& sheet, const std::vector<PlannedView>& views, const s
 void add_frame(Page& page, const SheetOptions& options, const Scene& scene, std::optional<double> scale) {
   TitleBlock block = *options.title_block;
   page.title = block.title;
-  block.scale = scale ? scale_text(*scale) : "\xE2\x80\x93";  // a dash: in perspective nothing has one
+  block.scale = scale ? scale_text(*scale) : "\xE2\x80\x93";  // a dash: views in perspective have no scale
   block.unit = is_in_inches(options, scene) ? "in" : "mm";
   block.paper = paper_name({page.width, page.height});
   block.projection = has_named_views(options) ? options.projection : ProjectionMethod::none;
   page.layers.push_back(draw_frame({page.width, page.height}, block));
 }
 
-/// From views that were drawn to the sheet.
+/// Finishes a sheet from its drawn views.
 Sheet finish(std::vector<PlannedView> views, const Surfaces& surfaces, const SheetOptions& options,
              const Execution& execution) {
   report_progress(execution, "rounds", 0);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The door of sheets: options that cannot be meant are refused here, by the names of their fields.
+// Options of sheets are validated here; errors name the field.
 //
-// Everything is checked before anything is drawn, and an error names the field and says what it may be. What comes
-// after this door needs no error paths but for what only the drawing itself can tell, as that a plane misses the model.
+// All options are checked before anything is drawn, and an error says which values are allowed. Later steps only have
+// errors that depend on the drawing, such as a plane that misses the model.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

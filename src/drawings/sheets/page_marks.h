@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands on a page beside the lines of a model: numbers, arrowheads, and the boxes that they cover.
+// Marks on a page besides the lines of a model: numbers, arrowheads, and the boxes that they cover.
 //
-// Marks are strokes of pens like the lines of the model, so that plotters and DXF have them, too: an arrowhead is two
-// slender triangles that the pen fills by drawing them.
+// Marks are pen strokes like the lines of the model, so plotters and DXF have them, too. An arrowhead is two slender
+// triangles whose outlines fill them.
 #pragma once
 
 #include <string>
@@ -17,9 +17,9 @@ struct PageBox {
   glm::dvec2 low{0}, high{0};
 };
 
-/// Three pens wide, and `length` millimetres long.
-/// Filled by strokes of the pen, so that it is the same in every format and on a plotter: two slender triangles side by
-/// side, whose sides are so near each other that the pen fills them.
+/// An arrowhead, three pen widths wide and `length` millimetres long. It consists of two slender triangles side by
+/// side, whose sides are so near each other that the pen fills them. So it is the same in every format and on a
+/// plotter.
 inline void add_arrowhead(PageGroup& group, const glm::dvec2& tip, const glm::dvec2& pointing, double length) {
   const double width = group.pen.width;
   const glm::dvec2 base = tip - length * pointing, across(-pointing.y * width, pointing.x * width);
@@ -28,7 +28,7 @@ inline void add_arrowhead(PageGroup& group, const glm::dvec2& tip, const glm::dv
   group.add(corners, true);
 }
 
-/// Of so many digits that count, without zeros behind the point at its end: "0.25", "1e+07".
+/// A number with at most so many significant digits, without trailing zeros: "0.25", "1e+07".
 [[nodiscard]] inline std::string number_text(double value, int digits = 6) { return general_text(value, digits); }
 
 /// Two sides: "210 x 297".

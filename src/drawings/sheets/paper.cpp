@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Papers are those of ISO 216 and the American ones. Scales are those of ISO 5455, 1, 2 and 5 times a power of ten: the
-// largest that is not above a given one. Reductions are made by dividing whole numbers, so that 1:5 is the double
-// nearest to a fifth.
+// Papers are those of ISO 216 and the American ones. Scales are those of ISO 5455: 1, 2 and 5 times a power of ten, the
+// largest that is not above a given one. Reductions are quotients of whole numbers, so that 1:5 is the double nearest
+// to a fifth.
 #include <algorithm>
 #include <cmath>
 
@@ -26,7 +26,7 @@ std::string in_small_letters(std::string_view text) {
   return small;
 }
 
-/// Takes `ending` away where it is there.
+/// Removes `ending` if the text has it. \returns whether it did.
 bool take_ending(std::string& text, std::string_view ending) {
   if (text.size() <= ending.size() || text.compare(text.size() - ending.size(), ending.size(), ending) != 0)
     return false;
@@ -67,7 +67,6 @@ std::string scale_text(double scale) {
 }
 
 double standard_scale(double most) {
-  // Reductions are divided by whole numbers, so that 1:5 is the double nearest to a fifth.
   constexpr double slack = 1 + 1e-9;
   for (int decade = 9; decade >= 0; --decade)
     for (const int digit : {5, 2, 1})
@@ -75,7 +74,7 @@ double standard_scale(double most) {
   for (int decade = 0; decade < 10; ++decade)
     for (const int digit : {2, 5, 10})
       if (const double scale = 1 / (digit * std::pow(10.0, decade)); scale <= most * slack) return scale;
-  return most;  // beyond all standards, but it fits
+  return most;  // beyond all standard scales, but it fits
 }
 
 }  // namespace frontmost

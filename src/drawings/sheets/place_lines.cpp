@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is drawn in a view whose place on the page is settled: strokes, hatching, dots and centre lines.
+// Strokes, hatching, dots and centre lines of a view whose place on the page is final.
 //
-// Strokes are chained in pixels of the view, and their tolerances are lengths on paper: so they are made when the scale
+// Strokes are chained in pixels of the view, but their tolerances are lengths on paper. So they are made when the scale
 // is known, and a sheet at 1:10 has no details that a pen could not draw.
 //
-// Whatever is shorter or nearer together than a pen can draw is left out here, not when a file is written: all formats
-// then have the same strokes.
+// Details that are too short or too dense for a pen are left out here, not when a file is written, so all formats have
+// the same strokes.
 #include <algorithm>
 #include <cmath>
 
@@ -16,10 +16,10 @@ namespace frontmost::detail {
 namespace {
 
 constexpr double usual_crease = std::numbers::pi / 6;  // of intersections
-constexpr double plotted_stroke = 0.5;                 // millimetres: the shortest that is worth the pen's way
-constexpr double paper_tolerance = 0.01;               // millimetres: of arcs, and of lines that count as one
-constexpr double stroke_tolerance = 0.0005;            // millimetres: half of what coordinates are rounded to
-constexpr double shortest_hatch = 0.2;                 // millimetres: less is a dot of the pen
+constexpr double plotted_stroke = 0.5;                 // millimetres: the shortest stroke worth a pen's movement
+constexpr double paper_tolerance = 0.01;               // millimetres: for arcs, and for lines that count as one
+constexpr double stroke_tolerance = 0.0005;            // millimetres: half of the rounding unit of coordinates
+constexpr double shortest_hatch = 0.2;                 // millimetres: shorter hatch lines are dots of the pen
 
 StrokeOptions stroke_options(const PlannedView& view, const SheetOptions& options) {
   const double millimetres = view.placed.millimetres_per_pixel;
@@ -44,7 +44,7 @@ ToneOptions tone_options(const SheetOptions& options, const View& view) {
   return tone;
 }
 
-/// Millimetres are the unit of the paper, and pixels that of the limits.
+/// Checks a spacing in millimetres of paper against a limit that comes from pixels.
 void check_spacing(const char* field, double spacing, double least) {
   if (spacing >= least) return;
   throw Error(ErrorCode::limit_exceeded, std::string(field),
@@ -53,7 +53,7 @@ void check_spacing(const char* field, double spacing, double least) {
 }
 
 StippleOptions stipple_options(const SheetOptions& options, const View& view, double millimetres) {
-  constexpr double most_dots = 2e7;  // as stipple() has it
+  constexpr double most_dots = 2e7;  // the limit of stipple()
   const double least = std::max(1.0, std::sqrt(double(view.width) * view.height / most_dots));
   check_spacing("stipple", *options.stipple, least * millimetres);
   return {*options.stipple / millimetres, tone_options(options, view), !options.plot, options.plot};

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of views as layers of a page. Layers are what kinds of line there are, in the order of drawing, so that what is
-// seen lies over what is hidden; their names begin with the number of a plotter's pen. Within a layer each object of
-// each view is a group by itself.
+// The lines of views as layers of a page. Each kind of line has a layer, in drawing order, so that visible lines are
+// above hidden ones. Layer names begin with the number of a plotter's pen. Within a layer, each object of each view is
+// a group.
 //
-//    dashes on a line     |=====  ==  =====  ==  =====|      it begins and ends with a whole long dash: the long ones
-//                                                            are stretched to fit the length
+//    dashes on a line     |=====  ==  =====  ==  =====|      it begins and ends with a whole long dash; long dashes are
+//                                                            stretched to fit the length
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -14,15 +14,14 @@
 namespace frontmost {
 namespace {
 
-/// In the order of drawing. The numbers are names: a plotter's pens are chosen by them.
+/// In drawing order. Numbers are part of the names, because a plotter's pens are selected by them.
 constexpr std::size_t layer_count = 6;
 enum LayerOf : std::size_t { stippling, hatching, centre, hidden, seen, outline };
 const char* const layer_names[layer_count] = {"5 stippling", "4 hatching", "6 centre lines",
                                               "1 hidden",    "2 visible",  "3 outline"};
 
-/// The dashes of a pen as they are on a line of that length: an odd number of the first one, and so many of the others
-/// between them. The first is rounded, so that lines of about a length have the same pattern. None where there is room
-/// for one dash alone.
+/// The dashes of a pen for a line of that length: an odd number of first dashes, with the others between them. The
+/// first is rounded, so that lines of similar length have the same pattern. Empty if there is room for only one dash.
 std::vector<double> dashes_on(const Pen& pen, double length) {
   if (pen.dashes.empty()) return {};
   constexpr double step = 0.02;  // millimetres
@@ -35,7 +34,7 @@ std::vector<double> dashes_on(const Pen& pen, double length) {
   return dashes;
 }
 
-/// The layers while they are filled: where the group of a view and an object is.
+/// The layers under construction, with the group of each view and object.
 class SheetLayers {
  public:
   SheetLayers(const Surfaces& surfaces, const LinePens& pens) : surfaces_(surfaces), pens_(pens) {
@@ -75,7 +74,7 @@ class SheetLayers {
                      : layer == outline ? pens_.outline
                      : is_crease        ? pens_.crease
                                         : pens_.seen;
-    // Creases share a group with the other lines of their object unless their pen is another one.
+    // Creases share a group with the other lines of their object unless their pen differs.
     const bool is_apart = layer == seen && is_crease && pens_.crease.width != pens_.seen.width;
     return group({layer, number, stroke.instance, is_apart}, view, pen);
   }
@@ -121,7 +120,7 @@ class SheetLayers {
   const LinePens& pens_;
   PageLayer layers_[layer_count];
   std::map<GroupKey, std::size_t> places_;
-  std::map<std::vector<double>, std::size_t> centre_groups_;  ///< by their dashes
+  std::map<std::vector<double>, std::size_t> centre_groups_;  ///< by dashes
 };
 
 }  // namespace

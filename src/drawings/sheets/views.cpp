@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views of a sheet from their cameras to their lines, and what they take of the page.
+// From the cameras of a sheet's views to their lines, and their extent on the page.
 //
-//    camera --> surfaces (tessellated anew where they are curved, cut for a section) --> lines --> what they take
+// camera --> surfaces (tessellated again if curved, cut for a section) --> lines --> extent
 //
-// Curved surfaces are made into triangles for each view, as fine as paper shows it; where the eye is so near that this
-// would be millions, they are made coarser.
+// Curved surfaces are tessellated for each view, as finely as paper shows. If the eye is so near that this would give
+// millions of triangles, the tessellation is coarser.
 #include <algorithm>
 
 #include "frontmost/view.h"
@@ -23,13 +23,13 @@ std::string_view view_name(NamedView view) {
 namespace detail {
 namespace {
 
-constexpr glm::ivec2 fine_grid{3840, 2160};  // shaped as the pictures of render() by default, for the same camera
-constexpr double fine_error = 0.2;           // of its pixels: about 0.01 mm on a sheet of A4
+constexpr glm::ivec2 fine_grid{3840, 2160};  // the shape of render()'s default pictures, for the same camera
+constexpr double fine_error = 0.2;           // in pixels of that grid: about 0.01 mm on a sheet of A4
 constexpr double coarsest_error = 10;
 constexpr double most_fine_triangles = 2e6;  // seconds to draw
 
-/// As fine as paper shows it, or coarser where the eye is so near that this is beyond measure. None where no fineness
-/// that looks well can be had: the model's own triangles look better.
+/// The finest error that paper shows, or a coarser one if the eye is too near for that. None if even the coarsest error
+/// takes too many triangles: then the model's own triangles look better.
 std::optional<double> tessellation_error(const SheetOptions& options, const Scene& scene, const View& view) {
   if (options.tessellation_error) return options.tessellation_error;
   for (double error = fine_error; error <= coarsest_error; error *= 2)
@@ -37,7 +37,7 @@ std::optional<double> tessellation_error(const SheetOptions& options, const Scen
   return std::nullopt;
 }
 
-/// The triangles of `surfaces`, made anew for the view where they are curved.
+/// The triangles of `surfaces`, tessellated again for the view if they are curved.
 std::shared_ptr<const Surfaces> surfaces_for(const Surfaces& surfaces, const View& view, const SheetOptions& options,
                                              const Execution& execution) {
   std::optional<double> error;
@@ -46,7 +46,7 @@ std::shared_ptr<const Surfaces> surfaces_for(const Surfaces& surfaces, const Vie
   return surfaces_of(std::make_shared<const Scene>(tessellate(surfaces.scene(), view, *error)), execution);
 }
 
-/// A drafter's view at an angle shows what the thing looks like, and hidden edges would only hide that.
+/// By default, views at an angle show no hidden lines, since these would obscure the shape.
 bool shows_hidden(const SheetOptions& options, NamedView direction) {
   if (options.hidden == HiddenLines::none) return false;
   if (!options.hidden_views) return !is_at_an_angle(direction);
@@ -65,7 +65,7 @@ PlannedView draw_planned(std::shared_ptr<const Surfaces> surfaces, const View& v
   return result;
 }
 
-/// What is given in place of the planes that enclose the model.
+/// The near and far planes of the options in place of those that enclose the model.
 ClipDistances planes_of(const ClipDistances& fitted, NamedView direction, const SheetOptions& options) {
   const ClipDistances planes{options.near.value_or(fitted.near), options.far.value_or(fitted.far)};
   if (!(planes.near < planes.far) && !(options.near && options.far))
@@ -138,10 +138,10 @@ PlannedView draw_given_view(const Surfaces& surfaces, const View& view, const Sh
 }
 
 void find_rounds_of(std::vector<PlannedView>& views, const SheetOptions& options, const Execution& execution) {
-  // Dimensions stand at what is round as well.
+  // Dimensions need rounds, too.
   if (!options.dimensions && !wants_centre_lines(options)) return;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    // On sheets nothing is seen along its axis there.
+    // Named views at an angle show nothing along its axis.
     if (views[i].direction && is_at_an_angle(*views[i].direction)) continue;
     for (std::size_t k = 0; k < i && !views[i].rounds; ++k)
       if (views[k].surfaces == views[i].surfaces) views[i].rounds = views[k].rounds;

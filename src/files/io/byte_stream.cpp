@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading a file or a pipe once from its beginning to its end, and again where it can be.
+// Reads a file or a pipe once from begin to end, and again if it can be rewound.
 
 #include "io/byte_stream.h"
 
@@ -21,7 +21,7 @@ ByteStream::ByteStream(const std::string& path, std::string name) : name_(std::m
   struct ::stat status {};
   if (::fstat(descriptor_, &status) != 0) fail_to_read_by_errno(name_, "cannot read");
   if (S_ISDIR(status.st_mode)) fail_to_read(name_, "is a folder");
-  // Files of /proc say 0 and have contents; standard input may be a file that was read in part.
+  // The size of files in /proc is 0 though they have contents. Standard input may be a file that was read in part.
   const bool is_at_start = ::lseek(descriptor_, 0, SEEK_CUR) == 0;
   if (S_ISREG(status.st_mode) && status.st_size > 0 && is_at_start) size_ = std::uint64_t(status.st_size);
   if (size_) ::posix_fadvise(descriptor_, 0, 0, POSIX_FADV_SEQUENTIAL);  // only advice
@@ -35,10 +35,10 @@ std::size_t ByteStream::read(std::byte* to, std::size_t count) {
   std::size_t done = 0;
   while (done < count) {
     const ssize_t got = ::read(descriptor_, to + done, count - done);
-    // A signal that came in between is no error.
+    // An interrupting signal is no error.
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail_to_read_by_errno(name_, "cannot read");
-    // Fewer than asked for is no end: pipes give what they have. Only nothing is.
+    // A pipe may return fewer bytes than asked for before its end; only zero bytes mean the end.
     if (got == 0) break;
     done += std::size_t(got);
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes in, from front to back, of files that need not fit into memory.
+// Sequential input of files that need not fit into memory.
 //
-// InputFile maps a file as a whole, which suits readers that go back and forth; a ByteStream reads on and on, which
-// suits pipes and models longer than memory.
+// InputFile maps a whole file, for readers that go back and forth. ByteStream reads forwards, for pipes and for models
+// larger than memory.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace frontmost {
 
-/// An open file, pipe or standard input. Files are read, not mapped: what is held of them is what the caller holds, and
-/// a file cut short by another program is an end, not a signal.
+/// An open file, pipe or standard input. The stream reads and does not map files: only the caller's buffers take
+/// memory, and a file cut short by another program causes an early end instead of a signal.
 class ByteStream {
  public:
   /// "-" is standard input. `name` stands for the file in messages. \throws Error file_unreadable.
@@ -26,10 +26,10 @@ class ByteStream {
   /// \throws Error file_unreadable.
   std::size_t read(std::byte* to, std::size_t count);
 
-  /// Of an ordinary file; none of a pipe or a terminal.
+  /// The size of an ordinary file; empty for a pipe or a terminal.
   [[nodiscard]] std::optional<std::uint64_t> size() const { return size_; }
   [[nodiscard]] bool can_rewind() const { return size_.has_value(); }
-  /// The next byte read is the one at `offset`. Precondition: can_rewind().
+  /// Moves to `offset`, from which the next byte is read. Precondition: can_rewind().
   void seek(std::uint64_t offset);
 
  private:

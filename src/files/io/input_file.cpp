@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole file in memory: mapped where that pays, else read, with a limit that is checked before memory is asked for.
+// A whole file in memory: mapped if that pays off, else read, with a limit that is checked before memory is allocated.
 
 #include "io/input_file.h"
 
@@ -54,7 +54,7 @@ InputFile InputFile::open(const std::filesystem::path& path, const std::string& 
   struct ::stat status {};
   if (::fstat(number, &status) != 0) fail_to_read_by_errno(name, "cannot read");
   if (S_ISDIR(status.st_mode)) fail_to_read(name, "is a folder");
-  // Pipes have no size, and files of /proc say 0.
+  // Pipes have no size, and files of /proc report 0.
   const auto size = std::uint64_t(std::max<off_t>(status.st_size, 0));
   if (!S_ISREG(status.st_mode) || size < mapping_threshold)
     return read_stream(number, name, std::min(max_bytes, max_stream_bytes));
@@ -76,20 +76,20 @@ InputFile InputFile::map(int descriptor, std::size_t size, const std::string& na
 InputFile InputFile::read_stream(int descriptor, const std::string& name, std::uint64_t max_bytes) {
   struct ::stat status {};
   if (::fstat(descriptor, &status) == 0 && (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)))
-    // /dev/zero has no end, and would fill the memory up to any limit that serves for models.
+    // /dev/zero has no end, and would fill the memory up to any limit that suits models.
     max_bytes = std::min(max_bytes, max_device_bytes);
-  // realloc moves large blocks by remapping pages, so growing holds no second copy.
+  // realloc moves large blocks by remapping pages, so growth needs no second copy.
   std::size_t capacity = mapping_threshold, size = 0;
   auto* start = static_cast<std::byte*>(std::malloc(capacity));
   Data data(start, Delete{});
   while (start != nullptr) {
     if (size == capacity) {
-      // There may be just as much as there is room for; asking for more room says that there is one more.
+      // The file may end exactly here, so check_size() is asked about one byte more before the buffer grows.
       check_size(size + 1, max_bytes, name);
       capacity *= 2;
       start = static_cast<std::byte*>(std::realloc(start, capacity));
       if (start == nullptr) break;
-      // realloc has freed the old block, or moved it: nobody may free it again.
+      // realloc has freed or moved the old block, which must not be freed again.
       (void)data.release();
       data.reset(start);
     }
@@ -106,7 +106,7 @@ InputFile InputFile::read_stream(int descriptor, const std::string& name, std::u
 
 void InputFile::release(std::span<const std::byte> part) const {
   if (data_.get_deleter().owner != Owner::mapping || part.empty()) return;
-  // Whole pages within the part only; the mapping itself starts at a page.
+  // Only whole pages within the part are released; the mapping itself starts at a page.
   static const auto page = std::size_t(::sysconf(_SC_PAGESIZE));
   const auto first = std::size_t(part.data() - data_.get());
   const std::size_t begin = (first + page - 1) / page * page;
@@ -131,7 +131,7 @@ void fail_to_read(const std::string& name, const std::string& reason) {
 }
 
 void fail_to_read_by_errno(const std::string& name, const char* doing) {
-  const int code = errno;  // before strings are made: that may change it
+  const int code = errno;  // before strings are made, which may change errno
   fail_to_read(name, std::string(doing) + ": " + std::generic_category().message(code));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes in: whole files and standard input, without holding more of them in memory than needed.
+// Input of whole files and of standard input, with no more bytes in memory than needed.
 #pragma once
 
 #include <cstddef>
@@ -12,17 +12,17 @@
 
 namespace frontmost {
 
-/// Largest file that is accepted, and largest stream (standard input, pipes), which must be held in memory.
+/// Greatest size of a file, and of a stream (standard input, pipes), which must be held in memory.
 inline constexpr std::uint64_t max_file_bytes = std::uint64_t(1) << 40;
 inline constexpr std::uint64_t max_stream_bytes = std::uint64_t(1) << 34;
-/// Largest amount that is read from a device such as a terminal: /dev/zero never ends.
+/// Greatest number of bytes that are read from a device, for example a terminal: /dev/zero never ends.
 inline constexpr std::uint64_t max_device_bytes = std::uint64_t(1) << 26;
 
-/// The bytes of one file, read only, for as long as the object lives.
+/// The bytes of one file, read only; valid during the object's lifetime.
 ///
-/// Ordinary files are mapped, so that their pages come and go as readers pass over them. The price is that a file cut
-/// short by another program during reading ends the process, as with every program that maps files; files below
-/// `mapping_threshold`, which are most of those that people edit, are copied.
+/// Ordinary files are mapped, so that the system loads and drops their pages as readers pass over them. A mapped file
+/// that another program cuts short during reading ends the process. Files below `mapping_threshold`, which include most
+/// that people edit, are copied.
 class InputFile {
  public:
   static constexpr std::uint64_t mapping_threshold = 1 << 16;
@@ -34,8 +34,7 @@ class InputFile {
 
   [[nodiscard]] std::span<const std::byte> bytes() const { return {data_.get(), size_}; }
 
-  /// Says that `part` of bytes() will hardly be read again, so that its memory can be used for something else.
-  /// Its contents stay valid.
+  /// Tells that `part` of bytes() will hardly be read again, so that its memory can be reused. Its contents stay valid.
   void release(std::span<const std::byte> part) const;
 
  private:
@@ -55,12 +54,13 @@ class InputFile {
   std::size_t size_ = 0;
 };
 
-/// Bytes as text, without a UTF-8 byte order mark at their start. Every reader of text takes its bytes through this.
+/// Bytes as text, without a UTF-8 byte order mark at their start. All readers of text call this function.
 [[nodiscard]] std::string_view text_of(std::span<const std::byte> bytes);
 
 /// \throws Error file_unreadable: "name: reason".
 [[noreturn]] void fail_to_read(const std::string& name, const std::string& reason);
-/// The same with the system's words for errno, which must not have changed since the call that failed.
+/// \throws Error file_unreadable with the system's text for errno. Precondition: errno is unchanged since the failed
+/// call.
 [[noreturn]] void fail_to_read_by_errno(const std::string& name, const char* doing);
 
 }  // namespace frontmost

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers as the bytes of binary files, little-endian whatever the machine is.
+// Numbers as bytes of binary files, little-endian on every machine.
 #pragma once
 
 #include <cstring>

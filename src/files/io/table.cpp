@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows go out in pieces, so that a long table is not held twice.
+// Rows are written in pieces, so that a long table is not held twice.
 #include <algorithm>
 #include <cstring>
 
@@ -22,7 +22,7 @@ void append_text(std::string& text, const TableColumn& column, std::size_t row) 
     text += shortest_text(std::get<std::vector<double>>(column.values)[row]);
 }
 
-/// Appends every row and writes what has come together.
+/// Appends each row, and writes the text whenever enough has collected.
 template <class Append>
 void write_rows(std::string text, std::size_t count, OutputFile& file, const Append& append) {
   for (std::size_t row = 0; row < count; ++row) {

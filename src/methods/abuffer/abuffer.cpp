@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// All lists of a view as one piece of data, and what they come to.
+// All lists of a view as one block of data, and their counts.
 //
-// Tiles finish in any order, and how long their lists are is not known before. So the lists of each tile are kept as
-// they are made, the beginnings of all pixels' lists are then the running sum of their lengths, and every part is
-// copied to where it belongs, on all threads.
+// Tiles finish in any order, and the lengths of their lists are not known before. So the lists of each tile are kept as
+// they are made. The running sum of their lengths then gives the beginnings of all pixels' lists, and all threads copy
+// the parts to their places.
 
 #include "frontmost/abuffer.h"
 

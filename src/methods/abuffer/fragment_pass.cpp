@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// One frame gone through several times: first to learn what is seen, then to paint it.
+// Traverses one frame several times: first to find what is seen, then to paint it.
 //
-// A fragment is left out of a list where something before it hides all of the pixel. Which fragments hide depends on
-// the opacities of materials alone, because colours are not known yet; a texture may still cut holes, so a blended
-// material hides nothing. Clear fragments hide together, once no more than a negligible share passes through all of
-// them.
+// A fragment is left out of a list if fragments before it hide all of the pixel. Which fragments hide depends on the
+// opacities of materials alone, because colours are not known yet. A texture may still cut holes, so a blended material
+// hides nothing. Clear fragments hide together, once only a negligible share passes through all of them.
 
 #include "abuffer/fragment_pass.h"
 
@@ -13,10 +12,11 @@
 namespace frontmost::abuffer_detail {
 namespace {
 
-/// Far below what rounding leaves of a sum of floats.
+/// Far below the rounding of a sum of floats.
 constexpr float kNegligible = 0x1p-40f;
 
-/// From sorted lists to the fragments that somebody may see: what is hidden in the whole pixel is left out.
+/// Extracts the fragments that may be seen from sorted lists: fragments that are hidden in the whole pixel are left
+/// out.
 class Lister {
  public:
   Lister(const SamplePattern& pattern, const GatherScratch& scratch, const Opacities& opacities, float negligible)
@@ -36,18 +36,18 @@ class Lister {
     float passes = 1;
     for (std::size_t i = 0; i < length && words[i * kGroup] != 0; ++i) {
       const std::uint32_t number = ~std::uint32_t(words[i * kGroup]);
-      // Masks may be empty here, though not where they were appended: holes have been taken out of them since.
+      // Masks were not empty when they were appended, but may have lost all samples to holes since.
       if (s_.nearest_of(number) < hidden || s_.arrived.mask(number) == 0) continue;
       add(number);
-      // At a single sample there is no part of a pixel: what comes first hides the rest.
+      // At a single sample no part of a pixel is left: the first opaque fragment hides the rest.
       if (pattern_.count == 1 && hides_rest(id_of(number), passes)) break;
     }
     lists_.begin.push_back(std::uint32_t(lists_.fragments.size()));
   }
 
  private:
-  /// Whether behind another fragment that covers the pixel nothing is seen, or next to nothing. `passes`: what all
-  /// before it let pass.
+  /// Whether nothing, or next to nothing, is seen behind a further fragment that covers the pixel. `passes` is the
+  /// share that all fragments before it let pass.
   [[nodiscard]] bool hides_rest(PrimitiveId id, float& passes) const {
     passes *= 1 - opacities_.least(id);
     return opacities_.is_opaque(id) || passes < negligible_;
@@ -56,13 +56,13 @@ class Lister {
 
   /// The key behind which nothing is seen anywhere in the pixel.
   [[nodiscard]] float hidden_behind(const std::uint64_t* words, std::size_t length) const {
-    // -1 hides nothing: keys of what is there are 0 or more.
+    // -1 hides nothing: keys of fragments are at least 0.
     float key = -1, passes = 1, farthest = std::numeric_limits<float>::infinity();
     if (pattern_.count == 1) return key;
     for (std::size_t i = 0; i < length && words[i * kGroup] != 0; ++i) {
       const std::uint32_t number = ~std::uint32_t(words[i * kGroup]);
       if (s_.arrived.mask(number) != pattern_.full()) continue;
-      // Clear ones hide only together, so only what is behind all of them.
+      // Clear fragments hide only together, and so only what is behind all of them.
       farthest = std::min(farthest, s_.farthest_of(number));
       if (hides_rest(id_of(number), passes))
         key = std::max(key, opacities_.is_opaque(id_of(number)) ? s_.farthest_of(number) : farthest);
@@ -96,14 +96,14 @@ std::vector<glm::vec4> channel_of(const FragmentColors& colors, int channel) {
   for (std::size_t i = 0; i < table.size(); ++i) {
     const float alpha = colors.alphas[i][channel];
     if (alpha < 0) continue;
-    // What the fragment adds stays what it is. Nothing hides nothing and adds nothing.
+    // The fragment's contribution stays the same. A fragment with alpha 0 hides nothing and adds nothing.
     table[i][channel] *= alpha > 0 ? table[i].a / alpha : 0.0f;
     table[i].a = alpha;
   }
   return table;
 }
 
-/// Tinted ones as three pictures, of one channel each.
+/// Composites tinted fragments as three pictures of one channel each.
 PaintedPixels composite(const CompositeInput& input, const Rectangle& pixels, const GatherScratch& fragments,
                         const FragmentColors& colors) {
   if (colors.alphas.empty()) return {composite_tile(input, pixels, fragments, colors.straight), {}};
@@ -159,8 +159,8 @@ void FragmentPass::paint(const Paint& paint, const Receive& receive, const Leave
   const CompositeInput input{frame_.pattern(), opacity_, execution.isa};
   const auto visit = [&](const Rectangle& pixels, const GatherScratch* fragments) {
     if (!fragments) return receive(pixels, nullptr);
-    // By number of arrival, as the compositor looks them up; fragments that are left out of the lists stay without
-    // effect.
+    // Colours are indexed by number of arrival, as the compositor reads them; fragments that the lists leave out have
+    // no effect.
     FragmentColors colors{std::vector<glm::vec4>(fragments->arrived.count, glm::vec4(0)), {}};
     paint(pixels, lists_of(pixels, *fragments, kNegligible), colors);
     const PaintedPixels painted = composite(input, pixels, *fragments, colors);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tile that holds too many fragments is thinned first, without copies that nobody sees, and then halved along both
-// axes until its parts have room; a part of one pixel always has. Parts are whole blocks of 4 x 4 pixels as long as
-// they can be, because lists are sorted block by block.
+// A tile that holds too many fragments is first thinned: invisible copies are left out. It is then halved along both
+// axes until its parts have room; a part of one pixel always has room. Parts are whole blocks of 4 x 4 pixels as long
+// as possible, because lists are sorted block by block.
 //
 //    64 x 64  --too much-->  copies out  --too much-->  four of 32 x 32  --too much-->  ...  --> one pixel
 #include "abuffer/prepared_frame.h"
@@ -14,7 +14,7 @@
 namespace frontmost::abuffer_detail {
 namespace {
 
-/// The view, when it and the options are in range.
+/// The view, if it and the options are in range.
 const View& valid(const View& view, const AbufferOptions& options) {
   validate(view);
   if (!(options.opacity >= 0.0f && options.opacity <= 1.0f))
@@ -22,18 +22,18 @@ const View& valid(const View& view, const AbufferOptions& options) {
   return view;
 }
 
-/// Light that passes below the surface, before any tint.
+/// The share of light that passes below the surface, before any tint.
 float limited_transmission(const Material& m) {
   if (m.unlit || !(m.transmission.factor > 0)) return 0;
   return std::min(m.transmission.factor, 1.0f) * (m.metallic > 0 ? 1 - std::min(m.metallic, 1.0f) : 1.0f);
 }
 
-/// Goes through the tiles of a frame on one thread.
+/// Visits the tiles of a frame on one thread.
 class TileVisitor {
  public:
   TileVisitor(GatherScratch& scratch, const PreparedFrame::Visit& visit) : scratch_(scratch), visit_(visit) {}
 
-  /// \returns false where the fragments of the rectangle are too many at once; then nothing is visited.
+  /// \returns false if the rectangle has too many fragments at once; then nothing is visited.
   [[nodiscard]] bool visit_whole(const GatherInput& frame, const GatherJob& job) {
     const Gathered gathered = gather_tile(frame, job, scratch_);
     if (gathered == Gathered::too_much) return false;
@@ -41,10 +41,10 @@ class TileVisitor {
     return true;
   }
 
-  /// The rectangle, or parts of it.
+  /// Visits the rectangle, or its parts.
   void visit_in_parts(const GatherInput& frame, const GatherJob& job) {
     if (visit_whole(frame, job)) return;
-    // Parts of whole groups of pixels as long as there are groups.
+    // Parts are whole groups of pixels as long as there are groups.
     const Rectangle& r = job.pixels;
     const auto half = [](int size) { return size > 4 ? (size / 2 + 3) / 4 * 4 : (size + 1) / 2; };
     const int w = half(r.width), h = half(r.height);
@@ -74,8 +74,8 @@ Opacities::Opacities(const Surfaces& surfaces, float opacity, const Execution& e
     differ = differ || by_material.back() != opacity;
   }
   if (!differ) return;
-  // Most scenes have one opacity for all and get here not at all: a number a primitive would be read for every
-  // fragment.
+  // Most scenes have one opacity for all primitives and do not get here: a number for each primitive would be read for
+  // every fragment.
   values_.assign(surfaces.primitive_count(), opacity);
   parallel_for(execution, scene.instances.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A view made ready for gathering, and gone through tile by tile; what materials say of primitives.
+// A view prepared for gathering and for visits tile by tile, and the opacities that materials give to primitives.
 //
-// Opacities are those of materials, before any texture: what can be seen through may be opaque where its texture says
-// so, but nothing may be left out because of it. Most scenes have one opacity for all, and then no number is kept for
-// any primitive.
+// Opacities come from materials, before any texture. A material that can be seen through may be opaque where its
+// texture says so, but nothing may be left out because of that. Most scenes have one opacity for all primitives, and
+// then no number is kept for any primitive.
 #pragma once
 
 #include <algorithm>
@@ -17,23 +17,23 @@
 
 namespace frontmost::abuffer_detail {
 
-/// By primitive, how far it hides what is behind.
+/// How much each primitive hides of the background.
 class Opacities {
  public:
   Opacities(const Surfaces& surfaces, float opacity, const Execution& execution);
 
   [[nodiscard]] float of(PrimitiveId id) const { return values_.empty() ? all_ : std::abs(values_[id]); }
-  /// What it hides at least, whatever its texture says.
+  /// The least opacity of the primitive, whatever its texture says.
   [[nodiscard]] float least(PrimitiveId id) const { return std::max(values_.empty() ? all_ : values_[id], 0.0f); }
-  /// Nothing is seen through it, whatever its texture says.
+  /// Whether nothing is seen through the primitive, whatever its texture says.
   [[nodiscard]] bool is_opaque(PrimitiveId id) const { return (values_.empty() ? all_ : values_[id]) >= 1.0f; }
 
  private:
   float all_;
-  std::vector<float> values_;  // none: all the same. Negative: 1, but a texture may cut holes into it
+  std::vector<float> values_;  // empty: all have all_. Negative: opacity 1, but a texture may cut holes
 };
 
-/// Of triangles at one place those in front of an opaque one, and it. As long as the opacities are where they are.
+/// A rule that keeps, of coincident triangles, those up to the first opaque one. Refers to the opacities.
 [[nodiscard]] inline CopyRule copy_rule(const Opacities& opacities) {
   return {[&opacities](PrimitiveId id) { return opacities.is_opaque(id); }};
 }
@@ -45,16 +45,16 @@ class PreparedFrame {
 
   [[nodiscard]] const SamplePattern& pattern() const { return pattern_; }
 
-  /// Takes a rectangle of the picture and its fragments; null where nothing is seen.
+  /// Takes a rectangle of the picture and its fragments; null if nothing is seen.
   using Visit = std::function<void(const Rectangle& pixels, GatherScratch* fragments)>;
-  /// Whether a tile is not to be visited; null: all are.
+  /// Whether a tile is to be skipped; null: no tile is.
   using LeaveOut = std::function<bool(const Rectangle& tile)>;
-  /// Calls `visit` for rectangles that make up the picture, in any order, from several threads at once. They are the
-  /// tiles that are not left out, and parts of those that have too many fragments: this is what bounds memory. `copies`
-  /// says what may be left out of such tiles. Fragments are in the order of arrival, and holes count as covered.
+  /// Calls `visit` for rectangles that make up the picture, in any order, from several threads at once: tiles that are
+  /// not left out, and, to bound memory, parts of tiles with too many fragments. `copies` says what may be left out of
+  /// such tiles. Fragments are in the order of arrival, and holes count as covered.
   void visit_tiles(const CopyRule& copies, const Visit& visit, const LeaveOut& leave_out,
                    const Execution& execution) const;
-  /// The same with fragments in sorted lists, without their holes.
+  /// visit_tiles() with fragments in sorted lists, without their holes.
   void visit_lists(const CopyRule& copies, const Visit& visit, const LeaveOut& leave_out,
                    const Execution& execution) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From lists of tiles, which come in any order, to the lists of a picture, pixel by pixel in one array.
+// From lists of tiles, which arrive in any order, to the lists of a picture, pixel by pixel in one array.
 //
 //    parts, as tiles end    [tile 5 | lists]  [tile 0 | lists]  [tile 2 | lists] ...
 //    first                  pixel 0: 0   pixel 1: 3   pixel 2: 3   ...   the running sum of all lengths
@@ -18,15 +18,15 @@ namespace frontmost::abuffer_detail {
 template <class T>
 struct TilePart {
   Rectangle pixels;
-  std::vector<std::uint32_t> begin;  ///< by pixel, row by row; and the end of the last
+  std::vector<std::uint32_t> begin;  ///< by pixel, row by row; then the end of the last list
   std::vector<T> items;
 };
 
-/// The parts of a picture as they are made. Every pixel is in one part at most.
+/// The parts of a picture, in the order of arrival. Every pixel is in at most one part.
 template <class T>
 class TileParts {
  public:
-  /// More than `most` items are an error of this place and reason.
+  /// More than `most` items cause an error with this place and reason.
   TileParts(const View& view, std::uint64_t most, const char* place, const char* reason)
       : view_(view), most_(most), place_(place), reason_(reason) {}
 
@@ -34,16 +34,17 @@ class TileParts {
   void add(TilePart<T> part) {
     const std::lock_guard lock(mutex_);
     item_count_ += part.items.size();
-    // Only here the sum is known. Parts before this one are held already, but each was bounded by what a tile may hold.
+    // The sum is known only here. The parts before this one are stored already, but each is bounded by the limit of a
+    // tile.
     if (item_count_ > most_) throw Error(ErrorCode::limit_exceeded, place_, reason_);
     parts_.push_back(std::move(part));
   }
 
-  /// By pixel of the picture, where its list begins; and the end of the last.
+  /// By pixel of the picture, the beginning of its list; then the end of the last list.
   [[nodiscard]] Buffer<std::uint64_t> beginnings() const;
 
-  /// Calls put(place, item) for every item of every part, each at its place behind `first`, which are the beginnings;
-  /// on all threads. Gives the memory of the parts back one by one.
+  /// Calls put(place, item) for every item of every part, on all threads; `first` holds the beginnings of the lists.
+  /// Frees the memory of the parts one by one.
   template <class Put>
   void place(const Buffer<std::uint64_t>& first, const Put& put, const Execution& execution) {
     constexpr std::size_t kGrain = 16;
@@ -76,7 +77,7 @@ Buffer<std::uint64_t> TileParts<T>::beginnings() const {
         const std::size_t at =
             std::size_t(part.pixels.y + y) * std::size_t(view_.width) + std::size_t(part.pixels.x + x);
         const std::size_t p = std::size_t(y) * std::size_t(part.pixels.width) + std::size_t(x);
-        // Lengths first, one place behind, then their sums: parts may come in any order.
+        // Lengths are stored one place further on, then summed: parts may come in any order.
         first[at + 1] = part.begin[p + 1] - part.begin[p];
       }
   for (std::size_t i = 0; i < view_.pixel_count(); ++i) first[i + 1] += first[i];
@@ -88,7 +89,7 @@ template <class Put>
 void TileParts<T>::place_part(const TilePart<T>& part, const Buffer<std::uint64_t>& first, const Put& put) const {
   const auto width = std::size_t(part.pixels.width);
   for (std::size_t y = 0; y < std::size_t(part.pixels.height); ++y) {
-    // The lists of a row are neighbours in both.
+    // The lists of a row are neighbours in both arrays.
     const std::size_t at = (std::size_t(part.pixels.y) + y) * std::size_t(view_.width) + std::size_t(part.pixels.x);
     std::uint64_t place = first[at];
     for (std::size_t i = part.begin[y * width]; i < part.begin[(y + 1) * width]; ++i) put(place++, part.items[i]);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layers: at every sample the nearest primitive, the second, and so on.
 //
-// Lists are sorted by the key at the centre of a pixel. At other samples the order may be another where triangles
-// cross, so with several samples each sample's list is sorted by the keys at that sample. Behind an opaque primitive
-// there is no layer: nobody sees what is there.
+// Lists are sorted by the key at the centre of a pixel. If triangles cross, the order at other samples may differ, so
+// with several samples each sample's list is sorted by the keys at that sample. There is no layer behind an opaque
+// primitive, as nobody sees it.
 
 #include <algorithm>
 
@@ -19,10 +19,10 @@ struct SeenSample {
   PrimitiveId id;
 };
 
-/// What one sample of a pixel sees, nearest first.
+/// The primitives that one sample of a pixel sees, nearest first.
 class SampleLists {
  public:
-  /// `most`: how many are wanted.
+  /// `most` is the number of layers.
   SampleLists(const SamplePattern& pattern, const GatherScratch& scratch, std::size_t most)
       : pattern_(pattern), s_(scratch), most_(most) {}
 
@@ -41,7 +41,7 @@ class SampleLists {
       // At a single sample the order is that of the lists.
       if (pattern_.count == 1 && seen_.size() == most_) return seen_;
     }
-    // Lists are sorted by the key at one place of the pixel; at other samples triangles that cross there change places.
+    // Lists are sorted by the key at one place of the pixel; triangles that cross change places at other samples.
     if (pattern_.count > 1)
       std::sort(seen_.begin(), seen_.end(),
                 [](const SeenSample& a, const SeenSample& b) { return a.key != b.key ? a.key > b.key : a.id < b.id; });
@@ -60,11 +60,11 @@ class SampleLists {
 std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, int count,
                                     const AbufferOptions& options, const Execution& execution) {
   if (count < 1 || count > 1024) throw Error(ErrorCode::bad_argument, "abuffer: layers", "must be 1 to 1024");
-  // Layers are Visibles, whose samples are the view's; a grid of the A-buffer's own would have no place in them.
+  // Layers are Visibles with the view's samples, and cannot hold a grid of the A-buffer's own.
   const PreparedFrame frame(surfaces, view, {0, options.opacity}, execution);
   const Opacities opacities(surfaces, options.opacity, execution);
   CopyRule copies = copy_rule(opacities);
-  // Of triangles at one place, those with as many before them everywhere are in no layer.
+  // A coincident triangle with `count` copies before it everywhere is in no layer.
   copies.most = std::size_t(count);
   std::vector<Visible> layers;
   for (int k = 0; k < count; ++k) layers.push_back(nothing_visible(view));
@@ -80,7 +80,7 @@ std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, 
             if (k == layers.size()) break;
             layers[k].primitives[at] = seen.id;
             layers[k++].keys[at] = seen.key;
-            // Nothing behind it is a layer: nobody can see it.
+            // Nobody sees anything behind an opaque primitive, so no layer follows.
             if (opacities.is_opaque(seen.id)) break;
           }
         }

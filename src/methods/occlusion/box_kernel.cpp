@@ -8,7 +8,7 @@
 
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After Highway: a block of its own.
+// The include follows Highway in a block of its own.
 #include "base/lane_types-inl.h"
 #include "base/lanes-inl.h"
 #include "occlusion/cell_rows-inl.h"
@@ -20,17 +20,17 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace frontmost::HWY_NAMESPACE;
 namespace {
 
-/// More than what rounding changes a sum of a few products by, of the sum of their absolute values.
+/// A bound of the rounding of a sum of a few products, relative to the sum of their absolute values.
 constexpr float kSlack = 1.0f / (1 << 20);
 
-/// A linear function of the place.
+/// A linear function of a position.
 struct Linear {
   std::array<float, 3> row;
   float offset;
 };
 
-// Corners beyond the floats are not numbers. Of one of these and a number some processors' Min gives the number; here
-// it is the second operand on all of them.
+// Corners beyond the range of floats are NaN. Of NaN and a number, Min gives the number on some processors; these
+// functions give the second operand on all.
 #if HWY_TARGET == HWY_NEON || HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
 HWY_INLINE VF MinOf(VF a, VF b) { return hn::IfThenElse(hn::Lt(a, b), a, b); }
 HWY_INLINE VF MaxOf(VF a, VF b) { return hn::IfThenElse(hn::Gt(a, b), a, b); }
@@ -39,9 +39,9 @@ HWY_INLINE VF MinOf(VF a, VF b) { return hn::Min(a, b); }
 HWY_INLINE VF MaxOf(VF a, VF b) { return hn::Max(a, b); }
 #endif
 
-/// What a linear function is at the corners of boxes.
+/// The values of a linear function at the corners of boxes.
 struct Terms {
-  VF low[3], high[3];  ///< each axis' part; the offset is in that of the first axis
+  VF low[3], high[3];  ///< terms of each axis; the first axis includes the offset
   VF slack;
 
   [[nodiscard]] HWY_INLINE VF Least() const { return Sum(Lesser(0), Lesser(1), Lesser(2)); }
@@ -56,7 +56,7 @@ struct Terms {
   [[nodiscard]] HWY_INLINE VF Greater(int axis) const { return MaxOf(low[axis], high[axis]); }
 };
 
-/// Boxes measured from the eye.
+/// Boxes relative to the eye.
 struct Boxes {
   VF low[3], high[3];
 
@@ -82,7 +82,7 @@ struct QuotientRange {
   VF least, greatest;
 };
 
-/// The quotient's least and greatest value over the corners, rounded outwards. Precondition: d is positive.
+/// The least and greatest quotient over the corners, rounded outwards. Precondition: d is positive.
 HWY_INLINE QuotientRange Divided(const Terms& x, const VF (&inverse)[8], VF d_slack) {
   QuotientRange e{hn::Mul(x.AtCorner(0), inverse[0]), hn::Mul(x.AtCorner(0), inverse[0])};
   VF greatest_inverse = inverse[0];
@@ -92,13 +92,13 @@ HWY_INLINE QuotientRange Divided(const Terms& x, const VF (&inverse)[8], VF d_sl
     e.greatest = MaxOf(e.greatest, at);
     greatest_inverse = MaxOf(greatest_inverse, inverse[corner]);
   }
-  // x and d may both be off by their slack.
+  // x and d may both be wrong by their slack.
   const VF farthest = MaxOf(hn::Abs(e.least), hn::Abs(e.greatest));
   const VF off = hn::Mul(hn::Add(x.slack, hn::Mul(farthest, d_slack)), hn::Mul(greatest_inverse, hn::Set(DF(), 1.01f)));
   return {hn::Sub(e.least, off), hn::Add(e.greatest, off)};
 }
 
-/// The half-open range of cells, clamped to the screen. `centre` is the image's, in 1/256 pixel.
+/// A half-open range of cells, clamped to the screen. `centre` is the image's, in 1/256 pixel.
 struct CellSpan {
   VI first, end;
 };
@@ -124,7 +124,7 @@ class BoxProjector {
     sides_[3] = Side(t.y_row, t.y_offset, -y);
   }
 
-  /// Of boxes [first, end), as far as they are lanes.
+  /// Finds boxes [first, end), at most a vector of them.
   HWY_INLINE void Find(std::size_t first, std::size_t end) const {
     const DF d;
     const DI di;
@@ -154,7 +154,7 @@ class BoxProjector {
       across = Divided(x, inverse, depth.slack);
       down = Divided(y, inverse, depth.slack);
     }
-    // So far away that floats overflow, nothing is known.
+    // Nothing is known of boxes so far away that floats overflow.
     const MF before_near = hn::Not(hn::Ge(nearest, hn::Set(d, t.near)));
     const MF known = hn::And(hn::Le(across.least, across.greatest), hn::Le(down.least, down.greatest));
     const CellSpan columns = CellsOf(grid_, across, t.centre_x, grid_.columns);
@@ -178,7 +178,7 @@ class BoxProjector {
   }
 
  private:
-  /// Negative outside of the side of the picture at `reach`: that of x + reach w, or of -x + |reach| w.
+  /// A function that is negative outside of the picture's side at `reach`: x + reach w, or -x + |reach| w.
   Linear Side(const std::array<float, 3>& row, float offset, float reach) const {
     const ScreenTransform& t = grid_.transform;
     const float sign = reach > 0 ? 1.0f : -1.0f, w = std::abs(reach) * 1.000001f + 256.0f;

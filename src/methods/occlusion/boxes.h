@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boxes on the screen: which cells they reach at most, and how near they come.
+// Boxes on the screen: the cells that they reach at most, and their nearest distance.
 #pragma once
 
 #include <array>
@@ -12,12 +12,12 @@
 
 namespace frontmost::occlusion_detail {
 
-/// The screen as cells.
+/// The screen, divided into cells.
 struct CellGrid {
   ScreenTransform transform;
   int columns, rows;
   float cells_per_unit;  ///< for 1/256 pixel
-  float margin;          ///< in cells: more than what snapping and rounding move a vertex by
+  float margin;          ///< in cells: more than snapping and rounding move a vertex
 
   CellGrid(const View& view, int cell);
 };
@@ -28,7 +28,7 @@ struct ItemRange {
   [[nodiscard]] std::uint32_t end() const { return first + count; }
 };
 
-/// Boxes as structure of arrays, which are longer than asked for, by empty boxes.
+/// Boxes as structure of arrays. Empty boxes pad the arrays to whole vectors.
 struct BoxColumns {
   static constexpr std::size_t most_lanes = 16;
   std::array<std::vector<float>, 3> low, high;
@@ -40,22 +40,22 @@ struct BoxColumns {
   [[nodiscard]] bool is_empty(std::size_t number) const { return low[0][number] > high[0][number]; }
 };
 
-/// Where a box is on the screen.
+/// The place of a box on the screen.
 struct ScreenBox {
-  CellRect rect;   ///< empty: outside of the viewing volume, or an empty box
-  float nearest;   ///< planar distance; -infinity of boxes that reach before the near plane
-  float farthest;  ///< likewise
+  CellRect rect;   ///< empty if the box is empty or outside of the viewing volume
+  float nearest;   ///< planar distance; -infinity if the box reaches before the near plane
+  float farthest;  ///< greatest planar distance
 };
 
-/// Puts boxes on the screen, rounded outwards everywhere; `out` is by number of box.
+/// Puts boxes on the screen, rounded outwards everywhere. `out` is indexed by number of box.
 void find_on_screen(const CellGrid& grid, const BoxColumns& boxes, const ItemRange& which, std::vector<ScreenBox>& out,
                     Isa isa);
 
-/// Whether all cells of a rectangle within the screen are covered by what lies nearer than a distance.
+/// Whether nearer triangles than a distance cover all cells of a rectangle within the screen.
 using CoverTest = bool (*)(const CellCover& cover, const CellRect& rect, float distance);
 [[nodiscard]] CoverTest cover_test(Isa isa);
 
-/// What is known of many boxes, of which there are as many sights.
+/// The sights of boxes, one each.
 void find_sights_of(const CellCover& cover, std::span<const ScreenBox> boxes, ObjectSight* sights, Isa isa);
 
 }  // namespace frontmost::occlusion_detail

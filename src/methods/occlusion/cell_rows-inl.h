@@ -32,10 +32,10 @@ HWY_INLINE hn::Vec<RowU> LowBits(hn::Vec<RowI> count) {
   return hn::IfThenElse(is_all, all, hn::Sub(hn::Shl(hn::Set(du, 1u), shift), hn::Set(du, 1u)));
 }
 
-/// The same for one.
+/// LowBits() of one count.
 inline std::uint32_t low_bits(int count) { return count >= 32 ? ~0u : (1u << count) - 1u; }
 
-/// Of a tile that begins at (x, y), the cells that lie within a rectangle which reaches into it.
+/// The cells of a tile, which begins at (x, y), within a rectangle. Precondition: the rectangle reaches into the tile.
 struct CellsWithin {
   std::uint32_t columns;
   int first_row, end_row;
@@ -44,7 +44,7 @@ struct CellsWithin {
       : columns(low_bits(std::min(rect.x1 - x, tile_columns)) & ~low_bits(std::max(rect.x0 - x, 0))),
         first_row(std::max(rect.y0 - y, 0)),
         end_row(std::min(rect.y1 - y, tile_rows)) {}
-  /// Those of the rows from `row` on.
+  /// The cells of a vector of rows from `row` on.
   [[nodiscard]] HWY_INLINE hn::Vec<RowU> operator()(int row) const {
     const RowU d;
     const RowI di;
@@ -64,14 +64,14 @@ HWY_INLINE bool HasAll(const std::uint32_t* rows, const CellRect& rect, int x, i
   return hn::AllTrue(d, hn::Eq(missing, hn::Zero(d)));
 }
 
-/// Whether all cells of a rectangle within the screen are covered by what lies nearer than `depth`.
+/// Whether nearer triangles than `depth` cover all cells of a rectangle within the screen.
 HWY_INLINE bool IsCovered(const CellCover& cover, const CellRect& rect, float depth) {
   const RowF d;
   const auto wanted = hn::Set(d, depth);
   const int first = rect.x0 / tile_columns, end = (rect.x1 - 1) / tile_columns + 1;
   for (int ty = rect.y0 / tile_rows; ty * tile_rows < rect.y1; ++ty) {
     const int row = ty * cover.covered.tiles_x();
-    // Most tiles within a rectangle that is covered are full.
+    // Most tiles within a covered rectangle are full.
     for (int tx = first; tx < end; tx += int(hn::Lanes(d))) {
       const auto is_full = hn::Lt(hn::LoadU(d, cover.full_depth.data() + row + tx), wanted);
       std::uint64_t others = BitsOf(d, hn::Not(is_full)) & low_bits(std::min(end - tx, 16));

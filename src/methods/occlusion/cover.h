@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which cells of the screen are covered, and how far away what covers them is at most.
+// Which cells of the screen are covered, and the greatest distance of their cover.
 //
 //    tile    32 x 16 cells, a bit each: row r of a tile is rows(tile)[r], its leftmost cell the lowest bit
-//    depth   of a tile: everything that covers a cell of it lies nearer
+//    depth   of a tile: everything that covers one of its cells lies nearer
 //
 // Coordinates are in cells from the screen's top left corner.
 #pragma once
@@ -19,11 +19,11 @@ namespace frontmost::occlusion_detail {
 
 inline constexpr int tile_columns = 32, tile_rows = 16;
 
-/// Half-open.
+/// A half-open rectangle of cells.
 struct CellRect {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   [[nodiscard]] bool is_empty() const { return x0 >= x1 || y0 >= y1; }
-  /// How many tiles it reaches into.
+  /// The number of tiles that the rectangle reaches into.
   [[nodiscard]] int tile_count() const {
     return ((x1 - 1) / tile_columns - x0 / tile_columns + 1) * ((y1 - 1) / tile_rows - y0 / tile_rows + 1);
   }
@@ -32,7 +32,7 @@ struct CellRect {
 /// A bit for every cell.
 class CellBits {
  public:
-  /// All zero.
+  /// Sets the size, and all bits to zero.
   void begin(int columns, int rows) {
     tiles_x_ = (columns + tile_columns - 1) / tile_columns;
     tiles_y_ = (rows + tile_rows - 1) / tile_rows;
@@ -50,12 +50,12 @@ class CellBits {
   Buffer<std::uint32_t> rows_;
 };
 
-/// What is covered so far. A tile in which nothing is has the depth -infinity.
+/// The cover so far. A tile without covered cells has the depth -infinity.
 struct CellCover {
   int columns = 0, rows = 0;
   CellBits covered;
   std::vector<float> depth;  ///< by tile
-  /// By tile: the same where every cell of it is covered, else infinity; and some more, for whole vectors.
+  /// By tile: its depth if every cell of the tile is covered, else infinity. A few more entries fill whole vectors.
   std::vector<float> full_depth;
 
   void begin(int its_columns, int its_rows) {

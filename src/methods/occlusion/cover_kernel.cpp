@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles and segments as rows of cells, a tile's rows at a time.
+// Triangles and segments as rows of cells, several rows of a tile at a time.
 
 #include "occlusion/occluder.h"
 
@@ -9,7 +9,7 @@
 
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After Highway: a block of its own.
+// The include follows Highway in a block of its own.
 #include "occlusion/cell_rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,7 +26,7 @@ struct CellPoint {
   float x, y;
 };
 
-/// The cells of some rows, as the first and the one behind the last.
+/// The cells of some rows, as half-open ranges.
 struct RowCells {
   VF first, end;
   MF counts;
@@ -62,7 +62,7 @@ HWY_INLINE void ForRows(const CellRect& rect, const Visit& visit) {
     visit(row, hn::Add(hn::Iota(d, 0.5f), hn::Set(d, float(row))));
 }
 
-/// One side of a triangle, of which the surface lies on the one hand.
+/// The line of a triangle's left or right side.
 struct SideLine {
   float x, y, slope;
   [[nodiscard]] HWY_INLINE VF At(VF row) const {
@@ -87,7 +87,7 @@ HWY_INLINE void ReachTriangle(const CellPoint (&corners)[3], const CellRect& rec
     const float rise = q.y - p.y;
     if (rise == 0) continue;
     const SideLine line{p.x, p.y, (q.x - p.x) / rise};
-    // y goes down: what turns clockwise goes down on its right.
+    // y goes down, so the right sides of a clockwise triangle go down.
     if (rise > 0) {
       right[right_count++] = line;
     } else {
@@ -112,7 +112,7 @@ HWY_INLINE void EndAtSegment(CellPoint a, CellPoint b, float margin, const CellR
   const float low_x = std::min(a.x, b.x), high_x = std::max(a.x, b.x), rise = b.y - a.y;
   const CellRect box = Within(rect, low_x - margin, a.y - margin, high_x + margin, b.y + margin);
   if (box.is_empty()) return;
-  // Rows are no farther off than 16384, where floats are this close.
+  // Rows go up to 16384, where floats are this precise.
   constexpr float rounding = 1.0f / 512;
   const bool is_level = rise < 0.01f;
   const SideLine line{a.x, a.y, is_level ? 0.0f : (b.x - a.x) / rise};
@@ -132,7 +132,7 @@ HWY_INLINE void EndAtSegment(CellPoint a, CellPoint b, float margin, const CellR
   });
 }
 
-/// What of an object turns one way.
+/// The triangles of an object that turn one way.
 class OneSide {
  public:
   OneSide(const OccluderPass& over, ScreenTurn turn, CoverScratch& scratch)
@@ -142,7 +142,7 @@ class OneSide {
         triangles_(over.occluder.mesh.triangles.data() + over.occluder.part.first_triangle),
         neighbours_(over.occluder.mesh.neighbours.data() + over.occluder.part.first_triangle) {}
 
-  /// \returns whether there is anything.
+  /// \returns whether any triangle counts.
   bool Reach() {
     bool any = false;
     if (const ChosenTriangles* const chosen = in_.pass.chosen) {
@@ -162,7 +162,7 @@ class OneSide {
     if (in_.on_screen.triangles[t].turn != turn_) return false;
     return !chosen || chosen->marks[t] == chosen->mark;
   }
-  /// \returns whether it counts.
+  /// \returns whether the triangle counts.
   bool ReachWhole(std::uint32_t t) {
     if (!Counts(t)) return false;
     const glm::uvec3& c = triangles_[t];
@@ -194,16 +194,16 @@ class OneSide {
     EndAtSegment(a, b, in_.grid.margin, in_.pass.rect, scratch_.ends);
   }
 
-  /// \returns whether it counts.
+  /// \returns whether the triangle counts.
   bool ReachCut(const ClippedTriangle& cut, const ScreenTransform& screen) {
     if (!Counts(cut.triangle)) return false;
     const ClippedPolygon& polygon = cut.polygon;
     const auto at = [&](int i) { return Placed(polygon.corners[std::size_t(i)].x, polygon.corners[std::size_t(i)].y); };
     for (int i = 2; i < polygon.count; ++i) ReachTurned(at(0), at(i - 1), at(i));
-    // What keys at the near and at the far plane are at least and at most, however they are rounded.
+    // The least key at the near plane and the greatest at the far plane, however keys are rounded.
     const float nearest_key = 0.999999f,
                 farthest_key = screen.orthographic ? 0.000001f : screen.near / screen.far * 1.000001f;
-    // The near and the far plane end it; so do the sides of the guard band, but they lie beyond the picture.
+    // The near and far planes make ends. The sides of the guard band need none, as they lie beyond the picture.
     for (int i = 0; i < polygon.count; ++i) {
       const int next = i + 1 == polygon.count ? 0 : i + 1;
       const float key = polygon.corners[std::size_t(i)].key, next_key = polygon.corners[std::size_t(next)].key;
@@ -239,8 +239,8 @@ HWY_INLINE void ForTiles(const CellRect& rect, int tiles_x, Rows* solid, const V
       visit(ty * tiles_x + tx, CellsWithin(rect, tx * tile_columns, ty * tile_rows), solid);
 }
 
-/// Moves what is reached and has no ends to `solid`, and clears both.
-/// \returns whether something is near a cell that is not covered.
+/// Moves cells that are reached and have no ends to `solid`, and clears both. \returns whether a cell that is reached
+/// or has ends is not covered.
 bool Settle(const CellRect& rect, CoverScratch& scratch, const CellCover& cover, std::uint32_t* solid) {
   const RowU d;
   auto open = hn::Zero(d);

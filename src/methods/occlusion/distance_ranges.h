@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers for planar distances, so that things can be put in order by counting: the farther, the greater or the same.
+// Numbers for planar distances, so that counting can sort by distance: a farther distance has an equal or greater
+// number.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +17,8 @@ class DistanceRanges {
   static constexpr int most = 4096;
 
   DistanceRanges() = default;
-  /// Of distances from `least` to `greatest`, positive in perspective, where farther ranges are longer; in parallel
-  /// projection all are of one length. What is beyond has the first or the last number.
+  /// Ranges of the distances from `least` to `greatest`. In perspective distances must be positive, and farther ranges
+  /// are longer; in parallel projection all ranges have one length. Distances beyond have the first or the last number.
   DistanceRanges(bool orthographic, float least, float greatest) : orthographic_(orthographic), least_(least) {
     if (!(least < greatest)) return;
     if (orthographic) {
@@ -33,15 +34,15 @@ class DistanceRanges {
   [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] int operator()(float distance) const {
     if (!(distance > least_)) return 0;
-    // The limit comes first, so that it is taken where distances overflow and their share is not a number.
+    // min() takes the limit first, and so returns it if the distance overflows and its share is NaN.
     if (orthographic_) return int(std::min(float(count_ - 1), (distance - least_) * per_unit_));
-    // Positive floats are in the order of their bits, which grow as a logarithm does.
+    // Positive floats are in the order of their bits, which grow like a logarithm.
     const std::uint32_t bits = bits_of(distance) - bits_of(least_);
     return std::min(int(bits >> shift_), count_ - 1);
   }
-  /// No distance that has this number or a greater one is nearer. For numbers from 0 to count().
+  /// A lower bound of all distances with this number or a greater one, for numbers from 0 to count().
   [[nodiscard]] float least_of(int number) const {
-    // One step nearer than where the rounding of operator() may put the border.
+    // One step nearer than the rounding of operator() may put the border.
     if (orthographic_) return per_unit_ > 0 ? least_ + (float(number) - 0.01f) / per_unit_ : least_;
     return from_bits(bits_of(least_) + (std::uint32_t(number) << shift_));
   }

@@ -6,13 +6,13 @@
 namespace frontmost::occlusion_detail {
 namespace {
 
-/// Triangles are cut so often for one object at most; where that does not do, none is cut.
+/// At most so many cuts are made for one object; no triangle is cut if more would be needed.
 constexpr std::size_t kMostCuts = 1 << 13;
 
-/// Triangles that begin so many slabs before that of their farthest corner, and reach so many cells across and down,
-/// are worth cutting.
+/// A triangle is worth cutting if it begins so many slabs before the slab of its farthest vertex, and reaches so many
+/// cells across and down.
 constexpr int kLeastSlabs = 12, kLeastCells = 8;
-/// They are cut for every third slab, and for none that is nearer than a sixty-fourth of the object's farthest end.
+/// Triangles are cut for every third slab, except slabs nearer than a sixty-fourth of the object's farthest end.
 constexpr int kSlabsBetweenCuts = 3, kMostSlabs = 36;
 
 bool is_cut_for(int slab) { return slab % kSlabsBetweenCuts == 0; }
@@ -32,7 +32,7 @@ class ScreenExtent {
   void include(const ClippedPolygon& polygon) {
     for (int i = 0; i < polygon.count; ++i) include(polygon.corners[std::size_t(i)]);
   }
-  /// As cells within a rectangle.
+  /// The cells of the extent within a rectangle.
   [[nodiscard]] CellRect cells(const CellGrid& grid, const CellRect& rect) const {
     if (low_.x > high_.x) return {};
     const auto cell = [&](std::int32_t v, std::int32_t centre) {
@@ -64,14 +64,14 @@ void LongObject::sort_by_slab(const CellGrid& grid, const HidingObject& occluder
     ++slab_begin_[slab + 2];
   }
   for (std::size_t s = 2; s < slab_begin_.size(); ++s) slab_begin_[s] += slab_begin_[s - 1];
-  // Each slab's begin moves to its end, which is where the next one begins.
+  // Filling moves each slab's beginning to its end, which is where the next slab begins.
   by_slab_.resize(count);
   for (std::uint32_t t = 0; t < count; ++t) by_slab_[slab_begin_[std::size_t(slabs_[t]) + 1]++] = t;
   marks_.assign(count, 0);
   find_reaching(grid, occluder, range_of, slabs);
 }
 
-/// What is nearer than a slab's far side lies in ranges before those behind the slab, however it is rounded.
+/// Finds far sides such that nearer points certainly lie in ranges before those behind the slab, despite rounding.
 void LongObject::find_far_sides(const CellGrid& grid, const DistanceRanges& range_of, const Slabs& slabs) {
   float rounding = 0;
   for (const glm::vec3& world : on_screen.world) {
@@ -132,7 +132,7 @@ CoverPass LongObject::choose(const CellGrid& grid, const HidingObject& occluder,
   const std::size_t cut_by_slab = cut_.size();
   for (auto t = begin; t != end; ++t) choose_around(occluder, slab, *t);
   for (std::size_t i = 0; i < cut_by_slab; ++i) choose_around(occluder, slab, cut_[i].triangle);
-  // What the view cuts, too, is not whole.
+  // Triangles that the view cuts are not whole either.
   const auto is_cut = [&](std::uint32_t t) { return on_screen.triangles[t].is_cut; };
   if (!on_screen.cut.empty()) whole_.erase(std::remove_if(whole_.begin(), whole_.end(), is_cut), whole_.end());
   for (const ClippedTriangle& cut : on_screen.cut)
@@ -145,7 +145,7 @@ CoverPass LongObject::choose(const CellGrid& grid, const HidingObject& occluder,
   return {.rect = rect_of_chosen(grid, occluder, rect), .distance = farthest, .chosen = &chosen_};
 }
 
-/// Triangles that reach through a slab.
+/// Chooses triangles that reach through a slab.
 void LongObject::choose_cut(const HidingObject& occluder, int slab) {
   if (!(screen_->far > screen_->near)) return;
   for (const Reaching& r : reaching_) {
@@ -159,7 +159,8 @@ void LongObject::choose_cut(const HidingObject& occluder, int slab) {
   }
 }
 
-/// Those of nearer slabs that share a vertex with a triangle where its neighbours are not of the slab.
+/// Chooses triangles of nearer slabs that share a vertex with `triangle`, at edges whose neighbours are not of the
+/// slab.
 void LongObject::choose_around(const HidingObject& occluder, int slab, std::uint32_t triangle) {
   const std::uint32_t first = occluder.part.first_triangle;
   const auto mark = std::uint16_t(slab + 1);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// An object that reaches far into depth, such as the walls around the eye. It would cover nothing before the sweep has
-// passed its far end, so it covers slab by slab:
+// An object that reaches far into depth, such as the walls around the eye. As a whole it would cover nothing before the
+// sweep has passed its far end, so it covers slab by slab:
 //
-//    eye  |  slab 0  |  slab 1  |  slab 2  |        a triangle is of the slab in which its farthest corner lies
+//    eye  |  slab 0  |  slab 1  |  slab 2  |        a triangle belongs to the slab of its farthest vertex
 //         \___________/\_________/\________/
 //
-// Where two slabs meet, each has an end, and the cells along it would stay open. So a slab covers together with those
-// triangles of nearer slabs that share a vertex with it: then the end lies within what is covered already.
+// The object has ends at the border of two slabs, and cells along the border would stay open. So a slab covers together
+// with the triangles of nearer slabs that share a vertex with it; its ends then lie within covered cells.
 //
-// A triangle that itself reaches through several slabs, as one of two that are a whole floor, covers in every third
-// of these as far as the slab's far side, where it is cut as by a far plane.
+// A triangle that reaches through several slabs, such as half of a floor, covers in every third of these slabs, as far
+// as the slab's far side, which cuts it like a far plane.
 #pragma once
 
 #include <optional>
@@ -22,7 +22,7 @@ namespace frontmost::occlusion_detail {
 
 class LongObject {
  public:
-  /// To be filled by put_on_screen() before the rest.
+  /// The object's triangles on the screen. Filled by put_on_screen() first.
   OccluderOnScreen on_screen;
 
   /// Ranges [first, last] in slabs of `length` ranges each.
@@ -30,7 +30,7 @@ class LongObject {
     int first, last, length;
     [[nodiscard]] int count() const { return (last - first) / length + 1; }
     [[nodiscard]] int of(int range) const { return (std::clamp(range, first, last) - first) / length; }
-    /// The first range that lies behind all of a slab.
+    /// The first range that lies wholly behind a slab.
     [[nodiscard]] int behind(int slab) const { return std::min(first + (slab + 1) * length, last + 1); }
   };
 
@@ -38,7 +38,7 @@ class LongObject {
   void sort_by_slab(const CellGrid& grid, const HidingObject& occluder, const DistanceRanges& range_of,
                     const Slabs& slabs);
   [[nodiscard]] bool has_triangles(int slab) const;
-  /// What is to cover for a slab, within `rect`. Borrows from this object until the next call.
+  /// The triangles that cover for a slab, within `rect`. Borrows from this object until the next call.
   [[nodiscard]] CoverPass choose(const CellGrid& grid, const HidingObject& occluder, int slab, const CellRect& rect);
 
  private:
@@ -54,13 +54,13 @@ class LongObject {
   void choose_around(const HidingObject& occluder, int slab, std::uint32_t triangle);
   [[nodiscard]] CellRect rect_of_chosen(const CellGrid& grid, const HidingObject& occluder, const CellRect& rect) const;
 
-  std::vector<float> far_sides_;           ///< by slab; of the last one infinity
+  std::vector<float> far_sides_;           ///< by slab; infinity for the last slab
   std::vector<std::uint16_t> slabs_;       ///< by triangle
   std::vector<std::uint32_t> by_slab_;     ///< triangles in the order of their slabs
   std::vector<std::uint32_t> slab_begin_;  ///< within by_slab_; one more than slabs
   std::vector<Reaching> reaching_;
   int first_reached_ = 0;  ///< the first slab in which a reaching triangle begins
-  // Of a slab.
+  // State of the current slab.
   std::vector<std::uint32_t> whole_;
   std::vector<ClippedTriangle> cut_;
   std::vector<std::uint16_t> marks_;  ///< by triangle: 1 + the last slab that it was chosen for

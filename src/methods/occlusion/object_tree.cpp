@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kLevels = 10, kSizeBits = 2;
 
-/// Places on D. Hilbert's curve, by size: one large object in a group of small ones would spoil it.
+/// Places on D. Hilbert's curve, by size first: a large object would spoil the box of a group of small objects.
 class ObjectCurve {
  public:
   explicit ObjectCurve(std::span<const Box> boxes) {
@@ -29,7 +29,7 @@ class ObjectCurve {
     const glm::dvec3 at = ((glm::dvec3(box.low) + glm::dvec3(box.high)) * 0.5 - low_) * (kSteps / extent_);
     std::uint32_t morton = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      // Of boxes that reach to infinity this is NaN.
+      // NaN if boxes reach to infinity.
       const auto step = std::uint32_t(at[axis] > 0.0 ? std::min(at[axis], kSteps) : 0.0);
       for (int bit = 0; bit < kLevels; ++bit) morton |= (step >> bit & 1) << (3 * bit + axis);
     }

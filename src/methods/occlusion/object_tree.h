@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects in groups, and these in groups: what is hidden or outside together is told at once.
+// A tree of objects, in groups of groups: objects that are hidden or outside together are tested at once.
 //
 //    level 2                  [ 34 ]                     Items have numbers: first the objects, in an order in which
-//    level 1       [ 32 ]               [ 33 ]           neighbours in space follow each other; then groups of 16 of
-//    level 0    [0][1]...[15]     [16][17]...[31]        them, then groups of 16 of these, up to one of all.
+//    level 1       [ 32 ]               [ 33 ]           neighbours in space follow each other; then groups of 16
+//    level 0    [0][1]...[15]     [16][17]...[31]        objects, then groups of 16 groups, up to one group of all.
 //
-// An item's box holds all that is below it.
+// The box of an item holds all items below it.
 #pragma once
 
 #include <span>
@@ -17,18 +17,18 @@ namespace frontmost::occlusion_detail {
 
 class ObjectTree {
  public:
-  /// A group has as many; and where a search begins, there are at most so many items.
+  /// The items in a group, and the most items at which a search begins.
   static constexpr std::uint32_t group_size = 16, most_on_top = 64;
 
   ObjectTree() = default;
   /// O(objects).
   explicit ObjectTree(std::span<const Box> boxes, std::size_t its_most_on_top = most_on_top);
 
-  /// What moves is counted as such by refit() only.
+  /// Sets the box of an object. Call refit() after all moves.
   void move(std::uint32_t object, const Box& box);
-  /// Makes all boxes hold what has moved. O(moved x levels).
+  /// Makes the boxes of all groups hold the moved objects. O(moved x levels).
   void refit();
-  /// Whether so much has moved that another order may be better.
+  /// Whether so many objects have moved that a new order may be better.
   [[nodiscard]] bool is_worn() const { return moves_ > 4 * objects_.size(); }
 
   [[nodiscard]] const BoxColumns& boxes() const { return boxes_; }  ///< by item
@@ -39,9 +39,9 @@ class ObjectTree {
   [[nodiscard]] std::uint32_t object(std::uint32_t item) const { return objects_[item]; }
   /// The items of a group. Precondition: not is_object(item).
   [[nodiscard]] ItemRange items_of(std::uint32_t item) const;
-  /// The objects that are the item or below it, as a range of items.
+  /// The objects at or below the item, as a range of items.
   [[nodiscard]] ItemRange objects_of(std::uint32_t item) const;
-  /// The item that holds all. Precondition: there are objects.
+  /// The item that holds all objects. Precondition: there are objects.
   [[nodiscard]] std::uint32_t root() const { return first_.back() - 1; }
 
  private:
@@ -50,7 +50,7 @@ class ObjectTree {
 
   std::vector<std::uint32_t> objects_;   ///< by item
   std::vector<std::uint32_t> items_;     ///< by object
-  std::vector<std::uint32_t> first_{0};  ///< item of each level; at the end, the number of items
+  std::vector<std::uint32_t> first_{0};  ///< first item of each level; then the number of items
   BoxColumns boxes_{0};
   ItemRange top_;
   std::vector<std::uint32_t> moved_;

@@ -17,8 +17,7 @@ std::int64_t twice_area(const Corner& a, const Corner& b, const Corner& c) {
   return std::int64_t(b.x - a.x) * (c.y - a.y) - std::int64_t(c.x - a.x) * (b.y - a.y);
 }
 
-/// Whether corners that are up to two steps elsewhere, more than what snapping and rounding move them by, turn the same
-/// way.
+/// Whether a triangle keeps its turn if its corners move by up to two steps, more than snapping and rounding move them.
 template <class Corner>
 bool is_turn_certain(const Corner& a, const Corner& b, const Corner& c) {
   const std::int64_t reach =
@@ -26,7 +25,7 @@ bool is_turn_certain(const Corner& a, const Corner& b, const Corner& c) {
   return std::abs(twice_area(a, b, c)) > 4 * reach + 32;
 }
 
-/// Whether what has no area on the screen has a triangle with area beyond each side.
+/// Whether each triangle without area on the screen has triangles with area beyond all its sides.
 bool lies_along_others(const HidingObject& occluder, const OccluderOnScreen& on_screen) {
   const std::uint32_t first = occluder.part.first_triangle;
   for (std::uint32_t t = 0; t < on_screen.triangles.size(); ++t) {

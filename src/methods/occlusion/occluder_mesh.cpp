@@ -12,7 +12,7 @@
 namespace frontmost::occlusion_detail {
 namespace {
 
-/// What has holes is told by Cutouts.
+/// Holes are not counted here: Cutouts knows them.
 bool is_see_through(const Scene& scene, std::uint32_t material) {
   return material < scene.materials.size() && scene.materials[material].is_see_through();
 }
@@ -23,7 +23,7 @@ struct WeldedTriangle {
   glm::uvec3 corners;
   std::uint32_t part;
   bool hides;
-  bool is_flat;  ///< two corners lie at one place, so that it is not seen
+  bool is_flat;  ///< two corners coincide, so that it is not seen
   bool is_double_sided;
 };
 
@@ -45,7 +45,7 @@ std::vector<WeldedTriangle> seen_triangles(const PlacedScene& placed, std::uint3
   return seen;
 }
 
-/// Numbers the parts in the order of their first triangles. \returns how many there are.
+/// Numbers the connected parts in the order of their first triangles. \returns how many there are.
 std::uint32_t tell_parts_apart(std::size_t vertex_count, std::vector<WeldedTriangle>& triangles) {
   DisjointSets together(vertex_count);
   for (const WeldedTriangle& t : triangles) {
@@ -62,7 +62,7 @@ std::uint32_t tell_parts_apart(std::size_t vertex_count, std::vector<WeldedTrian
   return count;
 }
 
-/// Halves triangles by their middles along the longest side of these, until clusters are small enough.
+/// Halves triangles by their centres along the longest axis of the centres' box, until clusters are small enough.
 class ClusterCutter {
  public:
   ClusterCutter(const std::vector<glm::vec3>& positions, std::vector<WeldedTriangle>& triangles)
@@ -102,10 +102,10 @@ class ClusterCutter {
   std::uint32_t count_ = 0;
 };
 
-/// By part, the triangles that hide and have a vertex with it in common, and are not of it. Each once, in order.
+/// By part, the hiding triangles of other parts that share a vertex with it, each once and in order.
 std::vector<std::vector<std::uint32_t>> touching(std::size_t vertex_count, const std::vector<WeldedTriangle>& triangles,
                                                  std::size_t part_count) {
-  // Parts of each vertex: few have more than one.
+  // Parts of each vertex: most vertices have one.
   std::vector<std::vector<std::uint32_t>> parts_of(vertex_count);
   for (const WeldedTriangle& t : triangles)
     for (int k = 0; k < 3; ++k) {
@@ -158,7 +158,7 @@ class PartWriter {
       part.bounds.include(positions_[vertex]);
       if (!seen_[triangle].hides) continue;
       std::uint32_t& number = number_[vertex];
-      if (number == no_index || number < part.first_vertex) {  // not yet, or in another part
+      if (number == no_index || number < part.first_vertex) {  // not written yet, or in another part
         number = std::uint32_t(out_.positions.size());
         out_.positions.push_back(positions_[vertex]);
         ++part.vertex_count;
@@ -173,7 +173,7 @@ class PartWriter {
   const std::vector<glm::vec3>& positions_;
   const std::vector<WeldedTriangle>& seen_;
   OccluderMesh& out_;
-  std::vector<std::uint32_t> number_;  ///< by vertex, the last that it was written as
+  std::vector<std::uint32_t> number_;  ///< by vertex, its last number in the output
 };
 
 /// By triangle and side, the only other triangle there, if it is wound alike.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The triangles of a mesh that hide what lies behind them, and which of them meet at an edge.
+// The triangles of a mesh that hide things behind them, and which of them meet at an edge.
 //
-//         c          Neighbours are told by triangle and edge: neighbours[t][k] lies beyond the edge from
-//        / \         corner k to the next one. There is none where an edge has one triangle, more than
-//     2 /   \ 1      two, or two that run along it the same way: at such edges the surface ends, as far
-//      a-----b       as hiding is concerned.
+//         c          neighbours[t][k] is the triangle beyond the edge of triangle t from vertex k to the next one.
+//        / \         An edge has no neighbour if it has one triangle, more than two, or two that run along it in
+//     2 /   \ 1      the same direction: at such edges the surface ends, as far as hiding is concerned.
+//      a-----b
 //         0
 #pragma once
 
@@ -15,26 +15,27 @@
 
 namespace frontmost::occlusion_detail {
 
-/// Consecutive triangles, and the consecutive vertices that they alone use. Those of a cluster are followed by the
-/// triangles of others that touch it: where it ends, it would else leave a row of cells open beside the next one.
+/// Consecutive triangles, and the consecutive vertices that only they use. After a cluster's own triangles come
+/// triangles of other clusters that touch it: without them, the cluster would leave a row of cells open beside the next
+/// one.
 struct OccluderPart {
   std::uint32_t first_triangle = 0, triangle_count = 0;
   std::uint32_t first_vertex = 0, vertex_count = 0;
-  bool is_whole = true;   ///< all triangles of the mesh's part are there: none hides nothing
+  bool is_whole = true;   ///< no triangle of the mesh's part is missing for hiding nothing
   bool is_closed = true;  ///< every side of a triangle has a neighbour
-  bool has_double_sided = false, has_one_sided = false;  ///< whether the mesh's part has triangles of such materials
-  Box bounds;                      ///< of all triangles of the mesh's part, and of those that touch it and hide
-  std::vector<std::uint32_t> own;  ///< its triangles, as numbers in the mesh: those with finite corners
+  bool has_double_sided = false, has_one_sided = false;  ///< whether the mesh's part has such triangles
+  Box bounds;                      ///< of all triangles of the mesh's part, and of hiding triangles that touch it
+  std::vector<std::uint32_t> own;  ///< its triangles with finite vertices, by number in the mesh
 };
 
 struct OccluderMesh {
-  std::vector<glm::vec3> positions;  ///< each place once
+  std::vector<glm::vec3> positions;  ///< each position once
   std::vector<glm::uvec3> triangles;
   std::vector<glm::uvec3> neighbours;
   std::vector<OccluderPart> parts;  ///< at least one
 
-  /// Calls visit(triangle) for those that are reached from a triangle by going around a corner of it from neighbour to
-  /// neighbour, at most `most_around` each way.
+  /// Calls visit(triangle) for the triangles around a corner of a triangle, from neighbour to neighbour, at most
+  /// `most_around` each way.
   template <class Visit>
   void visit_around(std::uint32_t triangle, int corner, const Visit& visit) const;
   static constexpr int most_around = 32;
@@ -58,11 +59,11 @@ void OccluderMesh::visit_around(std::uint32_t triangle, int corner, const Visit&
   if (!walk(true)) walk(false);
 }
 
-/// Of the mesh of an instance. One part, or one for each that hangs together, or for each cluster. O(triangles), or
-/// O(triangles log triangles) where there are several.
+/// The occluder mesh of an instance. It has one part, or one for each connected part, or one for each cluster.
+/// O(triangles), or O(triangles log triangles) with several parts.
 [[nodiscard]] OccluderMesh occluder_mesh(const PlacedScene& placed, std::uint32_t instance, ObjectUnit unit);
 
-/// Of a cluster, at most.
+/// The most triangles of a cluster.
 inline constexpr std::size_t most_in_cluster = 128;
 
 }  // namespace frontmost::occlusion_detail

@@ -12,7 +12,7 @@ namespace {
 
 using namespace occlusion_detail;
 
-/// A box that holds what the transform makes of `box`, with positions rounded as everywhere.
+/// A box that holds the transformed `box`, with positions rounded like vertices.
 Box world_box(const glm::dmat4& world_from_mesh, const Box& box) {
   Box world;
   if (box.is_empty()) return world;
@@ -76,17 +76,17 @@ struct Occlusion::State {
 
   const Surfaces& surfaces;
   ObjectUnit unit;
-  std::uint64_t moves;  ///< of the surfaces that the tree has followed
+  std::uint64_t moves;  ///< moves of the surfaces that the tree has followed
   std::vector<OccluderMesh> meshes;
   std::vector<CulledObject> objects;
-  std::vector<std::uint32_t> first_objects;  ///< by instance, and their number at the end
+  std::vector<std::uint32_t> first_objects;  ///< by instance; then the number of objects
   ObjectTree tree;
 
-  // Of the last view.
+  // Result of the last view.
   std::optional<CellGrid> grid;
   std::vector<ObjectSight> sights;
   CellCover cover;
-  // Boxes that are asked for, a block at a time.
+  // Boxes of queries, a block at a time.
   static constexpr std::size_t most_asked = 512;
   BoxColumns asked{most_asked};
   std::vector<ScreenBox> asked_on_screen = std::vector<ScreenBox>(most_asked);

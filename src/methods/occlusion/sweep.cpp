@@ -7,17 +7,17 @@
 namespace frontmost::occlusion_detail {
 namespace {
 
-/// Slabs are so many times shorter than the way to what is twice as far; what is no longer than four of them has none.
+/// A slab is so many times shorter than the ranges to twice the distance. Objects no longer than four slabs have none.
 constexpr int kSlabsOfDouble = 6, kShortSlabs = 4;
 
-/// Whether the cells that an object covers are worth the time to find them: hardly a cell lies within an object that
-/// has a triangle for every two of its cells and more.
+/// Whether finding the object's covered cells is not worth the time: an object with more than a triangle for every two
+/// cells has hardly any cell without ends.
 bool is_dense(const OccluderPart& part, const CellRect& rect) {
   const std::size_t cells = std::size_t(rect.x1 - rect.x0) * std::size_t(rect.y1 - rect.y0);
   return 2 * std::size_t(part.triangle_count) > cells + 64;
 }
 
-/// Whether no cell of an object is without its ends, so that it covers nothing.
+/// Whether every cell of an object has ends, so that it covers nothing.
 bool is_tiny(const CellRect& rect) { return rect.x1 - rect.x0 <= 2 || rect.y1 - rect.y0 <= 2; }
 
 }  // namespace
@@ -59,7 +59,7 @@ class Sweep::Run {
     return {mesh, mesh.parts[o.part], instance.world_from_mesh};
   }
 
-  /// Those between the nearest and the farthest object, whether they are on the screen or not.
+  /// Ranges between the nearest and the farthest object, whether they are on the screen or not.
   void find_ranges() {
     const ScreenTransform& t = view_.grid.transform;
     find_on_screen(view_.grid, scene_.tree.boxes(), {scene_.tree.root(), 1}, memory_.boxes_, view_.isa);
@@ -78,7 +78,7 @@ class Sweep::Run {
     memory_.solid_.clear();
   }
 
-  /// Of items none of which is nearer than a distance.
+  /// Queues items, none of which is nearer than `distance`.
   void line_up(const ItemRange& items, float distance) {
     find_on_screen(view_.grid, scene_.tree.boxes(), items, memory_.boxes_, view_.isa);
     for (std::uint32_t i = items.first; i < items.end(); ++i) {
@@ -96,7 +96,7 @@ class Sweep::Run {
     sights_[scene_.tree.object(item)] = may_be_seen(item, box) ? ObjectSight::may_be_seen : ObjectSight::hidden;
   }
 
-  /// Says so of all objects of an item but those that are outside.
+  /// Marks all objects of an item as hidden, except objects outside of the view.
   void hide(std::uint32_t item) {
     const ObjectTree& tree = scene_.tree;
     if (tree.is_object(item) || is_inside(memory_.boxes_[item])) {
@@ -111,14 +111,14 @@ class Sweep::Run {
       if (!memory_.boxes_[i].rect.is_empty()) hide(i);
   }
 
-  /// Whether all that is within a box is within the viewing volume. What reaches to the border may be beyond it.
+  /// Whether the box is certainly within the viewing volume. A box that reaches to the border may go beyond it.
   [[nodiscard]] bool is_inside(const ScreenBox& box) const {
     const CellGrid& grid = view_.grid;
     return box.rect.x0 > 0 && box.rect.y0 > 0 && box.rect.x1 < grid.columns && box.rect.y1 < grid.rows &&
            box.nearest >= grid.transform.near && box.farthest <= grid.transform.far;
   }
 
-  /// Of an object whose box is not covered: whether it is itself. Takes care that it covers, then.
+  /// Tests, by its own triangles, an object whose box is not covered. Schedules its cover if it may be seen.
   bool may_be_seen(std::uint32_t item, const ScreenBox& box) {
     if (is_tiny(box.rect)) return true;
     const HidingObject it = occluder(item);
@@ -137,7 +137,7 @@ class Sweep::Run {
       memory_.long_objects_.push_back(std::make_unique<LongObject>());
     LongObject& o = *memory_.long_objects_[used_long_objects_];
     put_on_screen(view_.grid, it, o.on_screen);
-    // Nothing is known to lie before what reaches to the eye.
+    // Nothing is known to lie before an object that reaches to the eye.
     const ScreenBox& box = memory_.boxes_[item];
     if (box.nearest > -infinite_distance) {
       const std::size_t first_row = add_rows(box.rect);
@@ -153,17 +153,17 @@ class Sweep::Run {
     return true;
   }
 
-  /// Finds what the object covers, too.
+  /// Tests the object, and also finds the cells that it covers.
   bool is_behind_cover(std::uint32_t item, const HidingObject& it, const OccluderOnScreen& on_screen,
                        std::size_t first_row) {
     CoverPass pass{.rect = memory_.boxes_[item].rect, .distance = memory_.boxes_[item].farthest};
     leave_out_culled(item, it.part, pass);
-    // One side of a closed surface covers what the other does.
+    // Both sides of a closed surface cover the same cells.
     if (it.part.is_closed && on_screen.cut.empty() && pass.clockwise) pass.counter_clockwise = false;
     const bool is_near_open = find_solid({view_.grid, it, on_screen, pass}, memory_.scratch_, cover_,
                                          memory_.solid_.data() + first_row, view_.isa);
-    // A needle may turn the other way when it is snapped, and be left out although its side faces the eye. What is
-    // closed has others before and behind it. Nor do fronts alone tell of double-sided triangles among one-sided ones.
+    // Snapping may turn a needle, which is then left out although its side faces the eye. A closed object has other
+    // triangles before and behind it. With double-sided triangles among one-sided ones, fronts alone do not tell.
     const bool is_mixed = view_.culling == Culling::material && it.part.has_double_sided && it.part.has_one_sided;
     const bool are_all_told =
         culling_of(it.part) == Culling::none || it.part.is_closed || (on_screen.has_certain_turns && !is_mixed);
@@ -171,7 +171,7 @@ class Sweep::Run {
   }
 
   void schedule(int range, Event event) {
-    // Behind the last range no object is left, but boxes may be asked for.
+    // No object is behind the last range, but queries for boxes may be.
     std::uint32_t& first = memory_.first_event_[std::size_t(std::min(range, range_of_.count()))];
     event.next = std::exchange(first, std::uint32_t(memory_.events_.size()));
     memory_.events_.push_back(event);
@@ -195,10 +195,10 @@ class Sweep::Run {
     memory_.solid_.resize(first_row);
   }
 
-  /// Which triangles the view leaves out by the way they face.
+  /// Leaves out triangles that the view culls by their facing.
   void leave_out_culled(std::uint32_t item, const OccluderPart& part, CoverPass& pass) const {
     const Culling culling = culling_of(part);
-    // Fronts are counter-clockwise on the screen; a mirrored instance has the corners the other way round.
+    // Fronts are counter-clockwise on the screen; a mirrored instance has the reverse order of vertices.
     const bool is_mirrored = scene_.mirrored[object_of(item).instance] != 0;
     bool& fronts = is_mirrored ? pass.clockwise : pass.counter_clockwise;
     bool& backs = is_mirrored ? pass.counter_clockwise : pass.clockwise;
@@ -206,13 +206,14 @@ class Sweep::Run {
     if (culling == Culling::back || culling == Culling::both) backs = false;
   }
 
-  /// What certainly hides by the material: of double-sided triangles among one-sided ones the fronts alone.
+  /// The culling under which all remaining triangles certainly hide. If one-sided and double-sided triangles mix, only
+  /// fronts remain.
   [[nodiscard]] Culling culling_of(const OccluderPart& part) const {
     if (view_.culling != Culling::material) return view_.culling;
     return part.has_double_sided && !part.has_one_sided ? Culling::none : Culling::back;
   }
 
-  /// \returns where the rows for a rectangle begin in solid_.
+  /// \returns the index in solid_ at which the rows of a rectangle begin.
   std::size_t add_rows(const CellRect& rect) {
     const std::size_t first_row = memory_.solid_.size();
     memory_.solid_.resize(first_row + std::size_t(rect.tile_count()) * tile_rows, 0);

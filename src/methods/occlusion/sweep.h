@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order in which objects are visited: from the eye outwards, by the nearest distance of their boxes.
+// Visits objects from the eye outwards, in the order of the nearest distances of their boxes.
 //
 //    distance ->   0      1      2      3      4      5      6         ranges of distances, by number
 //    object A             [======]                                    tested in 1, covers from 3 on
 //    object B                           [=============]               tested in 3 against A, covers from 6 on
 //    object C                                  [====================  long: its triangles cover slab by slab
 //
-// What covers lies in ranges before those of what is tested against it, so that it is nearer for certain. Within a
-// range nothing depends on the order.
+// An occluder lies in ranges before those of the objects that are tested against it, so it is certainly nearer. Within
+// a range nothing depends on the order.
 //
-// Groups of objects are visited as objects are, in the range of their nearest distance: what is hidden or outside is so
-// as a whole, and of any other the items are lined up, none of which is nearer.
+// Groups of objects are visited like objects, in the range of their nearest distance. A group that is hidden or outside
+// is so as a whole. The items of any other group are queued, as none of them is nearer.
 //
-// A test asks about the object's box first, which takes ten nanoseconds. Where that is not covered, the cells that the
-// object's own triangles come near are found; these same cells, without its ends, are what it covers later.
+// A test begins with the object's box, which takes ten nanoseconds. If the box is not covered, the cells near the
+// object's own triangles are found and tested. The same cells, without those that have ends, are the object's cover
+// later.
 #pragma once
 
 #include <memory>
@@ -26,7 +27,7 @@
 
 namespace frontmost::occlusion_detail {
 
-/// What is swept over.
+/// The scene of a sweep.
 struct SweptScene {
   const Scene& scene;
   std::span<const OccluderMesh> meshes;  ///< by mesh
@@ -35,22 +36,22 @@ struct SweptScene {
   std::span<const std::uint8_t> mirrored;  ///< by instance
 };
 
-/// A view of it.
+/// The view of a sweep.
 struct SweptView {
   const CellGrid& grid;
   Culling culling;
   Isa isa;
 };
 
-/// One sweep after another in the same memory.
+/// Performs sweeps, and reuses its memory.
 class Sweep {
  public:
-  /// Sets `sights`, and leaves what is covered in `cover`.
+  /// Sets `sights`, and leaves the cover in `cover`.
   void run(const SweptScene& scene, const SweptView& view, std::span<ObjectSight> sights, CellCover& cover);
 
  private:
-  /// Something that covers from a range on: an object whose cells are known, or a slab of a long one. `next` is the
-  /// following event of that range.
+  /// A cover that starts at a range: an object with known cells, or a slab of a long object. `next` is the following
+  /// event of that range.
   struct Event {
     std::uint32_t item;  ///< an object
     std::uint32_t long_object = no_index;
@@ -60,14 +61,14 @@ class Sweep {
   };
   class Run;
 
-  std::vector<ScreenBox> boxes_;                       ///< by item, once it is lined up
+  std::vector<ScreenBox> boxes_;                       ///< by item, once the item is queued
   std::vector<std::uint32_t> first_test_, next_test_;  ///< lists of items by range
   std::vector<std::uint32_t> first_event_;             ///< by range
   std::vector<Event> events_;
   std::vector<std::unique_ptr<LongObject>> long_objects_;
   OccluderOnScreen on_screen_;
   CoverScratch scratch_;
-  std::vector<std::uint32_t> solid_;  ///< cells of objects that are to cover
+  std::vector<std::uint32_t> solid_;  ///< cells of objects that will cover
 };
 
 }  // namespace frontmost::occlusion_detail

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Copies are found by a table of the triangles that came first, with open addressing. Corners are compared by their
-// floats, and the hash does not depend on which corner comes first:
+// Copies are found with a table of the first triangles of each kind, with open addressing. Vertices are compared by
+// their floats, and the hash does not depend on which vertex comes first:
 //
-//    hash of a triangle  =  sum over its corners of  mix(x, y, z)
+//    hash of a triangle  =  sum over its vertices of  mix(x, y, z)
 //
-// Faces are counter-clockwise as they are seen, so two triangles with the same corners list them in the same order
-// around, and a comparison tries three turns. A triangle that the near plane has cut is a piece by itself and is never
-// taken for a copy.
+// Faces are counter-clockwise to the eye, so two triangles with the same vertices list them in the same cyclic order,
+// and a comparison tries three rotations. A triangle that the near plane has cut is a piece by itself and never counts
+// as a copy.
 //
 // A copy that comes back gets the outline of the piece that stayed, under its own id. Higher ids come first, so the
 // lowest id, which is seen at equal depths, is on top.
@@ -19,13 +19,13 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// So many others are looked at; what is not found among them counts as the only one.
+/// At most so many other triangles are compared; a copy that is not found among them stays.
 constexpr int kMostProbes = 64;
 
 /// Odd numbers without a pattern.
 constexpr std::uint64_t kMix = 0x9e3779b97f4a7c15, kMixCorner = 0xc2b2ae3d27d4eb4f;
 
-/// Of three corners in any order.
+/// Hash of three vertices, in any order.
 std::uint64_t hash_of(const Face& face) {
   std::uint64_t sum = 0;
   for (const glm::vec3& corner : face.corners) {
@@ -38,7 +38,7 @@ std::uint64_t hash_of(const Face& face) {
   return sum * kMix;
 }
 
-/// Both are counter-clockwise as they are seen, so that the same corners are in the same order around.
+/// Both faces are counter-clockwise to the eye, so the same vertices are in the same cyclic order.
 bool is_copy(const Face& a, const Face& b) {
   for (std::size_t turn = 0; turn < 3; ++turn)
     if (a.corners[0] == b.corners[turn])
@@ -46,7 +46,7 @@ bool is_copy(const Face& a, const Face& b) {
   return false;
 }
 
-/// Triangles that were found first, by their hash.
+/// Table of the first triangles of each kind, by their hash.
 class FirstOnes {
  public:
   explicit FirstOnes(std::size_t count) {
@@ -55,7 +55,7 @@ class FirstOnes {
   }
   void prefetch(std::uint64_t hash) const { prefetch_line(&entries_[home(hash)]); }
 
-  /// The one that a piece is a copy of; no_index: none, and it is kept.
+  /// The piece of which this piece is a copy, or no_index; the piece is then stored.
   std::uint32_t find_or_add(const Pieces& pieces, std::uint32_t piece, std::uint64_t hash) {
     const auto tag = std::uint32_t(hash);
     std::size_t i = home(hash);
@@ -92,7 +92,7 @@ Copies::Copies(const Pieces& pieces, std::vector<std::uint32_t>& members) {
   for (std::size_t i = 0; i < hashes.size(); ++i) {
     if (i + ahead < hashes.size()) first_ones.prefetch(hashes[i + ahead]);
     const std::uint32_t piece = members[i];
-    // Whole ones alone: what the near plane cut is a piece by itself.
+    // Only whole triangles: a triangle that the near plane cut is a piece by itself.
     const std::uint32_t first = pieces.is_whole(piece) ? first_ones.find_or_add(pieces, piece, hashes[i]) : no_index;
     if (first == no_index)
       members[kept++] = piece;

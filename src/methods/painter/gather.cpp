@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// All triangles are put before the eye in parallel, each part of them into its own stretch of the list, and the
-// stretches are then pushed together. So the list is in the order of ids, whatever threads did.
+// All triangles are placed before the eye in parallel, each part of them into its own section of the list; the sections
+// are then joined. So the list is in the order of ids for any number of threads.
 //
 //    ids        0 ........ 4095 | 4096 ...... 8191 | ...
 //    filled     ####----------- | ######---------- |          part by part
 //    closed up  ##########                                    in the order of ids
 //
-// A triangle is left out where it is certainly before the near plane, beyond the far plane, beside the picture, seen
-// from its edge, or culled. The side from which it is seen is an exact sign. One that may cross the near or the far
-// plane is cut there afterwards, exactly, by the same cuts as cycles are; until then it may be anywhere on the screen.
+// A triangle is left out if it is certainly before the near plane, beyond the far plane, beside the picture, edge-on,
+// or culled. The side from which it is seen is an exact sign. A triangle that may cross the near or far plane is cut
+// there later, exactly, by the same cuts as cycles; until then it may be anywhere on the screen.
 #include <algorithm>
 #include <limits>
 
@@ -20,7 +20,7 @@ namespace frontmost::painter_detail {
 namespace {
 
 constexpr std::size_t kTrianglesPerPart = 4096;
-/// Of a distance: more than rounding moves it.
+/// Relative margin of distances: more than rounding moves them.
 constexpr double kMargin = 1e-9;
 
 class Gatherer {
@@ -34,7 +34,7 @@ class Gatherer {
 
   enum class Place : std::uint8_t { outside, inside, crossing };
 
-  /// Where a triangle is; crossing: the near or the far plane may cut it.
+  /// The place of a triangle; `crossing`: the near or far plane may cut it.
   Place gather(PrimitiveId id, PolygonExtent& extent, Face& face) const {
     face = {surfaces_.corners(id), id};
     for (const glm::vec3& corner : face.corners)
@@ -63,7 +63,7 @@ class Gatherer {
     return {glm::vec2(-infinite), glm::vec2(infinite), -infinite, infinite};
   }
 
-  /// Counter-clockwise as it is seen. \returns false for what is not seen at all.
+  /// Makes a face counter-clockwise to the eye. \returns false if the face is not visible at all.
   bool turn_to_eye(Face& face) const {
     const auto& c = face.corners;
     const int facing = sight_.facing(glm::dvec3(c[0]), glm::dvec3(c[1]), glm::dvec3(c[2]));
@@ -83,12 +83,12 @@ class Gatherer {
   const FacingRule facing_;
 };
 
-/// At a distance before the eye, facing away from it.
+/// The plane at a distance before the eye, facing away from it.
 Plane plane_at(const View& view, double distance) {
   return {view.eye() + view.forward() * distance, Leg{view.up()}, Leg{view.right()}};
 }
 
-/// Leaves what is between the planes. \returns no_index where nothing is.
+/// Cuts away everything outside the near and far planes. \returns no_index if nothing remains.
 std::uint32_t clip(Pieces& pieces, std::uint32_t piece, std::uint32_t near_plane, const Plane& near,
                    std::uint32_t far_plane, const Plane* far) {
   const Sides at_near = pieces.sides(piece, near);
@@ -100,13 +100,13 @@ std::uint32_t clip(Pieces& pieces, std::uint32_t piece, std::uint32_t near_plane
   return at_far.both() ? pieces.cut(piece, far_plane).back : piece;
 }
 
-/// What is found of consecutive triangles, in the order of their ids.
+/// The triangles kept of a part of consecutive ids, in the order of their ids.
 struct Part {
   std::size_t count = 0;
-  std::vector<std::uint32_t> crossing;  ///< from 0 on
+  std::vector<std::uint32_t> crossing;  ///< numbered from 0
 };
 
-/// The triangles of every part in its own room, then close together. \returns those that cross.
+/// Fills a section of the list for every part, then joins the sections. \returns the triangles that cross.
 std::vector<std::uint32_t> fill(const Surfaces& surfaces, const Gatherer& gatherer, Pieces& pieces,
                                 const Execution& execution) {
   const std::size_t all = surfaces.primitive_count();

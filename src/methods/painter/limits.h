@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much work an order may be, and how often it asks whether it is still wanted.
+// Limits of the work for an order, and how often the work polls for cancellation.
 //
-// Cycles are cut until none is left, and where thousands of triangles pass through each other that takes millions of
-// pieces: so their number is limited, and the error says what the limit was. So is the number of steps, because a stack
-// of n sheets takes n * n of them. A caller that cancels a run waits for a millisecond at most: loops count their steps
-// in a Poll, because asking the caller at every step would cost more than many of these steps do.
+// Cycles are cut until none is left. Thousands of triangles that pass through each other take millions of pieces, so
+// the number of cuts is limited, and the error names the limit. The number of steps is limited as well, as a stack of n
+// sheets takes n * n steps. A cancelled run ends within a millisecond: loops count their steps in a Poll, because
+// asking the caller at every step would cost more than many of the steps.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ namespace frontmost::painter_detail {
   throw Error(ErrorCode::limit_exceeded, "painter", "more than " + std::to_string(most) + " polygons and pieces");
 }
 
-/// The steps of a function that takes `polygons` triangles or pieces, of all its threads together.
+/// The steps of a function that takes `polygons` triangles or pieces, summed over all its threads.
 class PaintEffort {
  public:
   PaintEffort(const Execution& execution, std::size_t polygons)
@@ -34,15 +34,15 @@ class PaintEffort {
   }
 
  private:
-  // A figure of a model takes up to 500 for each polygon.
+  // A figure of a model takes up to 500 steps for each polygon.
   static constexpr std::uint64_t kMostSteps = std::uint64_t(1) << 28, kStepsOfPolygon = 1 << 13;
   Execution execution_;
   std::size_t polygons_;
   WorkLimit limit_;
 };
 
-/// Counts steps of ten to a hundred nanoseconds each, so that a cancelled run ends within a millisecond. One thread's;
-/// of its last steps up to 4,095 do not count.
+/// Counts steps of ten to a hundred nanoseconds each, so that a cancelled run ends within a millisecond. Belongs to one
+/// thread; up to 4,095 of its last steps do not count.
 class Poll {
  public:
   explicit Poll(PaintEffort& effort) : effort_(effort) {}

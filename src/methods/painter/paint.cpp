@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coverage and keys are those of the z-buffer: from corners snapped to 1/256 pixel, by the top-left rule. So where an
-// order is right, its picture is the z-buffer's, samples at the rims of cuts apart.
+// Coverage and keys are those of the z-buffer: from vertices snapped to 1/256 pixel, by the top-left rule. So the
+// picture of a correct order is the z-buffer's, apart from samples at the rims of cuts.
 //
-// A polygon that was cut is filled as its triangle is, and a sample belongs to it if it also lies on the polygon's side
-// of every cut: so pieces of one triangle together cover the samples that it covers, and none twice, except on the cuts
-// themselves, where both pieces have the same id.
+// A polygon that was cut is filled like its triangle, but only with samples on the polygon's side of every cut. So the
+// pieces of a triangle together cover its samples, each once, except on the cuts themselves, where both pieces have the
+// same id.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -19,12 +19,12 @@
 namespace frontmost {
 namespace {
 
-/// Pixels: by how much snapping may move a corner, and a sample may be beyond a cut that it is on. Shorter cuts do not
-/// count: where planes meet at small angles corners are not known so well that those between near ones have a
+/// Pixels: by how much snapping may move a corner, how far a sample on a cut may lie beyond it, and the shortest cut
+/// that counts. Planes that meet at small angles leave corners so inaccurate that a cut between near ones has no
 /// direction.
 constexpr double kSnapping = 1.0 / 128, kOnCut = 1e-9, kShortest = 1.0 / 1024;
 
-/// Corners in 1/256 pixel from the image's top left corner, clockwise with y down.
+/// Vertices in 1/256 pixel from the image's top left, clockwise with y down.
 struct SnappedTriangle {
   std::array<std::int32_t, 3> x, y;
   std::array<float, 3> key;
@@ -55,7 +55,7 @@ struct SnappedTriangle {
   }
 };
 
-/// What cuts leave of a polygon's triangle.
+/// The part of a polygon's triangle that cuts leave.
 class CutTriangle {
  public:
   explicit CutTriangle(std::span<const PaintCorner> corners) {
@@ -69,7 +69,7 @@ class CutTriangle {
   }
   [[nodiscard]] glm::dvec2 low() const { return low_ - kSnapping; }
   [[nodiscard]] glm::dvec2 high() const { return high_ + kSnapping; }
-  /// Slivers, whose cuts are all too short to count, hold what is in the box around them.
+  /// A sliver whose cuts are all too short to count is filled with the box around it.
   [[nodiscard]] bool holds(double x, double y) const {
     if (x < low().x || y < low().y || x > high().x || y > high().y) return false;
     return std::all_of(cuts_.begin(), cuts_.end(), [&](const Cut& cut) {
@@ -109,7 +109,7 @@ class Canvas {
   [[nodiscard]] Visible take() { return std::move(picture_); }
 
  private:
-  /// The pixels of one axis that an interval in 1/256 pixel and one in pixels have in common.
+  /// The pixels of one axis that lie within an interval in 1/256 pixel and an interval in pixels.
   struct Run {
     int first, last;
   };

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the stages of stages.h one after another, and what is left of cycles again until every piece has its place:
+// Runs the stages of stages.h one after another, and repeats them for cycles until every piece has its place:
 //
 //   members --push--> work, the next on top      sort: pieces that may have an order    -> paint and part
 //                       |          ^             part: a cycle, cut in two by a plane   -> part and sort
 //                       +---run----+             paint: pieces in their order           -> the result
 //
-// Parting stops as soon as groups are small enough to be sorted again: a plane that parts a cycle mostly leaves pieces
-// that have an order, and every further plane would cut pieces that need no cut.
+// Parting stops once groups are small enough to be sorted again: a plane that parts a cycle mostly leaves pieces that
+// have an order, and every further plane would cut pieces that need no cut.
 #include "frontmost/painter.h"
 
 #include <algorithm>
@@ -19,13 +19,14 @@ namespace {
 
 using namespace painter_detail;
 
-/// A group without an order is parted until so much smaller groups are left, and these are sorted again. With 4 it
-/// takes 1.3 times as long on assemblies of parts that pass through each other, for 2 to 9 % fewer polygons, none of
-/// them seen; parting down to single pieces, as PaintMethod::bsp does, takes a third and leaves half as many again.
+/// A group without an order is parted until its parts are so many times smaller, and the parts are sorted again. A
+/// factor of 4 takes 1.3 times as long on assemblies of parts that pass through each other, for 2 to 9 % fewer
+/// polygons, none of them visible. Parting down to single pieces, as PaintMethod::bsp does, takes a third of the time
+/// and leaves half as many polygons again.
 constexpr std::size_t kFewer = 64;
 
-/// Makes one list of pieces out of all, by work that is still to do, the next on top. Not by recursion: a partition may
-/// be as uneven as there are pieces.
+/// Makes one list of all pieces from a stack of work, the next work on top. A stack replaces recursion, as partitions
+/// may be as uneven as there are pieces.
 class Orderer {
  public:
   Orderer(Pieces& pieces, const PainterOptions& options, PaintEffort& effort, PaintSteps& steps)
@@ -49,7 +50,7 @@ class Orderer {
   struct Item {
     Work work;
     std::vector<std::uint32_t> members;
-    std::size_t few = 0;  ///< so many are sorted again, more are parted on
+    std::size_t few = 0;  ///< smaller groups are sorted again, larger ones parted further
   };
 
   void push(std::vector<std::uint32_t> members, std::size_t few) {
@@ -80,7 +81,8 @@ class Orderer {
         "more than " + std::to_string(options_.most_cuts) + " cuts: too many triangles pass through each other");
   }
 
-  /// The error that would come after all cuts were made; before they are sorted, for every two would be compared.
+  /// Throws early the error that would come after all cuts. Called before sorting, which would compare every two
+  /// pieces.
   void foresee_cuts(const std::vector<std::uint32_t>& members) {
     const auto count = double(members.size());
     if (0.5 * count * count <= double(options_.most_cuts)) return;
@@ -127,7 +129,7 @@ void sort_by_centroid(const Pieces& pieces, std::vector<std::uint32_t>& members)
   });
 }
 
-/// Fills an empty order with pieces as polygons, as they are listed.
+/// Fills an empty order with pieces as polygons, in the order of the list.
 void fill(const Pieces& pieces, const std::vector<std::uint32_t>& members, PaintOrder& order, Poll& poll) {
   std::size_t corners = 0;
   order.polygons.reserve(members.size());

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A piece's corners are known twice: as doubles with a bound on their error, and as the planes that meet there. The
-// planes are always those of triangles and of sight, never of what was worked out, so that an exact sign stays a
-// polynomial of the ninth degree in what was given, however often a piece was cut.
+// A piece's corner is stored twice: as doubles with an error bound, and as the planes that meet there. The planes
+// always come from triangles and from the eye, never from computed points. So an exact sign stays a polynomial of the
+// ninth degree in the input, however often a piece was cut.
 //
 //    cut by a plane       corners     front  0  back       A corner in the plane belongs to both halves. A side between
 //                         front:      + + 0 (cut)           a corner on one side and one on the other gets a new corner
 //                         back:       (cut) 0 - -           in both, the same to the bit.
 //
-// A new corner's place is told twice, between the ends of its side and where three planes meet, and the better one is
-// kept, with its bound. Its side of any plane is asked by that place as long as the bound allows, and else exactly by
-// its planes.
+// A new corner's place is computed twice, between the ends of its side and as the meeting point of three planes, and
+// the better one is kept, with its bound. The corner's side of any plane is decided by that place if the bound allows
+// it, and otherwise exactly by the corner's planes.
 #include "painter/pieces.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// Of coordinates: corners are known so well.
+/// Relative error of coordinates: corners are known at least this well.
 constexpr double kCornerError = 1e-11;
 
 float rounded_down(double value) {
@@ -44,7 +44,7 @@ void ExtentBuilder::include(const glm::dvec3& in_eye, double error) {
   nearest_ = std::min(nearest_, in_eye.z - error);
   farthest_ = std::max(farthest_, in_eye.z + error);
   const double w = sight_.is_parallel() ? 1 : in_eye.z;
-  if (!sight_.is_parallel() && in_eye.z < 2 * error) {  // next to the eye's plane: anywhere
+  if (!sight_.is_parallel() && in_eye.z < 2 * error) {  // next to the eye's plane: it may be anywhere
     low_ = glm::dvec2(-std::numeric_limits<double>::infinity());
     high_ = -low_;
     return;
@@ -66,7 +66,7 @@ PolygonExtent ExtentBuilder::extent() const {
 void Pieces::copy_corners(std::uint32_t piece, PaintCorner* corners) const {
   const auto place = [&](const glm::dvec3& at) {
     glm::dvec3 in_eye = sight_.in_eye(at);
-    // Where rounding of huge coordinates takes a corner to the eye, it would be at infinity.
+    // Rounding of huge coordinates may move a corner to the eye, and so to infinity on the screen.
     in_eye.z = std::max(in_eye.z, sight_.near());
     return sight_.to_screen(in_eye);
   };
@@ -145,9 +145,9 @@ PieceShape Pieces::shape_of(std::uint32_t piece) const {
   return whole;
 }
 
-/// Between the ends of the side, or where the planes meet: what is known better. The former gets worse from cut to cut,
-/// the latter where planes meet at small angles; where both are bad, drawings would have corners pixels away. From the
-/// end that comes first in space, so that neighbours are cut at the same point to the bit.
+/// The corner between the ends of the side, or where the planes meet, whichever is known better. The former gets worse
+/// from cut to cut, the latter if planes meet at small angles; with both bad, drawings would have corners pixels away.
+/// Interpolation begins at the end that comes first in space, so neighbours are cut at the same point to the bit.
 PieceCorner Pieces::crossing(const Face& face, const PieceShape& shape, std::size_t side, std::uint32_t plane) const {
   const PieceCorner *from = &shape.corners[side], *to = &shape.corners[(side + 1) % shape.corners.size()];
   if (is_before(to->at, from->at)) std::swap(from, to);
@@ -158,7 +158,7 @@ PieceCorner Pieces::crossing(const Face& face, const PieceShape& shape, std::siz
   PieceCorner corner{from->at + t * way, 0, {shape.sides[side], PieceShape::first_cut + plane}};
   const double length = std::abs(way.x) + std::abs(way.y) + std::abs(way.z);
   const double size = std::abs(corner.at.x) + std::abs(corner.at.y) + std::abs(corner.at.z);
-  // The true one is on the side, so never farther away than the side is long.
+  // The true corner is on the side, so it is never farther away than the side is long.
   corner.error = length * (span > 2 * doubt ? 2 * doubt / span : 1.0) + std::max(from->error, to->error) +
                  kRounding * (size + length);
   const std::array<Plane, 3> planes = planes_of(face, corner);
@@ -188,7 +188,7 @@ Pieces::Halves Pieces::cut(std::uint32_t piece, std::uint32_t plane) {
   for (std::size_t i = 0; i < count; ++i) {
     const int next = at[(i + 1) % count];
     const std::uint32_t side = whole.sides[i];
-    // A corner in the plane belongs to both halves; one of them goes on along the cut.
+    // A corner in the plane belongs to both halves; one of the halves continues along the cut.
     if (at[i] >= 0) extend(front, whole.corners[i], at[i] == 0 && next < 0 ? cut : side);
     if (at[i] <= 0) extend(back, whole.corners[i], at[i] == 0 && next > 0 ? cut : side);
     if (at[i] * next >= 0) continue;

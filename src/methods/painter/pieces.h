@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles as a view sees them, and the convex pieces that they are cut into.
 //
-//        whole            cut by a plane          A piece is known by its triangle and, if it was cut, by
-//          /\                  /\                 the sides of its outline. A side is an edge of the triangle
-//         /  \                /  \.....           (0 to 2) or a plane that was kept (first_cut + k). A corner
-//        /    \              / front              is where two sides meet: its place is rounded, with a bound,
-//       /______\            /__________           and its exact place is that of three planes.
+//        whole            cut by a plane          A piece is known by its triangle and, if it was cut, by the
+//          /\                  /\                 sides of its outline. A side is an edge of the triangle
+//         /  \                /  \.....           (0 to 2) or a stored cutting plane (first_cut + k). Two sides
+//        /    \              / front              meet at a corner, whose place is rounded, with a bound; its
+//       /______\            /__________           exact place is the meeting point of three planes.
 //
-// Pieces are numbered and never moved. Of a piece that is cut the front half keeps the number and the back half gets a
-// new one at the end, so lists of numbers stay valid.
+// Pieces are numbered and never moved. When a piece is cut, the front half keeps the number, and the back half gets a
+// new number at the end. So lists of numbers stay valid.
 #pragma once
 
 #include <deque>
@@ -20,46 +20,47 @@
 
 namespace frontmost::painter_detail {
 
-/// Boxes around a piece: on the screen in pixels, and of planar distances. Rounded outwards.
+/// Boxes around a piece: on the screen in pixels, and in planar distances. Rounded outwards.
 struct PolygonExtent {
   glm::vec2 low, high;
   float nearest, farthest;
 };
 
-/// The triangle that a piece belongs to, counter-clockwise as it is seen.
+/// The triangle that a piece belongs to, counter-clockwise to the eye.
 struct Face {
   std::array<glm::vec3, 3> corners;
   PrimitiveId id;
-  std::uint32_t shape = no_index;  ///< the piece's own outline, in Pieces; none: all of the triangle
+  std::uint32_t shape = no_index;  ///< the piece's own outline, in Pieces; no_index: all of the triangle
 
   [[nodiscard]] Plane plane() const {
     return Plane::through(glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2]));
   }
 };
 
-/// A corner of a piece: one of its triangle's, or where two sides meet.
+/// A corner of a piece: a vertex of its triangle, or the point where two sides meet.
 struct PieceCorner {
   glm::dvec3 at;
-  double error = 0;                                        ///< how far from `at` it may be
-  std::array<std::uint32_t, 2> sides{no_index, no_index};  ///< as in Shape; none: the triangle's, as it is
+  double error = 0;                                        ///< greatest distance of the true corner from `at`
+  std::array<std::uint32_t, 2> sides{no_index, no_index};  ///< numbered as in PieceShape; no_index: a vertex of the
+                                                           ///< triangle
 };
 
-/// The outline of a piece that was cut, in the order of its triangle.
+/// The outline of a piece that was cut, in the winding of its triangle.
 struct PieceShape {
-  /// Side i leads from corner i to the next: 0 to 2 is an edge of the triangle, first_cut + k is Pieces::planes[k].
+  /// Side i leads from corner i to the next: 0 to 2 is an edge of the triangle, first_cut + k is Pieces::planes_[k].
   static constexpr std::uint32_t first_cut = 3;
   std::vector<PieceCorner> corners;
   std::vector<std::uint32_t> sides;
 };
 
-/// On which sides of a plane a piece has points.
+/// The sides of a plane on which a piece has points.
 struct Sides {
   bool front = false, back = false;
   [[nodiscard]] bool both() const { return front && back; }
   [[nodiscard]] bool none() const { return !front && !back; }
 };
 
-/// All pieces of a view, by number. What is cut gives its number to one of its halves.
+/// All pieces of a view, by number. A piece that is cut leaves its number to its front half.
 class Pieces {
  public:
   explicit Pieces(const View& view) : sight_(view) {}
@@ -80,7 +81,7 @@ class Pieces {
     extents_.push_back(extent);
     faces_.push_back(face);
   }
-  /// Makes room for whole triangles, to be set, or takes away the last ones.
+  /// Makes room for whole triangles, which set() then fills, or removes the last ones.
   void resize(std::size_t count) {
     extents_.resize(count);
     faces_.resize(count);
@@ -90,20 +91,20 @@ class Pieces {
     faces_[piece] = face;
   }
 
-  /// Exactly.
+  /// The sides of a plane that the piece lies on, exactly.
   [[nodiscard]] Sides sides(std::uint32_t piece, const Plane& plane) const;
-  /// No point of the piece is on the side `sign` of a plane. Quicker than sides(). Sets `is_flat` where the whole
+  /// Whether no point of the piece is on the side `sign` of a plane. Quicker than sides(). Sets `is_flat` if the whole
   /// triangle is in the plane.
   [[nodiscard]] bool keeps_off(std::uint32_t piece, const Plane& plane, int sign, bool& is_flat) const;
-  /// The plane of sight through an edge of the triangle: positive on its side.
+  /// The plane through the eye and an edge of the triangle: positive on the triangle's side.
   [[nodiscard]] Plane edge_plane(const Face& face, std::uint32_t edge) const;
 
   struct Halves {
     std::uint32_t front, back;
   };
-  /// Keeps a plane to cut by. \returns its number.
+  /// Stores a plane to cut by. \returns its number.
   std::uint32_t add_plane(const Plane& plane);
-  /// The front one keeps the number. Precondition: sides() of that plane has both().
+  /// Cuts a piece; the front half keeps the number. Precondition: sides() of that plane has both().
   Halves cut(std::uint32_t piece, std::uint32_t plane);
 
  private:
@@ -121,7 +122,7 @@ class Pieces {
   std::deque<Plane> planes_;
 };
 
-/// The box around points of eye space, of which each may be `error` away, as far as they are before the eye.
+/// The box around points of eye space, each known to within `error`, as far as they are before the eye.
 class ExtentBuilder {
  public:
   explicit ExtentBuilder(const Sight& sight);
@@ -130,7 +131,7 @@ class ExtentBuilder {
 
  private:
   const Sight& sight_;
-  const glm::dvec2 centre_, unit_;  ///< on the screen: of the view, and of a length at distance 1
+  const glm::dvec2 centre_, unit_;  ///< on the screen: centre of the view, and size of a unit at distance 1
   glm::dvec2 low_{std::numeric_limits<double>::infinity()}, high_{-std::numeric_limits<double>::infinity()};
   double nearest_ = std::numeric_limits<double>::infinity(), farthest_ = -std::numeric_limits<double>::infinity();
 };

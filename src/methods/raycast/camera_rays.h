@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directions of the rays of panoramas, fisheyes and laser scanners: of one pixel, or of all.
+// Directions of the rays of panoramas, fisheyes and laser scanners, for one pixel or for all.
 //
-// Sines and cosines come from turn(), which has the same bits on every machine and is exact at quarters: a scanner's
-// ray straight to the right is (1, 0, 0), not off by the rounding of pi.
+// Sines and cosines come from turn(), which gives the same bits on every machine and is exact at quarters. A scanner's
+// ray straight to the right is (1, 0, 0), without the rounding of pi.
 //
 //    panorama   columns are azimuths, rows are elevations
 //    fisheye    the angle from the axis grows with the distance from the middle; beyond the rim there is no ray
 //    lidar      columns are steps, rows are its rings
-//    pattern    one row of directions, as they are given
+//    pattern    one row of directions, as given
 //
-// Places within a pixel are in 1/256 of it, and the turns that they stand for are fractions of integers still: the
-// middle is what it would be without them, to the bit.
+// Places within a pixel are in 1/256 pixel, and their angles still are fractions of integers. So the middle of a pixel
+// has the same bits as without such places.
 #pragma once
 
 #include <algorithm>
@@ -22,24 +22,24 @@
 
 namespace frontmost::raycast_detail {
 
-/// (cos, sin) of an angle within a few turns, taken to the nearest 2^-48 of a turn (2e-14 radians, far below floats).
+/// (cos, sin) of an angle within a few turns, rounded to the nearest 2^-48 of a turn (2e-14 radians, far below floats).
 [[nodiscard]] inline glm::dvec2 turn_by(double radians) {
   constexpr double whole = double(std::int64_t(1) << 48);
   return turn(std::int64_t(std::nearbyint(radians / (6.28318530717958647692) * whole)), std::int64_t(whole));
 }
 
-/// From the (cos, sin) of azimuth and elevation.
+/// The direction with this (cos, sin) of azimuth and elevation.
 [[nodiscard]] inline glm::dvec3 direction_at(const glm::dvec2& azimuth, const glm::dvec2& elevation) {
   return {azimuth.y * elevation.x, elevation.y, -azimuth.x * elevation.x};
 }
 
-/// A pixel, and where in it.
+/// A pixel, and a place in it in 1/256 pixel.
 struct PixelPlace {
   int x, y;
   glm::ivec2 offset;
 };
 
-/// Of a column and of a row, of which `offset` is the place within a pixel: (cos, sin).
+/// (cos, sin) of the azimuth of a column, and of the elevation of a row; `offset` is the place within a pixel.
 [[nodiscard]] inline glm::dvec2 azimuth_of(const Panorama& camera, int x, int offset) {
   const std::int64_t w = camera.width, at = std::int64_t(x) * 256 + offset;
   return turn(2 * at - 256 * w, 512 * w);
@@ -67,8 +67,8 @@ struct PixelPlace {
 [[nodiscard]] inline glm::dvec3 direction_of(const Fisheye& camera, const PixelPlace& at) {
   const double right = at.x + at.offset.x / 256.0 - camera.width * 0.5;
   const double up = camera.height * 0.5 - at.y - at.offset.y / 256.0;
-  // Equidistant: the angle from the axis grows with the distance from the middle, up to half the field of view at the
-  // rim.
+  // The lens is equidistant: the angle from the axis grows with the distance from the middle, up to half the field of
+  // view at the rim.
   const double from_middle = std::sqrt(right * right + up * up);
   const double rim = std::min(camera.width, camera.height) * 0.5;
   if (from_middle > rim) return glm::dvec3(0);
@@ -85,7 +85,7 @@ struct PixelPlace {
   return camera.directions[std::size_t(at.x)];
 }
 
-/// Directions of all pixels of a grid, at one place within each.
+/// Directions of all pixels of a grid, at one place within each pixel.
 template <class Model>
 class GridDirections {
  public:
@@ -97,8 +97,8 @@ class GridDirections {
   glm::ivec2 offset_;
 };
 
-/// Where columns are azimuths and rows are elevations, these are worked out once: the same bits, in a tenth of the
-/// time.
+/// Directions for grids whose columns are azimuths and whose rows are elevations. Azimuths and elevations are computed
+/// once: the same bits, in a tenth of the time.
 template <class Model>
 class TurnedDirections {
  public:
@@ -124,7 +124,7 @@ class GridDirections<Lidar> : public TurnedDirections<Lidar> {
   using TurnedDirections::TurnedDirections;
 };
 
-/// A camera's pose, taken apart once.
+/// A camera's pose, split into rotation and origin.
 class RayPose {
  public:
   explicit RayPose(const glm::dmat4& world_from_eye) : rotation_(world_from_eye), origin_(world_from_eye[3]) {}

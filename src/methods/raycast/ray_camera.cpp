@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras that only rays can serve: what they allow, their grids, and the ray of one pixel.
+// Cameras that only rays can serve: their limits, their grids, and the ray of one pixel.
 #include <algorithm>
 #include <cmath>
 
@@ -33,7 +33,7 @@ void check(const Fisheye& camera) {
 
 void check_count(std::size_t columns, std::size_t rows) {
   if (columns == 0 || rows == 0) throw Error(ErrorCode::bad_argument, "ray camera", "there is no ray");
-  // Divided, not multiplied: the product may overflow.
+  // Division avoids the overflow of a product.
   if (columns > most_samples / rows)
     throw Error(ErrorCode::limit_exceeded, "ray camera", "at most " + std::to_string(most_samples) + " rays in all");
 }

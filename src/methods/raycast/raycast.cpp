@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray casting: one tile of rays after another, on all threads.
+// Ray casting: tiles of rays, on all threads.
 //
-// A picture is cast in tiles of 32 x 32 pixels, a few neighbours to a part, so that threads share the nodes that they
-// fetch. Planes and scratch memory are kept by the RayCaster from picture to picture.
+// A picture is cast in tiles of 32 x 32 pixels. A part is a few neighbouring tiles, so that threads share the nodes
+// that they fetch. The RayCaster keeps planes and scratch memory from picture to picture.
 
 #include "frontmost/raycast.h"
 
@@ -19,7 +19,7 @@ namespace {
 
 using namespace raycast_detail;
 
-/// What bounds the rounding of a box's distance to a plane: nothing in the tree is farther from the eye by any axis.
+/// The greatest |position - eye| in the tree, by axis, which bounds the rounding of a box's distance to a plane.
 glm::vec3 reach_of(const Box& bounds, const ScreenTransform& t) {
   if (bounds.is_empty()) return glm::vec3(0);
   const glm::vec3 eye(t.eye[0], t.eye[1], t.eye[2]);
@@ -32,10 +32,10 @@ struct RayCaster::State {
   Pool<RayTileScratch> scratches;
   Visible visible;
 
-  /// Planes for the view: those of the last one where they fit. \returns true when their memory was used before.
+  /// Makes planes for the view, or keeps the last ones if they fit. \returns true if their memory was used before.
   bool prepare_planes(const View& view) {
     const bool fits = visible.primitives.size() == view.sample_count();
-    // Where there is memory for one plane and not for the other, neither may stay: `fits` looks at one alone.
+    // If memory suffices for one plane only, neither may stay, as `fits` looks at one alone.
     if (!fits) {
       visible = {};
       visible = {view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(view.sample_count())};
@@ -69,8 +69,8 @@ const Visible& RayCaster::draw(const RayIndex& index, const View& view, const Ex
   const int tiles_x = (view.width + kTileSize - 1) / kTileSize, tiles_y = (view.height + kTileSize - 1) / kTileSize;
   const std::size_t tiles = std::size_t(tiles_x) * std::size_t(tiles_y);
   std::atomic<std::size_t> done{0};
-  // Tiles of 32 pixels are small: one by one, threads would wait for each other, and neighbours share what the caches
-  // hold.
+  // A part has several tiles: tiles of 32 pixels are so small that threads would wait for each other, and neighbours
+  // share the contents of the caches.
   constexpr std::size_t kTilesPerPart = 4;
   parallel_for(execution, tiles, kTilesPerPart, [&](std::size_t begin, std::size_t end) {
     const auto scratch = state_->scratches.borrow([] { return std::make_unique<RayTileScratch>(); });

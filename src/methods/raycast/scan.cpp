@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the rays of a camera meet: the grid is cast in packets of neighbouring rays.
+// Scans: the rays of a camera, cast over its grid in packets of neighbouring rays.
 //
-//     wide grid, rows close together      A packet has as many columns and rows as make it most nearly square to look
-//     +----------------+                  at, so that its rays spread as little as they can: a scanner whose rings lie
-//     | 16 x 4         |                  far apart is cast in flat blocks.
+//     wide grid, rows close together      The columns and rows of a packet make it look as nearly square as possible,
+//     +----------------+                  so that its rays spread as little as possible: a scanner whose rings lie far
+//     | 16 x 4         |                  apart is cast in flat blocks.
 //     +----------------+
 #include <algorithm>
 #include <atomic>
@@ -41,7 +41,7 @@ void for_each_part(const RangeScan& scan, const Model& model, const Execution& e
   }
 }
 
-/// The columns and rows of a packet that looks most nearly square in the middle of the grid.
+/// The columns and rows of the packet that looks most nearly square in the middle of the grid.
 template <class Model>
 glm::ivec2 packet_shape(const RangeScan& scan, const GridDirections<Model>& directions) {
   const int x = scan.width / 2, y = scan.height / 2;
@@ -57,7 +57,7 @@ glm::ivec2 packet_shape(const RangeScan& scan, const GridDirections<Model>& dire
   return best;
 }
 
-/// One sample of every pixel.
+/// Casts one sample of every pixel.
 template <class Model>
 class ScanCaster {
  public:
@@ -111,10 +111,10 @@ class ScanCaster {
   GridDirections<Model> directions_;
   RayPose pose_;
   glm::ivec2 shape_;
-  int across_;  ///< packets beside each other
+  int across_;  ///< packets side by side
 };
 
-/// With room for the answers. \throws Error as validate(camera) does.
+/// A scan with room for the answers. \throws Error as validate(camera) does.
 RangeScan prepare_scan(const RayCamera& camera) {
   validate(camera);
   RangeScan result{camera, grid_of(camera).x, grid_of(camera).y, {}, {}};
@@ -124,7 +124,7 @@ RangeScan prepare_scan(const RayCamera& camera) {
   return result;
 }
 
-/// Takes out what is met beyond the camera's limits of range.
+/// Removes hits beyond the camera's limits of range.
 void keep_in_range(RangeScan& scan, const Execution& execution) {
   const double nearest = scan.camera.nearest, farthest = scan.camera.farthest;
   constexpr float nowhere = std::numeric_limits<float>::infinity();
@@ -138,10 +138,10 @@ void keep_in_range(RangeScan& scan, const Execution& execution) {
   });
 }
 
-/// Of what a sample meets, of any length.
+/// The normal, of any length, of the surface that a sample meets.
 using NormalAt = std::function<glm::dvec3(std::size_t sample)>;
 
-/// incidence_angles() to these normals, which are asked for from several threads.
+/// incidence_angles() to these normals. Several threads call `normal_at`.
 Buffer<float> incidence_to(const NormalAt& normal_at, const RangeScan& scan, const Execution& execution) {
   Buffer<float> angles(scan.ranges.size());
   const auto measure = [&](std::size_t first, const std::vector<Ray>& rays) {
@@ -149,7 +149,7 @@ Buffer<float> incidence_to(const NormalAt& normal_at, const RangeScan& scan, con
       angles[i] = std::numeric_limits<float>::quiet_NaN();
       if (scan.primitives[i] == no_primitive) continue;
       const glm::dvec3 ray(rays[i - first].direction), normal = normal_at(i);
-      // Not by the cosine, which says little near 0 degrees.
+      // The angle comes from atan2, as the cosine is inaccurate near 0 degrees.
       angles[i] =
           float(glm::degrees(std::atan2(glm::length(glm::cross(ray, normal)), std::abs(glm::dot(ray, normal)))));
     }

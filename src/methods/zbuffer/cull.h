@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which clusters can be seen at all, and where on the screen.
+// Which clusters can be seen, and where on the screen.
 //
 //       the frustum          A cluster is left out where all eight corners of its box lie outside of one side of the
 //     .   [c]      /         frustum, or where its cone of normals says that every triangle faces away. Others are
 //      .     [w]  /          drawn whole (w), or are taken apart triangle by triangle (a) where some of them may reach
-//   [a] .        /           the near plane or the guard band. What floats cannot tell is kept.
+//   [a] .        /           the near plane or the guard band. Clusters that floats cannot decide are kept.
 #pragma once
 
 #include <vector>
@@ -21,7 +21,7 @@ enum class ClusterFate : std::uint8_t {
   apart,   ///< some triangle may need clipping: taken apart
 };
 
-/// One entry a cluster, padded to whole vectors. `rect` and `nearest` hold where the fate is `whole`.
+/// One entry a cluster, padded to whole vectors. `rect` and `nearest` are valid if the fate is `whole`.
 struct CullResult {
   std::vector<std::uint8_t> fate;  ///< ClusterFate
   std::vector<std::int32_t> x0, y0, x1, y1;
@@ -32,7 +32,7 @@ struct CullResult {
   [[nodiscard]] PixelRect rect(std::size_t i) const { return {x0[i], y0[i], x1[i], y1[i]}; }
 };
 
-/// Clusters, and how they are looked at.
+/// The clusters, and the view that they are tested against.
 struct CullInput {
   const BoxArrays& boxes;
   const ConeArrays* cones;  ///< null: facing culls triangles only
@@ -45,8 +45,8 @@ struct ClusterRange {
   std::size_t begin, end;
 };
 
-/// Never culls what a sample sees: every bound derived from a box corner is padded by what the rounding of a vertex
-/// inside the box can amount to.
+/// Decides the fate of each cluster, and never culls a cluster that a sample sees. Each bound from a box corner is
+/// padded by the greatest rounding error of a vertex inside the box.
 void cull_clusters(const CullInput& input, Isa isa, const ClusterRange& range, CullResult& result);
 
 }  // namespace frontmost::zbuffer_detail

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Culling of clusters, as many at a time as the vector holds: by the frustum, over the eight corners of their boxes,
-// and by facing.
+// Culling of clusters, a vector of clusters at a time: by the frustum, over the eight corners of their boxes, and by
+// facing.
 //
-// Boxes are kept as columns, so that a vector of clusters is asked at once, and nothing is asked twice: the pixel
-// rectangle and the nearest key, which order and bin the clusters afterwards, come from the same eight corners.
+// Boxes are stored as columns, so a vector of clusters is tested at once. The same eight corners also give the pixel
+// rectangle and the nearest key, by which clusters are ordered and binned afterwards.
 
 #include "zbuffer/cull.h"
 
@@ -11,7 +11,7 @@
 #define HWY_TARGET_INCLUDE "zbuffer/cull_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After Highway: a block of its own.
+// The include follows Highway in a block of its own.
 #include "base/lane_types-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -21,20 +21,21 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace frontmost::HWY_NAMESPACE;
 
 // A vertex and its box are transformed by the same formula, but round differently. Relative to the sum of the absolute
-// values of all terms, either errs by less than 6 * 2^-24; this is four times the sum of both.
+// values of all terms, either errs by less than 6 * 2^-24. This bound is four times the sum of both errors.
 constexpr float kRoundingBound = 48.0f / 16777216.0f;
 
-/// One row of the transform. `offset_terms` is the sum of the absolute values of what makes the offset.
+/// One row of the transform. `offset_terms` is the sum of the absolute values of the terms of the offset.
 struct RowTerms {
   float a, b, c, offset, offset_terms;
 };
 
-/// What of the eye a float cannot hold. No float, hence no vertex, is nearer to the eye in any coordinate.
+/// The part of the eye that a float cannot hold. No float, hence no vertex, is nearer to the eye in any coordinate.
 glm::vec3 RestOfEye(const ScreenTransform& t, const View& view) {
   return glm::vec3(view.eye() - glm::dvec3(t.eye[0], t.eye[1], t.eye[2]));
 }
 
-/// The rest of the eye went through the row in doubles and was rounded with the offset: twice its terms bound both.
+/// Makes a row. The rest of the eye went through the row in doubles and was rounded with the offset: twice its terms
+/// bound both errors.
 RowTerms MakeRow(const std::array<float, 3>& row, float offset, const glm::vec3& rest) {
   const glm::vec3 terms = glm::abs(glm::vec3(row[0], row[1], row[2]) * rest);
   const float sum = terms.x + terms.y + terms.z;
@@ -62,8 +63,8 @@ HWY_INLINE VF Margin(const RowTerms& row, const Reach& reach) {
   return hn::Mul(hn::Set(d, kRoundingBound), hn::Add(hn::Add(x, y), hn::Add(z, w)));
 }
 
-/// Pixel of a coordinate from the image's centre in 1/256 pixel, clamped to [0, last]. Limited before it is converted:
-/// floats beyond the range of integers become different ones on different machines.
+/// Pixel of a coordinate from the image's centre in 1/256 pixel, clamped to [0, last]. The coordinate is limited before
+/// conversion, as floats beyond the range of integers convert to different values on different machines.
 HWY_INLINE hn::Vec<DI> ToPixel(VF from_centre, std::int32_t centre, std::int32_t last) {
   const DF d;
   const VF limit = hn::Set(d, float(kGuardBand));
@@ -73,34 +74,34 @@ HWY_INLINE hn::Vec<DI> ToPixel(VF from_centre, std::int32_t centre, std::int32_t
   return hn::Min(hn::Max(hn::ShiftRight<8>(fixed), hn::Zero(di)), hn::Set(di, last));
 }
 
-// Facing. What decides is the sign of the area of the snapped triangle, and snapping can turn a triangle over. It can
-// not where every corner moves by at most e and no altitude of the triangle on the screen is less than 2 e: on the way
-// the corners would have to come to lie on one line, which would have passed within e of all three.
+// Facing. The sign of the area of the snapped triangle decides, and snapping can turn a triangle over. It cannot if
+// every vertex moves by at most e and no altitude of the triangle on the screen is less than 2 e: to turn over, the
+// vertices would have to pass through a line that is within e of all three.
 //
-// How high is it on the screen? Let a triangle with normal N (|N| is twice its area), corners P, Q, R, the eye at E,
-// and f the lesser of the scales of x and y, in snapped units per unit at distance 1; W(P) is the planar distance of P.
-// Twice its area on the screen, scaled alike both ways, is f^2 |N.(P-E)| / (W(P) W(Q) W(R)). The edge PQ becomes
-// f |(P-E) W(Q) - (Q-E) W(P)| / (W(P) W(Q)) long, and the numerator, a cross product of the axis and (P-E)x(Q-E), is at
-// most f |P-E| |PQ|. Hence the altitude on the image of PQ is at least
+// How high is the triangle on the screen? Take a triangle with normal N (|N| is twice its area), vertices P, Q, R, the
+// eye at E, and f the lesser of the scales of x and y, in snapped units per unit at distance 1. W(P) is the planar
+// distance of P. Twice the area on the screen, scaled alike both ways, is f^2 |N.(P-E)| / (W(P) W(Q) W(R)). The edge PQ
+// becomes f |(P-E) W(Q) - (Q-E) W(P)| / (W(P) W(Q)) long. The numerator, a cross product of the axis and (P-E)x(Q-E),
+// is at most f |P-E| |PQ|. Hence the altitude on the image of PQ is at least
 //     f |N.(P-E)| / (|PQ| |P-E| W(R))  >=  f * altitude * sine / W,
-// where `altitude` is the triangle's least in space, `sine` that of the angle between its plane and the ray to P, and W
-// the greatest planar distance; a greater scale in one direction makes nothing thinner. In parallel projection it is
-// the same with W = 1 and the axis for the ray.
+// where `altitude` is the triangle's least in space, `sine` belongs to the angle between its plane and the ray to P,
+// and W is the greatest planar distance. A greater scale in one direction makes nothing thinner. Parallel projection
+// has the same bound with W = 1 and the axis for the ray.
 //
-// Over a cluster: for p in the box and the cone's axis A, m = min A.(p-E) is taken at a corner, and with |p-E| <= R all
-// rays make an angle of cosine at least m/R with A. A normal may lean by the cone's half angle from A, so its cosine to
-// the ray, the sine above, is at least cos m/R - sin sqrt(1 - (m/R)^2).
+// Over a cluster: for p in the box and the cone's axis A, the minimum m of A.(p-E) is taken at a corner. With |p-E| <=
+// R, all rays make an angle of cosine at least m/R with A. A normal may lean by the cone's half angle from A, so its
+// cosine to the ray, the sine above, is at least cos m/R - sin sqrt(1 - (m/R)^2).
 //
-// Margins: that cosine may be less by kFacingRounding, which is kConeRounding and what rounding here adds (a few
-// 2^-24). The corner's error is at most what pads the pixel rectangle, which counts snapping twice and rounding four
-// times. This leaves a factor of two for poses that are a rotation only to 1e-4.
+// Margins: that cosine may be less by kFacingRounding, the sum of kConeRounding and the rounding here (a few 2^-24).
+// The vertex error is at most the padding of the pixel rectangle, which counts snapping twice and rounding four times.
+// This leaves a factor of two for poses that are a rotation only to 1e-4.
 constexpr float kFacingRounding = kConeRounding + 1.0f / 1024.0f;
 
-/// The ray to what faces away, and what the altitude on the screen is compared with.
+/// The rays to the points of a box, and the altitude on the screen that facing needs.
 struct Rays {
-  CullVector low, high;  // range of p - E over the box; in parallel projection the axis, twice
-  VF farthest;           // |p - E|, at most
-  VF needed;             // altitude * sine, at least
+  CullVector low, high;  // range of p - E over the box; in parallel projection both are the axis
+  VF farthest;           // upper bound of |p - E|
+  VF needed;             // least altitude * sine
 };
 
 class FacingCull {
@@ -108,7 +109,7 @@ class FacingCull {
   FacingCull(const ConeArrays& cones, Culling culling)
       : cones_(cones), sign_(culling == Culling::front ? -1.0f : 1.0f) {}
 
-  /// Clusters of which no triangle faces the side that is to be seen. NaN compares false, which keeps the cluster.
+  /// Clusters of which no triangle faces the visible side. NaN compares false, which keeps the cluster.
   [[nodiscard]] HWY_INLINE MF TurnedAway(std::size_t i, const Rays& rays) const {
     const DF d;
     const VF sign = hn::Set(d, sign_), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
@@ -163,11 +164,11 @@ class Cull {
   }
 
  private:
-  /// Sides of the boxes from the eye as a float: the lower, the upper.
+  /// Lower and upper sides of the boxes, relative to the eye as a float.
   struct Offsets {
     VF x[2], y[2], z[2];
   };
-  /// What rounding may amount to in X, Y, D and W.
+  /// Bounds of the rounding of X, Y, D and W.
   struct Margins {
     VF x, y, d, w;
   };
@@ -177,7 +178,7 @@ class Cull {
     VF left, right, top, bottom;
     VF x_min, x_max, y_min, y_max;
   };
-  /// What X/W and Y/W may be off, snapping included, and 1/W of what is nearest.
+  /// Bounds of the error of X/W and Y/W, snapping included, and 1/W of the nearest point.
   struct Pads {
     VF x, y, inverse_nearest;
   };
@@ -208,14 +209,15 @@ class Cull {
       const VF w = t.orthographic ? hn::Set(d, 1.0f) : depth;
       e.nearest = hn::Min(e.nearest, depth);
       e.farthest = hn::Max(e.farthest, depth);
-      // Inside the left side where X >= -W * half the width, and so on; no division, so corners behind the eye serve as
-      // well.
+      // A corner is inside the left side if X >= -W * half the width, and so on. The test has no division, so it also
+      // serves corners behind the eye.
       const VF wx = hn::Mul(half_x, w), wy = hn::Mul(half_y, w);
       e.left = hn::Max(e.left, hn::Add(wx, x));
       e.right = hn::Max(e.right, hn::Sub(wx, x));
       e.top = hn::Max(e.top, hn::Add(wy, y));
       e.bottom = hn::Max(e.bottom, hn::Sub(wy, y));
-      // Nonsense for corners that are not before the eye; Whole() then fails on `nearest`, and nothing of this is used.
+      // Meaningless for corners that are not before the eye; Whole() then fails on `nearest`, and the values are not
+      // used.
       const VF inverse = hn::Div(hn::Set(d, 1.0f), w);
       const VF sx = hn::Mul(x, inverse), sy = hn::Mul(y, inverse);
       e.x_min = hn::Min(e.x_min, sx);
@@ -228,7 +230,8 @@ class Cull {
     return e;
   }
 
-  /// Strictly, and by more than rounding can explain. NaN compares false, which keeps the cluster.
+  /// Boxes outside of one side strictly, and by more than rounding can explain. NaN compares false, which keeps the
+  /// cluster.
   [[nodiscard]] HWY_INLINE MF Outside(const Extent& e, const Margins& margin) const {
     const DF d;
     const VF half_x = hn::Set(d, float(t.centre_x)), half_y = hn::Set(d, float(t.centre_y));
@@ -253,7 +256,7 @@ class Cull {
             pad(hn::Max(hn::Abs(e.y_min), hn::Abs(e.y_max)), margin.y), inverse};
   }
 
-  /// Between the planes, and within the guard band, with the margins.
+  /// Boxes between the planes and within the guard band, margins included.
   [[nodiscard]] HWY_INLINE MF Whole(const Extent& e, const Pads& pad) const {
     const DF d;
     const VF guard = hn::Set(d, float(kGuardBand));
@@ -262,7 +265,8 @@ class Cull {
     return hn::And(between, hn::And(hn::Lt(hn::Add(x_most, pad.x), guard), hn::Lt(hn::Add(y_most, pad.y), guard)));
   }
 
-  /// Pixel rectangle and nearest key. No key is greater than that of the nearest distance, give or take its rounding.
+  /// Stores the pixel rectangle and the nearest key. No key is greater than that of the nearest distance, but for
+  /// rounding.
   HWY_INLINE void StorePlace(std::size_t i, const Extent& e, const Pads& pad, CullResult& out) const {
     const DF d;
     const DI di;
@@ -284,7 +288,7 @@ class Cull {
     for (std::size_t k = 0; k < hn::Lanes(di); ++k) out.fate[i + k] = static_cast<std::uint8_t>(fates[k]);
   }
 
-  /// `error` is of a corner on the screen.
+  /// `error` bounds the error of a vertex on the screen.
   [[nodiscard]] HWY_INLINE Rays RaysFromEye(const Offsets& o, VF error, VF farthest_d) const {
     const DF d;
     const VF rest_x = hn::Set(d, rest.x), rest_y = hn::Set(d, rest.y), rest_z = hn::Set(d, rest.z);

@@ -15,7 +15,7 @@
 namespace frontmost::zbuffer_detail {
 namespace {
 
-// A cluster on more tiles than this is cheaper taken apart than transformed again for each.
+// A cluster on more tiles than this is cheaper to take apart than to transform again for each tile.
 constexpr int kMaxTilesOfCluster = 16;
 constexpr std::size_t kSlices = 32;
 
@@ -66,7 +66,7 @@ void FramePlan::take_apart(const ClusterSet& set, const PlaceTarget& target, con
   const std::size_t part_count = (apart_.size() + kGrain - 1) / kGrain;
   if (apart_parts_.size() < part_count) apart_parts_.resize(part_count);
   parallel_for(execution, apart_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    // By chunk, not by thread: records are put together in the same order however many threads there are.
+    // Parts belong to chunks, not threads, so the order of records does not depend on the number of threads.
     std::vector<TriangleRecord>& part = apart_parts_[begin / kGrain];
     part.clear();
     for (std::size_t i = begin; i < end; ++i) append_records(target, set, set.clusters[apart_[i]], part);
@@ -77,7 +77,7 @@ void FramePlan::take_apart(const ClusterSet& set, const PlaceTarget& target, con
 }
 
 void FramePlan::order_whole(std::size_t cluster_count) {
-  // By the bits of the key, which grow with its logarithm: slices grow with the distance, as what is behind does.
+  // Slices divide the bits of the key, which grow with its logarithm, so slices get deeper with distance.
   std::uint32_t least = 0xFFFFFFFFu, greatest = 0;
   for (std::size_t i = 0; i < cluster_count; ++i) {
     if (culled_.fate_of(i) != ClusterFate::whole) continue;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is drawn where: the work of one frame, sorted into tiles, and the kernel that draws one of them.
+// The work of one frame, sorted into tiles, and the kernel that draws one tile.
 //
 //    clusters --cull--> whole ------ order by 32 slices of depth ------> cluster lists --+
 //                   +-> apart ------ triangles, clipped: records ------> record lists ---+--> a TileJob for each tile
 //
-// Both lists of a tile are nearest first, and what has holes stands behind all else. That is never needed for the
-// picture; it makes the hierarchical depth hide what comes later.
+// Both lists of a tile are nearest first, with cutouts behind all solid items. The picture never depends on this order;
+// the order makes the hierarchical depth hide later items.
 #pragma once
 
 #include <span>
@@ -19,18 +19,18 @@
 
 namespace frontmost::zbuffer_detail {
 
-/// What all tiles of a frame have in common. Borrows everything.
+/// The input that all tiles of a frame share. Borrows everything.
 struct FrameInput : Picture {
   const ClusterSet& set;
   const ScreenTransform& transform;
   const FacingRule& facing;
   const CullResult& culled;
-  std::span<const TriangleRecord> records;  ///< corners from the image's top left
+  std::span<const TriangleRecord> records;  ///< vertices from the image's top left
 };
 
-/// One tile, and what may be seen in it.
+/// One tile, and the records and clusters that may be seen in it.
 struct TileJob : Tile {
-  /// Near things first.
+  /// Nearest first.
   struct Items {
     std::span<const std::uint32_t> records, clusters;
 
@@ -44,18 +44,19 @@ struct TileJob : Tile {
 /// Draws a tile and writes it to the output planes.
 void draw_tile(const FrameInput& frame, const TileJob& job, TileScratch& scratch, Isa isa);
 
-/// The plan of a frame. Planning the next one reuses its memory.
+/// The plan of a frame. Planning the next frame reuses its memory.
 class FramePlan {
  public:
-  /// Culls, takes apart what must be, orders and bins. O(clusters + pairs of large triangle and tile) time. Memory:
-  /// about 30 bytes a cluster and 64 for one drawn whole, 100 a large or clipped triangle, and the lists of one round.
+  /// Culls clusters, takes some apart, orders and bins the rest. O(clusters + pairs of large triangle and tile) time.
+  /// Memory: about 30 bytes a cluster, 64 more if drawn whole, 100 a large or clipped triangle, and the lists of one
+  /// round.
   void make(const ClusterSet& set, const PlaceTarget& target, const Execution& execution,
             std::size_t most_record_items = kMostRecordItems);
 
   [[nodiscard]] const CullResult& culled() const { return culled_; }
   [[nodiscard]] RecordLists& records() { return records_; }
 
-  /// Precondition: `tile` is of the round of records listed last.
+  /// Precondition: `tile` belongs to the round of records listed last.
   [[nodiscard]] TileJob job(std::size_t tile, const View& view) const;
 
  private:
@@ -66,9 +67,9 @@ class FramePlan {
 
   CullResult culled_;
   std::vector<std::uint32_t> apart_;                      // clusters to be taken apart
-  std::vector<std::vector<TriangleRecord>> apart_parts_;  // what threads made of them
+  std::vector<std::vector<TriangleRecord>> apart_parts_;  // records of each chunk of apart_
   RecordLists records_;
-  std::size_t first_cutout_ = 0;      // of the set's clusters
+  std::size_t first_cutout_ = 0;      // first of the set's clusters that has holes
   std::vector<std::uint32_t> order_;  // clusters drawn whole, cutouts behind all others, nearer slices first
   TileLists cluster_lists_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// As many triangles at once as the vector holds: what all ways to draw them have in common.
+// Packets: as many triangles at once as the vector has lanes, in the form that all ways to draw them share.
 //
 //    lane        0     1     2    ...           A packet is as many triangles as the vector has lanes. Edges and key
 //    edge 0      e0    e0    e0                 planes are set up for all at once, and then all are walked in step: in
@@ -29,12 +29,12 @@ using view_detail::HWY_NAMESPACE::Kept;
 using view_detail::HWY_NAMESPACE::KeyPlanes;
 using view_detail::HWY_NAMESPACE::KeyPlanesOf;
 
-// Corners no farther apart than this keep every edge value inside the triangle's box within 32 bits: two products of
+// Vertices no farther apart than this keep every edge value inside the triangle's box within 32 bits: two products of
 // at most 31744 * (31744 + 256).
 constexpr std::int32_t kSmallExtent = 124 * 256;
 
 #if HWY_TARGET <= HWY_AVX3
-// 64 entries are four vectors, and a permutation reads two: a gather takes several times as long.
+// 64 entries are four vectors, and one permutation reads two vectors. A gather takes several times as long.
 HWY_INLINE VI LookUp64(const std::int32_t* table, VI number) {
   const auto low = _mm512_permutex2var_epi32(_mm512_load_si512(table), number.raw, _mm512_load_si512(table + 16));
   const auto high = _mm512_permutex2var_epi32(_mm512_load_si512(table + 32), number.raw, _mm512_load_si512(table + 48));
@@ -54,15 +54,15 @@ HWY_INLINE CoordinateRange RangeOf(VI a, VI b, VI c) { return {hn::Min(a, hn::Mi
 struct PixelRange {
   VI first, last;
 };
-/// Of `size` pixels the first that has a sample at or after the least coordinate, and the last that has one at or
-/// before the greatest; `low` and `high` are the outermost sample offsets. None where the first is after the last.
+/// The first of `size` pixels that has a sample at or after the least coordinate, and the last that has one at or
+/// before the greatest. `low` and `high` are the outermost sample offsets. The range is empty if first > last.
 HWY_INLINE PixelRange PixelsOf(const CoordinateRange& range, std::int32_t low, std::int32_t high, std::int32_t size) {
   const DI d;
   return {hn::Max(hn::ShiftRight<8>(hn::Add(range.least, hn::Set(d, 255 - high))), hn::Zero(d)),
           hn::Min(hn::ShiftRight<8>(hn::Sub(range.greatest, hn::Set(d, low))), hn::Set(d, size - 1))};
 }
 
-/// One corner of each triangle of a vector: its vertex, and where that is on the screen.
+/// One vertex of each triangle of a vector: its number, and its place on the screen.
 struct Corners {
   VI number, x, y;
 };
@@ -71,13 +71,13 @@ HWY_INLINE Corners Chosen(MI mask, const Corners& yes, const Corners& no) {
           hn::IfThenElse(mask, yes.y, no.y)};
 }
 
-/// How small triangles are wound. Those that face the eye have negative areas, as y is down: to turn them positive,
-/// they swap their last two corners.
+/// Winding of small triangles. Triangles that face the eye have negative areas, as y is down; swapping their last two
+/// vertices makes the areas positive.
 struct Winding {
   MI front;
-  MI kept;  ///< culling leaves them, and they have an area
+  MI kept;  ///< triangles that have an area and are not culled
 };
-/// Precondition: corners of kept triangles are no farther apart than kSmallExtent.
+/// Precondition: vertices of kept triangles are no farther apart than kSmallExtent.
 template <class Ids>
 HWY_INLINE Winding WindingOf(const FacingRule& facing, const Corners (&corners)[3], MI asked, const Ids& ids) {
   const Corners &a = corners[0], &b = corners[1], &c = corners[2];
@@ -90,16 +90,16 @@ HWY_INLINE Winding WindingOf(const FacingRule& facing, const Corners (&corners)[
 
 HWY_INLINE MI AllLanes() { return hn::Eq(hn::Zero(DI()), hn::Zero(DI())); }
 
-/// Of a packet of triangles those that may cover a sample, so turned that their areas are positive.
+/// The triangles of a packet that may cover a sample, so oriented that their areas are positive.
 struct PlacedPacket {
   MI kept;
   const Corners corners[3];
   PixelRange columns, rows;
 };
 
-/// Sorts out what of the `live` triangles may cover a sample, for whatever draws them. `sink` has ColumnsOf(range) and
-/// RowsOf(range), the pixels that samples within the triangles' bounds belong to; Ids(); PutLarge(mask), which is given
-/// those whose corners are farther apart than kSmallExtent, neither turned nor culled; and PutSmall(placed).
+/// Finds the `live` triangles that may cover a sample, and passes them to `sink`. ColumnsOf(range) and RowsOf(range) of
+/// the sink give the pixels that samples within the bounds belong to; Ids() gives ids. PutLarge(mask) takes triangles
+/// with vertices farther apart than kSmallExtent, neither oriented nor culled; PutSmall(placed) takes all others.
 template <class Sink>
 HWY_INLINE void SortOut(const Corners (&c)[3], MI live, const FacingRule& facing, Sink& sink) {
   const DI d;
@@ -119,15 +119,15 @@ HWY_INLINE void SortOut(const Corners (&c)[3], MI live, const FacingRule& facing
   sink.PutSmall({keep, {c[0], Chosen(winding.front, c[2], c[1]), Chosen(winding.front, c[1], c[2])}, columns, rows});
 }
 
-/// Three edges and a depth plane for each triangle. Corners no farther apart than kSmallExtent, areas positive.
+/// Three edges and a key plane for each triangle. Vertices are no farther apart than kSmallExtent, areas positive.
 struct Packet : KeyPlanes {
-  VI x[3], y[3];  // corners
+  VI x[3], y[3];  // vertices
   CoordinateRange columns, rows;
-  VI dx[3], dy[3], bias[3];  // edge k runs from corner k
+  VI dx[3], dy[3], bias[3];  // edge k starts at vertex k
   VI area;                   // twice the area
 };
 
-/// Precondition: the corners of `b` are set.
+/// Precondition: the vertices of `b` are set.
 HWY_INLINE void SetUpPacket(Packet& b, const VF (&key)[3]) {
   b.columns = RangeOf(b.x[0], b.x[1], b.x[2]);
   b.rows = RangeOf(b.y[0], b.y[1], b.y[2]);
@@ -135,16 +135,16 @@ HWY_INLINE void SetUpPacket(Packet& b, const VF (&key)[3]) {
     const int n = k == 2 ? 0 : k + 1;
     b.dx[k] = hn::Sub(b.x[n], b.x[k]);
     b.dy[k] = hn::Sub(b.y[n], b.y[k]);
-    // Top-left edges include their own points: bias 0, the others -1. Top-left is dy < 0, or dy = 0 and dx > 0; that
-    // is dy * 2^16 - dx < 0, as both are within 15 bits.
+    // Top-left edges include their own points, with bias 0; other edges have bias -1. An edge is top-left if dy < 0, or
+    // dy = 0 and dx > 0. The test is dy * 2^16 - dx < 0, as both are within 15 bits.
     b.bias[k] = hn::Not(hn::ShiftRight<31>(hn::Sub(hn::ShiftLeft<16>(b.dy[k]), b.dx[k])));
   }
   b.area = hn::Sub(hn::Mul(b.dx[2], b.dy[0]), hn::Mul(b.dx[0], b.dy[2]));
   static_cast<KeyPlanes&>(b) = KeyPlanesOf(b.x, b.y, key);
 }
 
-/// Edge values at the samples (sx, sy) within the triangles' boxes: covered where none is negative. From pixel to pixel
-/// they grow by -dy and dx.
+/// Edge values at the samples (sx, sy) within the triangles' boxes. A sample is covered if no value is negative. From
+/// pixel to pixel the values grow by -dy and dx.
 struct PacketEdges {
   VI e[3];
 };

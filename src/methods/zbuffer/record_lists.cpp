@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which large triangles are drawn in which tiles, in rounds that keep the lists within a bound.
 //
-// Sorting is by nearness and then by corners, so that triangles with the same corners follow each other and all but the
-// lowest id go. The order never decides what is seen; without it a tile would draw what it overdraws later.
+// Records are sorted by nearness and then by vertices, so triangles with the same vertices follow each other and all
+// but the lowest id are dropped. The order never decides what is seen; it only saves overdraw.
 
 #include "zbuffer/record_lists.h"
 
@@ -16,7 +16,7 @@ auto place_of(const TriangleRecord& r) {
   return std::tie(r.x[0], r.y[0], r.x[1], r.y[1], r.x[2], r.y[2], r.key[0], r.key[1], r.key[2]);
 }
 
-/// The nearer one; of those at one place, which come one after the other, the lower id.
+/// True if `a` is nearer. Records with the same vertices follow each other, the lower id first.
 bool comes_before(const TriangleRecord& a, const TriangleRecord& b) {
   if (a.nearest() != b.nearest()) return a.nearest() > b.nearest();
   return std::tuple_cat(place_of(a), std::tie(a.id)) < std::tuple_cat(place_of(b), std::tie(b.id));
@@ -29,11 +29,12 @@ bool is_at_one_place(const TriangleRecord& a, const TriangleRecord& b) { return 
 void RecordLists::plan(const View& view, const Cutouts* cutouts, std::size_t most_items) {
   const auto is_solid = [&](const TriangleRecord& r) { return !cutouts || !cutouts->has(r.id); };
   auto first_cutout = std::partition(records.begin(), records.end(), is_solid);
-  // Any order gives the same picture. Nearest first, a tile may stop at the first record that all of its blocks hide.
+  // Any order gives the same picture. With the nearest first, a tile may stop at the first record that all its blocks
+  // hide.
   std::sort(records.begin(), first_cutout, comes_before);
   std::sort(first_cutout, records.end(), comes_before);
-  // A triangle that is there again is hidden by the lower id everywhere, unless that has holes. A few bytes of glTF
-  // make a million of one.
+  // The lower id hides a copy of itself everywhere, unless it has holes. A few bytes of glTF make a million copies of
+  // one triangle.
   first_cutout = records.erase(std::unique(records.begin(), first_cutout, is_at_one_place), first_cutout);
   first_cutout_ = std::size_t(first_cutout - records.begin());
   split_into_rounds(view, most_items);
@@ -44,11 +45,11 @@ void RecordLists::list(const TileRange& round, const View& view) {
               [&](std::size_t i, const auto& add) { visit_tiles(records[i], view, round, add); });
 }
 
-/// Consecutive tiles whose lists together hold at most `most_items`, one tile at least.
+/// Splits the tiles into rounds whose lists hold at most `most_items` together, or a single tile.
 void RecordLists::split_into_rounds(const View& view, std::size_t most_items) {
   const TileRange all{0, Tile::count(view)};
   rounds_.assign(1, all);
-  // Even if every record were in every tile: no need to count.
+  // The bound holds even if every record is in every tile: counting is not needed.
   if (records.size() <= most_items / all.end) return;
   std::vector<std::uint32_t> counts(all.end, 0);
   for (const TriangleRecord& record : records)

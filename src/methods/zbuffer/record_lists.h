@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Large and clipped triangles, nearest first, and in which tiles they may be seen.
+// Large and clipped triangles, nearest first, and the tiles in which each may be seen.
 //
 //    records    nearest first
 //    round 0    tiles 0 ... 40      lists of at most 2^26 items together
 //    round 1    tiles 41 ... 90     made when round 0 is drawn, in the same memory
 //
-// Large triangles are in many tiles, so lists are what could grow without bound: they are made round by round.
+// A large triangle is in many tiles, so its lists could grow without bound. Lists are therefore made round by round.
 #pragma once
 
 #include <memory>
@@ -21,21 +21,21 @@ namespace frontmost::zbuffer_detail {
 /// The most items that the lists of one round hold (256 MiB), unless a single tile has more.
 inline constexpr std::size_t kMostRecordItems = std::size_t(1) << 26;
 
-/// Planning the next ones reuses their memory.
+/// Records and their tile lists. Planning the next frame reuses the memory.
 class RecordLists {
  public:
-  /// To be filled before plan(): corners from the image's top left.
+  /// Filled by the caller before plan(); vertices from the image's top left.
   std::vector<TriangleRecord> records;
 
-  /// Sorts the records, nearest first, those of `cutouts` behind all others, and finds the rounds. Of others with the
-  /// same corners it keeps the lowest id.
+  /// Sorts the records nearest first, cutouts behind all others, and finds the rounds. Among solid records with the
+  /// same vertices plan() keeps only the lowest id.
   void plan(const View& view, const Cutouts* cutouts, std::size_t most_items = kMostRecordItems);
-  /// Tiles are drawn in rounds: one for any ordinary scene, but a million triangles that each fill the largest image
-  /// make 16 thousand million pairs of record and tile.
+  /// The rounds in which tiles are drawn. An ordinary scene takes one round; a million triangles that each fill the
+  /// largest image make 16 thousand million pairs of record and tile.
   [[nodiscard]] std::span<const TileRange> rounds() const { return rounds_; }
-  /// Lists the records that may be seen in each tile of a round, in place of those of the round before.
+  /// Lists the records that may be seen in each tile of a round, and drops the lists of the round before.
   void list(const TileRange& round, const View& view);
-  /// Precondition: `tile` is of the round listed last.
+  /// Precondition: `tile` belongs to the round listed last.
   [[nodiscard]] PartedList of(std::size_t tile) const {
     return {lists_.of(tile), [&](std::uint32_t i) { return i >= first_cutout_; }};
   }
@@ -48,7 +48,7 @@ class RecordLists {
   std::vector<TileRange> rounds_;
 };
 
-/// Calls draw(tile, scratch) for every tile, many at the same time, when its records are listed.
+/// Calls draw(tile, scratch) for every tile once its records are listed; many tiles are drawn at the same time.
 template <class Draw>
 void draw_tiles(RecordLists& records, const View& view, const Execution& execution, Pool<TileScratch>& scratches,
                 const Draw& draw) {
@@ -62,7 +62,7 @@ void draw_tiles(RecordLists& records, const View& view, const Execution& executi
   }
 }
 
-/// Calls add(tile) for the tiles of `range` in which a record may be seen; corners from the image's top left.
+/// Calls add(tile) for the tiles of `range` in which a record may be seen; vertices from the image's top left.
 template <class Add>
 void visit_tiles(const TriangleRecord& record, const View& view, const TileRange& range, const Add& add) {
   const PixelRect rect = pixel_rect(record, view.width, view.height);
@@ -75,8 +75,8 @@ void visit_tiles(const TriangleRecord& record, const View& view, const TileRange
       const std::size_t tile = std::size_t(y) * across + std::size_t(x);
       if (tile < range.begin || tile >= range.end) continue;
       const PixelRect pixels{x * kTileSize, y * kTileSize, (x + 1) * kTileSize - 1, (y + 1) * kTileSize - 1};
-      // Of a single tile the outermost corners were asked already; a long diagonal touches few of those in its
-      // rectangle.
+      // With a single tile, pixel_rect() has already tested the outermost coordinates. A long diagonal triangle touches
+      // few tiles of its rectangle.
       if (tiles.count() == 1 || !misses(record, pixels)) add(tile);
     }
 }

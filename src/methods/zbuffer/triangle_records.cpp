@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Setting up single triangles: those of clusters that cannot be drawn as a whole.
+// Setup of single triangles, for clusters that cannot be drawn as a whole.
 //
-// A record is made where a cluster cannot be drawn as a whole: its corners are transformed and clipped one triangle
-// after the other, and what clipping leaves is a fan of triangles, whose inner edges the top-left rule covers once.
-// Snapping, culling and keys are those of the kernels to the bit.
+// Triangles are transformed and clipped one after the other. Clipping leaves a fan of triangles, whose inner edges the
+// top-left rule covers once. Snapping, culling and keys equal those of the kernels to the bit.
 
 #include "zbuffer/triangle_records.h"
 
@@ -14,7 +13,7 @@
 namespace frontmost::zbuffer_detail {
 namespace {
 
-/// The vertices of a cluster on the screen, each worked out once.
+/// The vertices of a cluster on the screen, each computed once.
 class SnappedCluster {
  public:
   SnappedCluster(const ClusterSet& set, const Cluster& cluster, const ScreenTransform& t)
@@ -30,7 +29,7 @@ class SnappedCluster {
   [[nodiscard]] ClippedPolygon polygon(std::size_t triangle) const {
     const std::size_t c = cluster_.first_triangle + triangle;
     const std::size_t a = set_.i0[c], b = set_.i1[c], d = set_.i2[c];
-    // Padding, and triangles with a corner that is not finite: build_clusters() made them so.
+    // Padding, or a triangle with a vertex that is not finite: build_clusters() gives both equal vertices.
     if (a == b || b == d || a == d) return {};
     if (!is_plain_[a] || !is_plain_[b] || !is_plain_[d])
       return clip_triangle(transform_, {position(a), position(b), position(d)});
@@ -64,7 +63,7 @@ PlaceTarget::PlaceTarget(const ScreenTransform& t, const View& v, const Material
 
 bool orient(TriangleRecord& r, const FacingRule& facing) {
   const std::int64_t area = doubled_area(r);
-  // Without area is edge-on, whatever the winding was: culling never comes to it.
+  // A triangle without area is edge-on, whatever its winding was, so the culling rule does not apply.
   if (area == 0 || !facing.keeps(r.id, area < 0)) return false;
   if (area < 0) {
     std::swap(r.x[1], r.x[2]);
@@ -90,7 +89,7 @@ void append_polygon(const PlaceTarget& target, const ClippedPolygon& polygon, Pr
 }
 
 PixelRect pixel_rect(const TriangleRecord& r, int width, int height) {
-  // Samples lie within [0, 256) of a pixel, so the pixels of the outermost corners are all that can be touched.
+  // Samples lie within [0, 256) of a pixel, so only pixels between the outermost vertices can be covered.
   const auto [x_min, x_max] = std::minmax({r.x[0], r.x[1], r.x[2]});
   const auto [y_min, y_max] = std::minmax({r.y[0], r.y[1], r.y[2]});
   return {std::max(x_min >> 8, 0), std::max(y_min >> 8, 0), std::min(x_max >> 8, width - 1),
@@ -108,9 +107,8 @@ bool misses(const TriangleRecord& r, const PixelRect& rect) {
   for (int a = 0; a < 3; ++a) {
     const int b = (a + 1) % 3;
     const std::int64_t dx = r.x[b] - r.x[a], dy = r.y[b] - r.y[a];
-    // The corner of the rectangle that lies deepest inside the edge.
-    // One past the last pixel, as samples lie within [0, 256) of theirs. Without the top-left bias the edge is a little
-    // too generous, which only costs time.
+    // The corner of the rectangle that lies deepest inside the edge, one past the last pixel, as samples lie within [0,
+    // 256) of theirs. Without the top-left bias the test is a little too generous, which only costs time.
     const std::int64_t x = dy < 0 ? (std::int64_t(rect.x1) + 1) * kSubPixels : std::int64_t(rect.x0) * kSubPixels;
     const std::int64_t y = dx > 0 ? (std::int64_t(rect.y1) + 1) * kSubPixels : std::int64_t(rect.y0) * kSubPixels;
     if (dx * (y - r.y[a]) - dy * (x - r.x[a]) < 0) return true;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles on the screen, set up one by one: the large ones, and those that had to be clipped.
+// Triangles on the screen that are set up one by one: large triangles, and triangles that had to be clipped.
 //
-// Edge values are exact: corners have 22 bits, so products have 46 and fit 64-bit integers. Over a tile they are
-// shifted and limited to 32 bits in such a way that every sign stays what it was.
+// Edge values are exact: coordinates have 22 bits, so products have 46 bits and fit 64-bit integers. Within a tile,
+// edge values are shifted and limited to 32 bits such that every sign stays right.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +17,8 @@
 
 namespace frontmost::zbuffer_detail {
 
-/// A triangle on the screen, corners in 1/256 pixel from some origin, so turned that its area is positive (clockwise
-/// to the eye, y being down).
+/// A triangle on the screen, vertices in 1/256 pixel from some origin. The vertices are so ordered that the area is
+/// positive (clockwise to the eye, y being down).
 struct TriangleRecord {
   std::int32_t x[3], y[3];
   float key[3];
@@ -27,16 +27,17 @@ struct TriangleRecord {
   [[nodiscard]] float nearest() const { return std::max({key[0], key[1], key[2]}); }
 };
 
-/// Edge functions at a tile's first sample, shifted right by 8, and their steps from pixel to pixel: a sample is
-/// covered where none of the three is negative. Left and top edges include their points.
+/// Edge functions at a tile's first sample, shifted right by 8, and their steps from pixel to pixel. A sample is
+/// covered if none of the three is negative. Left and top edges include their points.
 struct TriangleEdges {
-  // Over 127 pixels both ways a value changes by at most 2 * 127 * 2^22 < 2^30: limited to this at the first sample,
-  // its sign stays right and its sums stay within 32 bits.
+  // Over 127 pixels both ways a value changes by at most 2 * 127 * 2^22 < 2^30. A first value limited to `limit` keeps
+  // its sign, and its sums stay within 32 bits.
   static constexpr std::int64_t limit = std::int64_t(1) << 30;
 
   std::int32_t first[3], step_x[3], step_y[3];
 
-  /// `sample` lies in the tile's first pixel; corners relative to the tile, area positive.
+  /// Precondition: `sample` lies in the tile's first pixel, vertices are relative to the tile, and the area is
+  /// positive.
   TriangleEdges(const TriangleRecord& r, const glm::ivec2& sample) {
     for (int k = 0; k < 3; ++k) {
       const int n = k == 2 ? 0 : k + 1;
@@ -51,39 +52,39 @@ struct TriangleEdges {
   }
 };
 
-/// Where triangles are placed.
+/// The view that triangles are placed in, and the rules for placing them.
 struct PlaceTarget {
   const ScreenTransform& transform;
   const View& view;
   FacingRule facing;
-  glm::ivec2 low, high;  ///< of the sample offsets
+  glm::ivec2 low, high;  ///< least and greatest sample offset
   Isa isa;
 
-  /// Borrows everything; `sides` are those of the scene that is placed.
+  /// Borrows everything. `sides` belongs to the scene that is placed.
   PlaceTarget(const ScreenTransform& t, const View& v, const MaterialSides* sides, Isa i);
 };
 
-/// Turns a record's area positive. \returns false when it is culled, or has no area and so covers nothing.
+/// Makes a record's area positive. \returns false if the record is culled, or has no area and so covers nothing.
 [[nodiscard]] bool orient(TriangleRecord& record, const FacingRule& facing);
 
-/// Appends the triangles of one cluster that may be seen, clipped where needed, corners from the image's top left.
+/// Appends the triangles of one cluster that may be seen, clipped where needed, vertices from the image's top left.
 void append_records(const PlaceTarget& target, const ClusterSet& set, const Cluster& cluster,
                     std::vector<TriangleRecord>& records);
 
-/// The same of one polygon.
+/// Appends the triangles of one clipped polygon that may be seen.
 void append_polygon(const PlaceTarget& target, const ClippedPolygon& polygon, PrimitiveId id,
                     std::vector<TriangleRecord>& records);
 
-/// The pixels whose samples a record may cover, within the image; empty (x1 < x0 or y1 < y0) when there are none.
+/// The pixels within the image whose samples a record may cover. Empty (x1 < x0 or y1 < y0) if there are none.
 [[nodiscard]] PixelRect pixel_rect(const TriangleRecord& record, int width, int height);
 
-/// Those that have a sample between a triangle's outermost corners, `low` and `high` being the least and greatest
-/// sample offsets. Most triangles smaller than a pixel have none, and cover nothing.
+/// The pixels that have a sample between a triangle's outermost coordinates. `low` and `high` are the least and
+/// greatest sample offsets. Most triangles smaller than a pixel have no such pixel, and cover nothing.
 [[nodiscard]] PixelRect sampled_rect(const TriangleRecord& record, const glm::ivec2& low, const glm::ivec2& high,
                                      int width, int height);
 
-/// Calls visit(record) for the triangles of a clipped polygon, corners from the image's top left, not turned yet. A
-/// fan: the top-left rule covers its inner edges once.
+/// Calls visit(record) for the triangles of a clipped polygon, vertices from the image's top left, not oriented yet.
+/// The triangles form a fan: the top-left rule covers its inner edges once.
 template <class Visit>
 void for_each_of_fan(const ClippedPolygon& polygon, const ScreenTransform& t, PrimitiveId id, const Visit& visit) {
   for (std::size_t k = 2; k < std::size_t(polygon.count); ++k) {
@@ -99,13 +100,13 @@ void for_each_of_fan(const ClippedPolygon& polygon, const ScreenTransform& t, Pr
   }
 }
 
-/// True when no sample of the rectangle's pixels lies inside all three edges: a quick test by corners.
+/// True if all samples of the rectangle's pixels lie outside one edge: a quick test by the rectangle's corners.
 [[nodiscard]] bool misses(const TriangleRecord& record, const PixelRect& rect);
 
 /// Calls visit(x, y) for the pixels of `rect` whose sample, `offset` from the pixel's corner, is covered.
 template <class Visit>
 void visit_covered(const TriangleRecord& r, const PixelRect& rect, const glm::ivec2& offset, const Visit& visit) {
-  // Exact: coordinates within the guard band have 22 bits, their differences 23, a product and a sum of such 47.
+  // Exact: coordinates within the guard band have 22 bits, their differences 23, and a product and a sum of those 47.
   std::int64_t row[3], step_x[3], step_y[3];
   for (int k = 0; k < 3; ++k) {
     const int n = k == 2 ? 0 : k + 1;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The z-buffer: plan the frame, then draw its tiles on all threads.
 //
-// A ZBuffer keeps its planes, its plan and its scratch memory from frame to frame. Tiles that stay empty are not even
-// filled again: `blank` knows which of the planes' tiles hold nothing. Where an error ends a frame, tiles that were
-// being drawn count as not blank.
+// A ZBuffer keeps its planes, its plan and its scratch memory from frame to frame. Tiles that stay empty are not filled
+// again: `blank` tells which tiles of the planes hold nothing. If an error ends a frame, the tiles being drawn count as
+// not blank.
 
 #include "frontmost/zbuffer.h"
 
@@ -27,18 +27,19 @@ struct ZBuffer::State {
   FramePlan plan;
   Pool<TileScratch> scratches;
   Visible visible;
-  /// By tile: its planes hold nothing but "nothing is seen". As long as they belong to the same grid, tiles that stay
-  /// empty need not be filled again.
+  /// By tile: true if its planes hold nothing but "nothing is seen". Tiles that stay empty need not be filled again, as
+  /// long as the grid is the same.
   std::vector<std::uint8_t> blank;
 
-  /// Planes for the view: those of the last frame where they fit. \returns true when their memory was used before.
+  /// Makes planes for the view, or keeps those of the last frame if they fit. \returns true if their memory was used
+  /// before.
   bool prepare_planes(const View& view);
 };
 
 bool ZBuffer::State::prepare_planes(const View& view) {
   const View& last = visible.view;
   const bool fits = visible.primitives.size() == view.sample_count() && visible.keys.size() == view.sample_count();
-  // Whatever fails for want of memory, planes, their view and `blank` go together.
+  // If memory runs out, planes, their view and `blank` still match each other.
   if (!fits) {
     visible = {};
     visible = {view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(view.sample_count())};
@@ -64,8 +65,8 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
   const PlaceTarget target(transform, view, placed_scene(surfaces).sides.get(), execution.isa);
   plan.make(set, target, execution);
 
-  // On planes that are touched for the first time streaming costs 20 % at 16 MiB and saves 15 % at 66 MiB; on planes
-  // that were used before it pays from the size on at which they leave the second-level cache.
+  // Streaming to planes that are touched for the first time costs 20 % at 16 MiB and saves 15 % at 66 MiB. On planes
+  // that were written before, streaming pays off from the size at which they leave the second-level cache.
   const std::size_t stream_from = std::size_t(state_->prepare_planes(view) ? 2 : 32) << 20;
   const bool streams = view.sample_count() * (sizeof(PrimitiveId) + sizeof(float)) >= stream_from;
   Visible& visible = state_->visible;
@@ -83,7 +84,7 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
     const TileJob job = plan.job(tile, view);
     std::uint8_t& blank = state_->blank[tile];
     if (!blank || !job.is_empty()) {
-      blank = 0;  // while it is being drawn: an error may end the frame here
+      blank = 0;  // not blank while the tile is being drawn: an error may end the frame here
       draw_tile(frame, job, scratch, execution.isa);
       blank = job.is_empty();
     }
@@ -96,7 +97,7 @@ Visible ZBuffer::take() { return std::move(state_->visible); }
 
 void ZBuffer::give_back(Visible&& planes) {
   state_->visible = std::move(planes);
-  state_->blank.clear();  // whatever they hold now
+  state_->blank.clear();  // the planes may hold anything now
 }
 
 Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& execution) {

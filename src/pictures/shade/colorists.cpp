@@ -39,13 +39,13 @@ float fraction(float value) {
   return value - (whole > value ? whole - 1.0f : whole);
 }
 
-/// 1 stays 1, so that the far edge of a texture looks unlike its near edge.
+/// 1 stays 1, so that the far edge of a texture differs from its near edge.
 float wrapped_texcoord(float value) { return value == 1.0f ? 1.0f : fraction(value); }
 
-/// True where light that the normal faces would come from behind the triangle, and nothing says that the surface bulges
-/// towards the viewer there, over the triangle's horizon: as on the inside of a hollow body, whose wall the light would
-/// have to pass through. Rays leave the triangle that they start from out of account, and would not see it; nor does a
-/// map, whose bias is thicker than the wall (and which lets light through beside it for the same reason).
+/// Whether light that reaches the shading normal would come from behind the triangle, on a surface that is not lifted
+/// towards the viewer over the triangle's horizon. An example is the inside of a hollow body, whose wall the light
+/// would have to cross. Rays ignore the triangle from which they start, and a shadow map has a bias thicker than the
+/// wall.
 bool comes_through(const Geometry& g, int i, const glm::vec3& to_light) {
   return glm::dot(g.plane_normal.at(i), to_light) <= 0 && g.smooth_position.at(i) == g.position.at(i);
 }
@@ -64,13 +64,13 @@ glm::vec3 linear_of_shown(const glm::vec3& value) {
   return {linear_of_shown(value.x), linear_of_shown(value.y), linear_of_shown(value.z)};
 }
 
-/// Hues a golden angle apart, in three rounds of brightness, so that neighbouring numbers look nothing alike.
 glm::vec3 shown_depth(float depth, float nearest, float farthest) {
   const float range = farthest - nearest;
   const float t = range > 0 ? std::clamp((depth - nearest) / range, 0.0f, 1.0f) : 0.0f;
   return glm::vec3(linear_of_shown(0.95f - 0.85f * t));
 }
 
+/// Hues are a golden angle apart, in three rounds of brightness, so that consecutive numbers look different.
 glm::vec3 color_of_object(std::uint32_t object) {
   const float hue = float(object * 0x9E3779B9u >> 8) / float(1 << 24) * 6.0f;
   const float value = 0.95f - 0.18f * float(object % 3), saturation = 0.75f - 0.2f * float(object / 3 % 2);
@@ -159,7 +159,7 @@ void Flat::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& b
 
 void Normals::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
   look_up_materials(materials, MaterialPart::normal, setups, batch, isa);
-  batch.layers.clear();  // what is shown of glass is its surface
+  batch.layers.clear();  // a picture of normals shows the surface of glass
   for (int i = 0; i < batch.coverage.count; ++i)
     batch.light.set(i, linear_of_shown(batch.geometry.normal.at(i) * 0.5f + 0.5f));
 }

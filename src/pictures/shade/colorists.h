@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a picture shows of a batch, one for each Shading.
+// Functions that compute the colours of a batch, one for each Shading.
 #pragma once
 
 #include "frontmost/pictures.h"
@@ -11,7 +11,7 @@
 
 namespace frontmost::shading {
 
-/// Base colour, metallic-roughness and light.
+/// Shades with base colour, metallic-roughness and light.
 struct Lit {
   const MaterialTable& materials;
   const Lighting& lighting;
@@ -27,7 +27,7 @@ struct Lit {
 };
 
 struct PreparedScene;
-/// The light of a picture, which is borrowed, and its shadows. What is found stays in the scene.
+/// The colorist for the light of a picture and its shadows; borrows the light. Prepared data stays in `scene`.
 [[nodiscard]] Lit lit_by(const Lighting& lighting, const ShadedPicture& picture, PreparedScene& scene,
                          const Execution& execution);
 
@@ -43,7 +43,7 @@ struct Normals {
   void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
 };
 
-/// World normals as they are, for normal_image.
+/// World normals without mapping to colours, for normal_image.
 struct RawNormals {
   const MaterialTable& materials;
   Isa isa;
@@ -56,7 +56,7 @@ struct Depths {
   void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
 };
 
-/// Distances from the eye in place of depths.
+/// Shows distances from the eye in place of depths.
 struct Ranges {
   float nearest, farthest;
   void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
@@ -70,12 +70,12 @@ struct Texcoords {
   void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
 };
 
-/// The linear value that is shown as `value` of 0 to 1 in sRGB, to well within 1/1000 of a step of 8 bits.
+/// The linear value that is displayed as `value`, 0 to 1 in sRGB. The error is well below 1/1000 of a step of 8 bits.
 [[nodiscard]] float linear_of_shown(float value);
 [[nodiscard]] glm::vec3 linear_of_shown(const glm::vec3& value);
-/// Bright where a depth is the nearest, dark where it is the farthest.
+/// Bright for the nearest depth, dark for the farthest.
 [[nodiscard]] glm::vec3 shown_depth(float depth, float nearest, float farthest);
-/// As shown on a screen, 0 to 1.
+/// A distinctive colour for an object; as displayed, 0 to 1.
 [[nodiscard]] glm::vec3 color_of_object(std::uint32_t object);
 
 }  // namespace frontmost::shading

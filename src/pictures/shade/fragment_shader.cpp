@@ -17,7 +17,7 @@ void FragmentShader::add_row(PrimitiveId id, int count, const RowStart& start) {
   const TriangleCache::Found found = cache_.find_or_add(id);
   if (found.is_new) new_triangles_.push_back({id, found.number, start.screen});
   Coverage& out = batch_.coverage;
-  // Four at a time: most rows are as short, and what is written too much is written over by the next.
+  // Writes four at a time: most rows are that short, and the next row overwrites any excess.
   constexpr int at_once = 4;
   for (int k = 0; k < count; k += at_once)
     for (int lane = 0; lane < at_once; ++lane) {

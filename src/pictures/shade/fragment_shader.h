@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fragments in, colours out: collects them into batches, sets up the triangles that are new to them, and hands the
-// answers back in the order of arrival.
+// Collects fragments into batches, sets up triangles that are new to them, and returns colours in the order of arrival.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +11,7 @@
 
 namespace frontmost::shading {
 
-/// Triangles that were set up for one tile, by id: an open-addressing table.
+/// The triangles that were set up for one tile, by id: an open-addressing table.
 class TriangleCache {
  public:
   TriangleCache() : slots_(slot_count), setups_(capacity) {}
@@ -20,7 +19,7 @@ class TriangleCache {
   void clear() {
     count_ = 0;
     if (++generation_ != 0) return;
-    std::fill(slots_.begin(), slots_.end(), Slot{});  // of four thousand million tiles ago
+    std::fill(slots_.begin(), slots_.end(), Slot{});  // after the counter wraps around, old slots would look new
     generation_ = 1;
   }
   static constexpr int capacity = 512;
@@ -30,7 +29,7 @@ class TriangleCache {
 
   struct Found {
     std::uint16_t number;
-    bool is_new;  ///< to be set up by the caller
+    bool is_new;  ///< the caller has to set it up
   };
   /// Precondition: not full.
   Found find_or_add(PrimitiveId id);
@@ -49,14 +48,14 @@ class TriangleCache {
   int count_ = 0;
 };
 
-/// Reused by one thread, from picture to picture. About half a megabyte.
+/// Used by one thread, again for every picture. About half a megabyte.
 class FragmentShader {
  public:
   /// Colours a batch: reads coverage and geometry, fills batch.light and batch.material.alpha.
   using Colorist = std::function<void(const std::vector<TriangleSetup>&, FragmentBatch&)>;
 
-  /// Starts anew, for triangles and colours that are borrowed. Precondition for all else. `steps`, where there are any,
-  /// are those of the fragments that are added until they are handed out, in their order.
+  /// Starts a picture; borrows its arguments. Precondition of all other functions. `steps` may be null; else it holds
+  /// the steps of the fragments that are added before the next hand_out(), in their order.
   void begin(const TriangleSource& source, const Colorist& colorist, Isa isa, const PixelSteps* steps = nullptr) {
     isa_ = isa;
     source_ = &source;
@@ -65,35 +64,35 @@ class FragmentShader {
     batch_.coverage.steps = steps;
     clear();
   }
-  /// How many fragments can be added before hand_out() is to be called.
+  /// How many more fragments can be added before hand_out().
   [[nodiscard]] int room() const { return cache_.is_full() ? 0 : batch_capacity - batch_.coverage.count; }
   [[nodiscard]] bool is_full() const { return room() == 0; }
-  /// How many were added since the last hand_out().
+  /// How many fragments were added since the last hand_out().
   [[nodiscard]] int count() const { return batch_.coverage.count; }
-  /// `number` is the caller's own; `screen` the position that is shaded, within the pixel of the `samples` (a bit
-  /// each). Precondition: not full.
+  /// Adds a fragment. `number` belongs to the caller; `screen` is the shaded position, within the pixel of the
+  /// `samples` (one bit each). Precondition: not full.
   void add(PrimitiveId id, std::uint32_t number, const glm::vec2& screen, std::uint64_t samples, float weight) {
     add_row(id, 1, {number, screen, samples, weight});
   }
-  /// What pixels of a row share, and the number and position of the first.
+  /// The common data of pixels of a row, with number and position of the first.
   struct RowStart {
     std::uint32_t number;
     glm::vec2 screen;
     std::uint64_t samples;
     float weight;
-    int step = 1;  ///< pixels from each to the next
+    int step = 1;  ///< distance between pixels
   };
-  /// The same for `count` pixels of a row, whose numbers are as far apart as they. Precondition: as much room.
+  /// Adds `count` pixels of a row; their numbers are as far apart as the pixels. Precondition: room() >= count.
   void add_row(PrimitiveId id, int count, const RowStart& start);
-  /// What is handed out of a fragment.
+  /// The result for one fragment.
   struct Shaded {
     std::uint32_t number;
     float weight;
-    glm::vec3 light;   ///< straight
+    glm::vec3 light;   ///< not premultiplied
     float alpha;       ///< mean over the channels
     glm::vec3 alphas;  ///< by channel
   };
-  /// Shades what was added and calls receive(shaded) for each, in the order of arrival.
+  /// Shades the added fragments and calls receive(shaded) for each, in the order of arrival.
   template <class Receive>
   void hand_out(const Receive& receive) {
     Coverage& coverage = batch_.coverage;
@@ -107,7 +106,7 @@ class FragmentShader {
     coverage.count = 0;
     if (cache_.is_full()) cache_.clear();
   }
-  /// Forgets triangles. Precondition: everything was handed out.
+  /// Clears the table of triangles. Precondition: no fragments are waiting.
   void clear() {
     cache_.clear();
     new_triangles_.clear();
@@ -120,7 +119,7 @@ class FragmentShader {
   const Colorist* colorist_ = nullptr;
   Isa isa_ = Isa::best;
   TriangleCache cache_;
-  std::vector<NewTriangle> new_triangles_;  ///< of the batch, not set up yet
+  std::vector<NewTriangle> new_triangles_;  ///< of the batch, still to be set up
   FragmentBatch batch_;                     ///< in the order of arrival; `pixel` is the caller's number
 };
 

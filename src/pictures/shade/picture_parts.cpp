@@ -9,7 +9,7 @@
 namespace frontmost::shading {
 
 DepthRange depth_range(const Visible& visible, const Execution& execution) {
-  // Keys are monotonic in depth, so their extremes are enough.
+  // Keys are monotonic in depth, so their extremes suffice.
   DepthRange keys;
   std::mutex mutex;
   constexpr std::size_t samples_at_once = 1u << 16;

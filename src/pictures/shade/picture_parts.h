@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What pictures and figures ask of a scene and a view before they shade.
+// Facts about a scene and a view that pictures and figures need before shading.
 #pragma once
 
 #include <limits>
@@ -8,7 +8,7 @@
 
 namespace frontmost::shading {
 
-/// The depths between which a picture of depths goes from bright to dark.
+/// The range of depths that a picture of depths maps from bright to dark.
 struct DepthRange {
   float nearest = std::numeric_limits<float>::infinity(), farthest = -std::numeric_limits<float>::infinity();
 
@@ -17,14 +17,14 @@ struct DepthRange {
     farthest = std::max(farthest, other.farthest);
   }
 };
-/// Of what is visible; both 0 where nothing is. O(samples), in parallel.
+/// The range of all visible depths; both 0 where nothing is visible. O(samples), in parallel.
 [[nodiscard]] DepthRange depth_range(const Visible& visible, const Execution& execution);
 
-/// Of any mesh.
+/// Whether any mesh of the scene lacks normals.
 [[nodiscard]] bool lacks_normals(const Scene& scene);
-/// Colours come from materials.
+/// Whether colours come from materials.
 [[nodiscard]] bool shows_materials(Shading shading);
-/// \throws Error bad_argument unless one of both is given that can be visible.
+/// \throws Error bad_argument unless exactly one of both inputs is given and it is valid.
 void check_given(const ShadeInput& input, const char* who);
 /// \throws Error bad_argument.
 void check_opacity(const ShadeOptions& options);

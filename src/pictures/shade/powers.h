@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Powers of two and logarithms by nothing but + - * / and the bits of floats: every machine gives the same ones, and
-// loops over lanes take several at a time. Right to 1e-6 of the value.
+// Powers of two and logarithms from + - * / and the bits of floats alone: every machine gives the same results, and
+// loops over lanes vectorize. The relative error is below 1e-6.
 //
 //   2^x     whole part of x --> exponent      rest, -1/2 to 1/2 --> series of the exponential function
 //   log2    exponent                          mantissa, 0.7 to 1.4 --> series of the inverse hyperbolic tangent
@@ -11,7 +11,7 @@
 
 namespace frontmost::shading {
 
-/// Beyond what floats can hold as the least or greatest normal number.
+/// 2^x, clamped to the range of normal floats.
 [[nodiscard]] inline float exp2_of(float x) {
   x = x > -126.0f ? x : -126.0f;  // for NaN, too
   x = x < 126.0f ? x : 126.0f;
@@ -31,11 +31,11 @@ namespace frontmost::shading {
   return series * power;
 }
 
-/// Precondition: a normal positive number.
+/// The binary logarithm. Precondition: x is a normal positive number.
 [[nodiscard]] inline float log2_of(float x) {
   std::int32_t bits;
   std::memcpy(&bits, &x, sizeof bits);
-  // The mantissa's half above the square root of 2 belongs to the next exponent.
+  // A mantissa above the square root of 2 belongs to the next exponent.
   const std::int32_t exponent = (bits - 0x3F3504F3) >> 23;
   const std::int32_t mantissa_bits = bits - exponent * (1 << 23);
   float mantissa;

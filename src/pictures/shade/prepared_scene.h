@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all pictures of the same surfaces share, made when the first of them needs it.
+// Data that all pictures of the same surfaces share; it is computed when first needed.
 #pragma once
 
 #include "base/pool.h"
@@ -14,7 +14,7 @@
 
 namespace frontmost::shading {
 
-/// Every primitive that holds a sample.
+/// The set of primitives that hold a sample.
 [[nodiscard]] inline BitSet seen_primitives(const Surfaces& surfaces, const ShadeInput& input,
                                             const Execution& execution, BitSet memory) {
   BitSet seen = seen_primitives(surfaces, input.first(), execution, std::move(memory));
@@ -33,7 +33,7 @@ struct PreparedScene {
         shadows(from),
         looked_at(from.primitive_count()) {}
 
-  /// Follows what Surfaces::move() has moved since the last picture.
+  /// Applies the moves that Surfaces::move() has made since the last picture.
   void follow_moves(const Execution& execution) {
     const MoveLog& log = placed_scene(surfaces).moves;
     if (log.count() == moves) return;
@@ -46,20 +46,20 @@ struct PreparedScene {
     occlusion_radius.reset();
   }
 
-  /// Makes the textures ready that are looked at on these primitives.
+  /// Prepares the textures that are visible on these primitives.
   void make_materials_ready(const BitSet& primitives, const Execution& execution) {
     if (materials.is_ready() || looked_at.holds(primitives)) return;
     materials.make_ready(seen_materials(surfaces, primitives, looked_at), execution);
-    looked_at.add_all(primitives);  // not where that failed
+    looked_at.add_all(primitives);  // not reached if preparing failed
   }
-  /// The same of what is visible, which is not looked at where nothing is left to be made ready.
+  /// Prepares the textures of all visible primitives. Does not search for these if all textures are ready.
   void make_materials_ready(const ShadeInput& input, const Execution& execution) {
     if (materials.is_ready()) return;
     seen = seen_primitives(surfaces, input, execution, std::move(seen));
     make_materials_ready(seen, execution);
   }
 
-  /// That of a picture, which is borrowed; null where the options ask for none.
+  /// The occlusion of a picture; null if the options ask for none. Borrows the picture.
   const DepthOcclusion* find_occlusion(const ShadeInput& input, const ShadeOptions& options,
                                        const Execution& execution) {
     if (!options.light.ambient_occlusion) return nullptr;
@@ -77,7 +77,7 @@ struct PreparedScene {
     return &occlusion;
   }
 
-  /// The one that the options name; by default the studio, which the first call makes.
+  /// The environment in the options; by default the studio, which the first call makes.
   [[nodiscard]] const Environment& environment(const LightOptions& options, const Execution& execution) {
     if (options.environment) return *options.environment;
     if (!studio) studio = Environment::studio(execution);
@@ -85,20 +85,20 @@ struct PreparedScene {
   }
 
   const Surfaces& surfaces;
-  std::uint64_t moves;  ///< of the surfaces that were followed
+  std::uint64_t moves;  ///< number of moves of the surfaces that were applied
   TriangleStore triangles;
   MaterialTable materials;
   LightShadows shadows;
   DepthOcclusion occlusion;
-  std::optional<double> occlusion_radius;  ///< where none is given; found when first asked for
+  std::optional<double> occlusion_radius;  ///< the default radius, computed when first needed
   BitSet looked_at;                        ///< primitives whose materials are ready
   std::optional<Environment> studio;
 
-  // Memory that one picture leaves to the next.
+  // Memory that each picture leaves to the next.
   PictureLights lights;
   Pool<TileWork> works;
   Pool<ScanTileWork> scan_works;
-  std::optional<RayIndex> index;  ///< of the surfaces, where scans see through them and bring none
+  std::optional<RayIndex> index;  ///< of the surfaces, for scans that see through them and bring none
   BitSet seen, large;
 };
 

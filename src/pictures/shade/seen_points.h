@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a picture shows, as its lights need to know it: where from, how finely, and where the surfaces are. Of views and
-// of scans alike, so that lights need not know which it is.
+// The visible points of a picture, for its lights: the eye, the resolution, and the places of the surfaces. Works for
+// views and for scans alike.
 #pragma once
 
 #include "frontmost/raycast.h"
@@ -11,15 +11,15 @@ namespace frontmost::shading {
 
 class SeenPoints {
  public:
-  /// Borrow what they are made of.
+  /// Both constructors borrow their argument.
   SeenPoints(const Visible& visible) : view(visible.view), visible_(&visible), rays_(view) {}
   SeenPoints(const RangeScan& scan) : view(view_in_pose(scan)), scan_(&scan), rays_(view) {}
 
-  /// Of a scan: a pinhole in its pose, with as many pixels; what it sees says nothing.
+  /// For a scan: a pinhole in the scan's pose with as many pixels; its projection means nothing.
   const View view;
 
-  /// Calls visit(point) for the first sample of every `stride`-th pixel of a row, with the point in world axes from the
-  /// eye. Those that are too far away for sums of their coordinates are left out.
+  /// Calls visit(point) for the first sample of every `stride`-th pixel of a row; `point` is in world axes from the
+  /// eye. Leaves out points that are too far away for sums of their coordinates.
   template <class Visit>
   void visit_row(int y, int stride, const Visit& visit) const {
     constexpr double farthest = 1e30;

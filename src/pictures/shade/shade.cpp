@@ -31,7 +31,7 @@ Lighting lighting_of(const PictureRequest& request) {
                       request.scene.environment(options, request.execution));
 }
 
-/// Calls use(colorist) with what colours fragments as the options say. Precondition: shows_materials().
+/// Calls use(colorist) with the colorist that the options name. Precondition: shows_materials().
 template <class Use>
 void with_colorist(const PictureRequest& request, const ShownMaterials& shown, const Use& use) {
   const ShadeOptions& options = request.options;
@@ -94,7 +94,7 @@ void paint_surfaces(const PictureRequest& request, TileCanvas& canvas) {
   shows_materials(request.options.shading) ? paint_materials(request, canvas) : paint_map(request, canvas);
 }
 
-/// The same.
+/// Precondition: check().
 void paint(const PictureRequest& request, TileCanvas& canvas) {
   if (!request.options.light.shows_environment) return paint_surfaces(request, canvas);
   EnvironmentCanvas surrounded(canvas, request.input.view(), lighting_of(request), request.execution.isa);

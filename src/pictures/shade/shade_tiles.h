@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of what is visible, tile by tile.
+// Shades a Visible tile by tile.
 #pragma once
 
 #include "base/pool.h"
@@ -8,11 +8,11 @@
 
 namespace frontmost::shading {
 
-/// Shades the tiles of a part of the picture that begins where one of them does.
+/// Shades the tiles of a part of the picture. The part begins at the corner of a tile.
 void shade_part(const TileRectangle& part, const ShadedLayer& layer, const Painting& painting, Pool<TileWork>& works,
                 Isa isa);
 
-/// Shades all tiles, one row of tiles to a thread at a time.
+/// Shades all tiles, one row of tiles per thread at a time.
 void shade_tiles(const ShadedLayer& layer, const Painting& painting, Pool<TileWork>& works, const Execution& execution);
 
 }  // namespace frontmost::shading

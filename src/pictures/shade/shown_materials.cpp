@@ -26,7 +26,7 @@ bool all_of(const PrimitiveId* ids, std::size_t count, const IsSo& is_so) {
   return std::all_of(ids, ids + count, is_so);
 }
 
-/// Whether `is_so` holds for what samples other than the first see in a row of a tile, where they see different things.
+/// Whether `is_so` holds for the primitives of samples 1 and up in a row of a tile, for pixels whose samples differ.
 template <class IsSo>
 bool all_of_mixed(const VisiblePixels& pixels, const Rectangle& tile, int y, const IsSo& is_so) {
   constexpr int run = VisiblePixels::run;
@@ -41,7 +41,7 @@ bool all_of_mixed(const VisiblePixels& pixels, const Rectangle& tile, int y, con
   return true;
 }
 
-/// Whether `is_so` holds for what any sample of a tile sees.
+/// Whether `is_so` holds for the primitives of all samples of a tile.
 template <class IsSo>
 bool all_of_tile(const ShadeInput& input, const Rectangle& tile, const IsSo& is_so) {
   const Visible& visible = input.first();

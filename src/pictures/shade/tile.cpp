@@ -8,8 +8,8 @@
 namespace frontmost::shading {
 namespace {
 
-/// A fragment's number is that of its pixel. Where two by two pixels share it, these bits are the number of the first
-/// of them, and the next four say which of them do.
+/// A fragment's number is the number of its pixel, in the low kPixelBits. A fragment shared by a block of 2 x 2 pixels
+/// has the number of the block's first pixel; the next four bits say which pixels share it.
 constexpr std::uint32_t kPixelBits = 16;
 constexpr std::uint32_t kWholeBlock = 15u << kPixelBits;
 static_assert(tile_pixels <= 1 << kPixelBits);
@@ -40,9 +40,9 @@ bool TileWork::shade(const TileRectangle& tile) {
     anything = anything || !rows_[y].is_empty;
   }
   if (!anything) return false;
-  // Most of a picture is background: nothing is cleared before something is found.
+  // Most of a picture is background, so nothing is cleared before a fragment is found.
   std::fill(pixels_.begin(), pixels_.end(), glm::vec4(0));
-  // Strip by strip: what is shaded at once then lies together on the surface, as rays that are cast at once should.
+  // In strips: fragments of a batch then lie close together on the surface, which helps rays that are cast together.
   constexpr int strip = 16;
   const bool is_coarse = rate_ == ShadingRate::each_2x2;
   for (int left = 0; left < tile.width; left += strip) {
@@ -60,7 +60,7 @@ void TileWork::fade(float opacity) {
 
 void TileWork::look_at_row(const glm::ivec2& at, int width, Row& row) const {
   const std::size_t begin = visible_->index(at.x, at.y);
-  // The same row of the next tile: steps of a row are too long for the processor to foresee.
+  // Prefetches the same row of the next tile: the stride of rows is too long for the hardware prefetcher.
   constexpr int line = 64 / sizeof(PrimitiveId);
   const PrimitiveId* plane = visible_->primitives.data() + begin;
   for (int x = 0; x < tile_width; x += line) prefetch_line(plane + tile_width + x);
@@ -219,7 +219,7 @@ void TileWork::add_shared(PrimitiveId (&ids)[4], glm::vec2 corner, std::uint32_t
 }
 
 void TileWork::flush() {
-  // In the order of arrival, which is that of samples: sums of a pixel do not depend on its neighbours.
+  // The order of arrival is that of samples, so the sum of a pixel does not depend on its neighbours.
   fragments_.hand_out([this](const FragmentShader::Shaded& s) {
     const glm::vec4 color(s.light * (s.weight * s.alpha), s.weight * s.alpha);
     const std::uint32_t pixel = s.number & ((1u << kPixelBits) - 1), sharing = s.number >> kPixelBits;

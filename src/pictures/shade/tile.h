@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rectangle of pixels shaded by one thread: finds its fragments, hands them out in batches, and sums the answers.
+// A tile is a rectangle of pixels that one thread shades: it collects fragments, shades them in batches, and sums
+// colours.
 #pragma once
 
 #include <array>
@@ -18,20 +19,20 @@ struct TileRectangle {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// Which of a Visible's samples count.
+/// Which samples of a Visible count.
 enum class SampleUse : std::uint8_t { all, first };
 
-/// A Visible and what its triangles are set up from.
+/// A Visible, and the source of its triangles.
 struct ShadedLayer {
   const TriangleSource& source;
   const Visible& visible;
   SampleUse use = SampleUse::all;
-  const VisiblePixels* pixels = nullptr;  ///< what all samples see, where `visible` says it of the first alone
+  const VisiblePixels* pixels = nullptr;  ///< primitives of all samples, if `visible` has the first sample only
 
   [[nodiscard]] const View& view() const { return pixels ? pixels->view : visible.view; }
 };
 
-/// Reused from tile to tile and from picture to picture by one thread. About half a megabyte.
+/// Used by one thread, again for every tile and picture. About half a megabyte.
 class TileWork {
  public:
   using Colorist = FragmentShader::Colorist;
@@ -40,49 +41,49 @@ class TileWork {
   /// Starts a picture; borrows everything. Precondition of shade().
   void begin(const ShadedLayer& layer, const Colorist& colorist, ShadingRate rate, Isa isa);
 
-  /// Premultiplied sums over the samples of each pixel, row by row of the tile. False where nothing is seen at all.
+  /// Computes premultiplied sums over the samples of each pixel, row by row. \returns false if the tile is empty.
   bool shade(const TileRectangle& tile);
-  /// Multiplies what is seen by this.
+  /// Multiplies all pixels by `opacity`.
   void fade(float opacity);
   [[nodiscard]] const std::vector<glm::vec4>& pixels() const { return pixels_; }
 
  private:
-  /// What the samples of a row of pixels see.
+  /// The primitives of the samples of a row of pixels.
   struct Row {
     PrimitiveId first[tile_width];      ///< sample 0
     PrimitiveId differing[tile_width];  ///< not 0 where samples see different primitives
-    /// Of a VisiblePixels, by its runs: what samples 1 and up of the next such pixel see.
+    /// For a VisiblePixels, by run: the primitives of samples 1 and up of the next mixed pixel.
     const PrimitiveId* others[tile_width / VisiblePixels::run];
     bool is_empty;
   };
 
-  /// Of the pixels from (x, y) on.
+  /// Reads the pixels from (x, y) on.
   void look_at_row(const glm::ivec2& at, int width, Row& row) const;
   void compare_planes(std::size_t begin, int width, Row& row) const;
   void find_mixed(const glm::ivec2& at, int width, Row& row) const;
-  /// What the samples of the next mixed pixel of a row see, which is at x of the tile.
+  /// Lists the primitives of all samples of the row's next mixed pixel, at x of the tile.
   void list_ids(const TileRectangle& tile, int x, int y, PrimitiveId* ids);
-  /// Fragments of the pixels [left, right) of a row of the tile.
+  /// Adds the fragments of the pixels [left, right) of a row of the tile.
   void add_pixels(const TileRectangle& tile, int y, int left, int right);
-  /// As FragmentShader's, of pixels that no other primitive shares; `count` of any size.
+  /// FragmentShader::add_row() for any `count`, for pixels that a single primitive covers.
   void add_row(PrimitiveId id, int count, FragmentShader::RowStart start);
-  /// Fragments of rows y and y + 1, two by two pixels at a time: one for those that see the same primitive.
+  /// Adds the fragments of rows y and y + 1 by blocks of 2 x 2 pixels: one for all pixels with the same primitive.
   void add_blocks(const TileRectangle& tile, int y, int left, int right);
-  /// How many blocks side by side show one primitive alone, or none, as far as `right`.
+  /// The number of adjacent blocks, up to `right`, that show the same single primitive, or none.
   [[nodiscard]] int whole_blocks(int y, int x, int right) const;
-  /// One for each of the ids of a block, from its upper left corner and first pixel on; they are used up.
+  /// Adds one fragment for each different id of a block, given its upper left corner and first pixel. Clears the ids.
   void add_shared(PrimitiveId (&ids)[4], glm::vec2 corner, std::uint32_t pixel);
   void add_mixed_pixel(const TileRectangle& tile, int x, int y);
   [[nodiscard]] std::uint64_t all_samples() const { return (1u << samples_) - 1; }
   void flush();
 
   const Visible* visible_ = nullptr;
-  const VisiblePixels* mixed_ = nullptr;  ///< null where `visible_` holds all samples
+  const VisiblePixels* mixed_ = nullptr;  ///< null if `visible_` holds all samples
   int samples_ = 1;
   ShadingRate rate_ = ShadingRate::each_pixel;
   int width_ = 0;                        ///< of the tile
   std::array<glm::vec2, 16> offsets_{};  ///< of the samples within a pixel
-  glm::vec2 centre_{0};                  ///< their mean
+  glm::vec2 centre_{0};                  ///< mean of the offsets
   FragmentShader fragments_;
   std::vector<glm::vec4> pixels_;
   Row rows_[tile_height];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene that is left of a stream: the triangles that are seen, in the stream's order, with the stream's objects.
+// Makes the scene of an excerpt: the visible triangles in the stream's order, with the stream's objects.
 //
-// Attributes go with them corner by corner. Since the order is the stream's, the lower id at equal depths is the same
-// triangle in both, and whatever is computed of the excerpt is what the whole model would give.
+// Attributes are copied corner by corner. Triangles keep the stream's order, so at equal depths the same triangle has
+// the lower id. Everything computed from the excerpt is therefore the same as from the whole model.
 #include "stream/id_map.h"
 #include "stream/kept_triangles.h"
 
@@ -37,7 +37,7 @@ void move_to(std::vector<T>& from, std::vector<T>& to) {
   std::vector<T>().swap(from);
 }
 
-/// `part` gives up its memory at once: both together would be twice as much.
+/// Frees the memory of `part` list by list: keeping both would take twice the memory.
 void move_mesh(Mesh& part, Mesh& whole) {
   const auto first = std::uint32_t(whole.positions.size());
   for (const glm::uvec3& t : part.triangles) whole.triangles.push_back(t + first);
@@ -49,7 +49,7 @@ void move_mesh(Mesh& part, Mesh& whole) {
   move_to(part.material_ids, whole.material_ids);
 }
 
-/// Room for all, so that nothing is moved while they grow.
+/// Reserves memory for all pieces, so that growing arrays are not moved.
 void reserve(const KeptPieces& kept, Scene& scene) {
   std::vector<std::size_t> counts(scene.meshes.size());
   for (const auto& [number, piece] : kept) counts[scene.instances[piece.place.object].mesh] += piece.triangles.size();
@@ -67,7 +67,7 @@ void append_triangle(const Mesh& from, std::uint32_t triangle, Mesh& to) {
   append_corners(from, from.normals, triangle, to.normals);
   append_corners(from, from.texcoords, triangle, to.texcoords);
   append_corners(from, from.colors, triangle, to.colors);
-  // One for each, also where one for all would do: pieces of one mesh may differ in that.
+  // One material per triangle, even where one for all would do: pieces of one mesh may differ.
   if (!from.material_ids.empty()) to.material_ids.push_back(from.material_of(triangle));
   to.triangles.emplace_back(first, first + 1, first + 2);
 }
@@ -80,7 +80,7 @@ std::vector<PrimitiveId> ids_of(const KeptPieces& kept) {
 }
 
 Scene scene_of(Scene frame, KeptPieces kept) {
-  // Those of the frame are for whole meshes; each piece brings its own.
+  // The frame's material ids are for whole meshes; each piece brings its own.
   for (Mesh& mesh : frame.meshes) mesh.material_ids.clear();
   reserve(kept, frame);
   for (auto& [number, piece] : kept) move_mesh(piece.mesh, frame.meshes[frame.instances[piece.place.object].mesh]);

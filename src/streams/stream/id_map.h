@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// From numbers of triangles in a stream to their places among those that are kept.
+// Maps numbers of triangles in a stream to their indices among the kept triangles.
 //
 //   ids kept     3   17   20   21   |  130  131  |  ...        ascending; few of many
-//   buckets      by upper bits: where the ids of each begin, so that a look-up is one step and a short search
+//   buckets      by upper bits: the first index of each, so that a look-up is one step and a short search
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ class IdMap {
     for (std::size_t b = 1; b < begin_.size(); ++b) begin_[b] += begin_[b - 1];
   }
 
-  /// no_primitive where it is none of them. O(1) where ids are spread evenly, O(log) at worst.
+  /// \returns no_primitive for an id that was not kept. O(1) if ids are spread evenly, O(log) at worst.
   [[nodiscard]] PrimitiveId place_of(PrimitiveId id) const {
     const std::size_t bucket = id >> shift_;
     if (bucket + 1 >= begin_.size()) return no_primitive;
@@ -34,7 +34,7 @@ class IdMap {
     return found == end || *found != id ? no_primitive : PrimitiveId(found - begin);
   }
 
-  /// Replaces ids by their places.
+  /// Replaces ids by their indices.
   void apply(std::span<PrimitiveId> ids, const Execution& execution) const {
     constexpr std::size_t samples_at_once = 1u << 16;
     parallel_for(execution, ids.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
@@ -54,7 +54,7 @@ class IdMap {
  private:
   const std::vector<PrimitiveId>& ids_;
   int shift_ = 0;
-  std::vector<std::uint32_t> begin_;  ///< of the ids that share their upper bits
+  std::vector<std::uint32_t> begin_;  ///< first index of each bucket, and the end of the last
 };
 
 }  // namespace frontmost::streaming

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Copies of the triangles of a stream that are seen so far, and the scene that is made of them.
+// Copies of the triangles of a stream that are visible so far, and the scene that is made of them.
 //
-// A triangle is kept when it is seen after its piece was merged, and may be hidden by a later piece; so what is kept is
-// thinned out from time to time, and at the end. Each has three vertices of its own: the piece that it came from is
-// gone, with the numbers that its vertices had there.
+// A triangle is kept if it is visible after its piece was merged. A later piece may hide it, so hidden triangles are
+// removed from time to time and at the end. Each triangle has three vertices of its own, because the vertex indices of
+// its piece are gone together with the piece.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace frontmost::streaming {
 
-/// Triangles of one piece, each with corners of its own.
+/// Kept triangles of one piece, each with three vertices of its own.
 struct Kept {
   PiecePlace place;
   std::vector<std::uint32_t> triangles;  ///< numbers within the piece, ascending
@@ -26,7 +26,7 @@ struct Kept {
 /// Appends a triangle with all its attributes, corner by corner.
 void append_triangle(const Mesh& from, std::uint32_t triangle, Mesh& to);
 
-/// Leaves those for which is_wanted(number in the stream) is true.
+/// Removes triangles for which is_wanted(number in the stream) is false.
 template <class IsWanted>
 void thin_out(Kept& kept, const IsWanted& is_wanted) {
   Kept rest{kept.place, {}, {}};
@@ -38,7 +38,7 @@ void thin_out(Kept& kept, const IsWanted& is_wanted) {
   kept = std::move(rest);
 }
 
-/// By the number of the piece.
+/// Kept triangles by the number of their piece.
 using KeptPieces = std::map<std::size_t, Kept>;
 
 }  // namespace frontmost::streaming
@@ -53,9 +53,9 @@ struct Excerpt::Parts {
 
 namespace streaming {
 
-/// Ascending.
+/// Numbers of the kept triangles in the stream, ascending.
 [[nodiscard]] std::vector<PrimitiveId> ids_of(const KeptPieces& kept);
-/// `frame` with the triangles that were kept, in the order of the stream.
+/// \returns `frame` with the kept triangles, in the order of the stream.
 [[nodiscard]] Scene scene_of(Scene frame, KeptPieces kept);
 
 }  // namespace streaming

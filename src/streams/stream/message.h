@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What ranks send to each other: values and lists of values, one after the other, as they lie in memory. All of them
-// run the same program on machines of one kind, which their caller sees to; where they read different files all the
-// same, messages do not fit, and that is an error.
+// Messages between ranks: values and lists of values in sequence, as they lie in memory. All ranks run the same program
+// on machines of one kind; the caller sees to that. If ranks read different files, messages do not fit, which is an
+// error.
 #pragma once
 
 #include <cstring>
@@ -15,7 +15,7 @@ namespace frontmost::streaming {
 
 class MessageWriter {
  public:
-  /// Room for about so many bytes, so that nothing is moved while they grow.
+  /// Reserves about this many bytes, so that a growing message is not moved.
   void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
   template <class T>
   void put(const T& value) {

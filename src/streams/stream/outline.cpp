@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Looks for the outline of a piece without looking at all of it: runs of 64 neighbours have a box, and a box within
-// what is known already has no point of the outline. A few triangles from all over the piece go first, so that much is
-// known when the runs are asked.
+// Finds the outline of a piece without looking at every vertex. A run of 64 neighbouring triangles has a box. If that
+// box adds nothing to what is known, the run has no point of the outline. A few triangles from all over the piece go
+// first, so that much is known before the runs are tested.
 #include "stream/outline.h"
 
 #include <algorithm>
@@ -12,16 +12,16 @@ OutlineFinder::OutlineFinder(const View& direction, double margin)
     : extremes_(FilledFrustum(direction.world_from_eye, direction.projection, margin)) {}
 
 void OutlineFinder::include(const Mesh& mesh) {
-  constexpr std::size_t run = 64;  // neighbours mostly: few runs reach out, and only their corners are looked at
+  constexpr std::size_t run = 64;  // neighbours mostly, so few runs reach out and have their vertices examined
   const std::size_t count = mesh.triangles.size();
-  // A few triangles from all over the piece first. Where a model grows from one end to the other, every run would
-  // reach farther than the last one, and all corners would be looked at.
+  // A few triangles from all over the piece go first. Otherwise, where a model grows from one end to the other, every
+  // run would reach farther than the last, and all vertices would be examined.
   for (const std::size_t step : {64 * run, run})
     for (std::size_t begin = 0; begin < count; begin += step) include_corners(mesh, begin, begin + 1);
   for (std::size_t begin = 0; begin < count; begin += run) include_run(mesh, begin, std::min(begin + run, count));
 }
 
-/// What reaches out of a run is mostly a small part of it.
+/// Examines a run in quarters, because mostly a small part of it reaches out.
 void OutlineFinder::include_run(const Mesh& mesh, std::size_t begin, std::size_t end) {
   if (!may_change_by(finite_bounds(mesh, begin, end))) return;
   const std::size_t part = (end - begin + 3) / 4;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The points of a stream that decide bounds and framing, found in the triangles that count: those whose corners are all
-// finite.
+// Finds the points of a stream that decide bounds and framing. Only triangles with three finite vertices count.
 //
-// A frame of the whole model needs its points, and a stream has forgotten them. But only points at the rim can touch a
-// side of the picture, and there are few; so the finder keeps those alone, and its scene() stands for the model:
+// Framing needs the points of the whole model, which a stream does not keep. But only points at the rim can touch a
+// side of the picture, and there are few of them. The finder keeps only these, and its scene() stands for the model:
 //
-//        . * .                * kept: it is the farthest one towards a side of the frustum or of the bounds
-//      *  . .  *              . forgotten: others lie farther out on every side
+//        . * .                * kept: the farthest point towards a side of the frustum or of the bounds
+//      *  . .  *              . dropped: other points lie farther out on every side
 //        . * .
 #pragma once
 
@@ -17,7 +16,7 @@
 
 namespace frontmost::streaming {
 
-/// Calls visit(corner, corner, corner) for the finite triangles from `begin` to `end`.
+/// Calls visit(a, b, c) with the vertices of each finite triangle from `begin` to `end`.
 template <class Visit>
 void for_finite_triangles(const Mesh& mesh, std::size_t begin, std::size_t end, const Visit& visit) {
   for (std::size_t t = begin; t < end; ++t) {
@@ -39,18 +38,19 @@ class OutlineFinder {
  public:
   OutlineFinder(const View& direction, double margin);
 
-  /// Triangles with corners that are not finite count for nothing.
+  /// Triangles with non-finite vertices are ignored.
   void include(const Mesh& mesh);
   void include(const OutlineFinder& other) { include(other.points()); }
   void include(std::span<const glm::vec3> points);
-  /// Those that count: no more than a few hundred.
+  /// The points kept: no more than a few hundred.
   [[nodiscard]] std::vector<glm::vec3> points() const;
   [[nodiscard]] const Box& bounds() const { return bounds_; }
-  /// The points as triangles without area: surfaces of it have the bounds of all, and frame() frames them alike.
+  /// The points as triangles without area. Surfaces of this scene have the model's bounds, and frame() frames them
+  /// alike.
   [[nodiscard]] Scene scene() const;
 
  private:
-  /// False when no point within the box would be kept.
+  /// False if no point within the box would be kept.
   [[nodiscard]] bool may_change_by(const Box& box) const;
   void include_run(const Mesh& mesh, std::size_t begin, std::size_t end);
   void include_corners(const Mesh& mesh, std::size_t begin, std::size_t end);
@@ -58,7 +58,7 @@ class OutlineFinder {
 
   Extremes extremes_;
   Box bounds_;
-  glm::vec3 ends_[6] = {};  ///< a point at each side of the bounds
+  glm::vec3 ends_[6] = {};  ///< a point on each side of the bounds
 };
 
 }  // namespace frontmost::streaming

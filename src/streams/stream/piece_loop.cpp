@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several files as one stream, and the loop over their pieces.
 //
-// Errors must not depend on which thread was first. So a worker that fails notes the number of its piece, no later
-// piece is begun, and when all have ended the error of the earliest piece is thrown: the one that reading from front to
-// back would have met.
+// Errors must not depend on which thread was first. A worker that fails notes the number of its piece, and no later
+// piece is begun. When all workers have ended, the error of the earliest piece is thrown: reading from front to back
+// would have met that one.
 #include "stream/piece_loop.h"
 
 #include <algorithm>
@@ -16,13 +16,13 @@
 namespace frontmost::streaming {
 namespace {
 
-constexpr std::uint64_t most_triangles = no_primitive - 1;  // as of a scene that is read as a whole
+constexpr std::uint64_t most_triangles = no_primitive - 1;  // as in a scene that is read as a whole
 
 [[noreturn]] void fail_too_many() {
   throw Error(ErrorCode::limit_exceeded, "stream", "more than 4294967294 triangles over all files");
 }
 
-/// Of a pipe every rank would get other bytes, and some would wait for it for ever.
+/// Refuses pipes: every rank would get other bytes, and some ranks would wait for ever.
 void refuse_pipe(const std::string& path) {
   std::error_code ignored;
   if (path != "-" && (!std::filesystem::exists(path, ignored) || std::filesystem::is_regular_file(path, ignored)))
@@ -43,7 +43,7 @@ Models::Models(const std::vector<std::string>& paths, const LoadOptions& options
     Model model;
     model.stream = open_model_stream(path, options, execution);
     add(std::move(model));
-    // What headers promise is enough to refuse; a file that does not tell is caught while it is read.
+    // Counts in headers are enough to refuse; other files are caught while they are read.
     known += models_.back().stream->known_count().value_or(0);
     if (known > most_triangles) fail_too_many();
   }
@@ -71,11 +71,11 @@ void Models::add(Model model) {
   model.object = std::uint32_t(scene_.instances.size());
   model.first_material = std::uint32_t(scene_.materials.size());
   Scene without_warnings = part;
-  // Warnings may come with every piece, and are taken over one by one as they do.
+  // Warnings may come with every piece, and are taken over one by one.
   without_warnings.warnings.clear();
   frontmost::add(scene_, std::move(without_warnings));
   if (!part.instances.empty()) {
-    // Pieces are put in place when they are parsed, so that what is made of them has no transforms.
+    // Pieces are moved into place when they are parsed, so that surfaces made of them need no transforms.
     glm::dmat4& place = scene_.instances.back().world_from_mesh;
     model.moved = glm::dvec3(place[3]);
     place = glm::dmat4(1.0);
@@ -84,7 +84,7 @@ void Models::add(Model model) {
   take_warnings(models_.back());
 }
 
-/// What opening says is known to all ranks; what a pass says is told by one of those that read the file.
+/// All ranks know the warnings of opening. Warnings of a pass are reported by one of the ranks that read the file.
 void Models::warn(const Model& model, const std::string& text) {
   const std::string words = model.stream->source().with_name(text);
   if (turns_.count == 1 || !has_opened_) return scene_.warnings.push_back(words);
@@ -104,7 +104,7 @@ void Models::begin(std::size_t file) {
   begun_ = file + 1;
 }
 
-/// As load() warns.
+/// Warns about a file without triangles, as load() does.
 void Models::end(Model& model) {
   if (!model.has_ended && model.triangle_count == 0) warn(model, no_triangles_warning);
   model.has_ended = true;
@@ -193,7 +193,7 @@ void Models::parse(StreamPiece& piece, const PiecePlace& place) const {
   const Model& model =
       *std::find_if(models_.rbegin(), models_.rend(), [&](const Model& m) { return m.object <= place.object; });
   model.stream->parse(piece);
-  // By its object, not by current_: another thread may have fetched from the next file meanwhile.
+  // The model is found by object, not by current_: another thread may meanwhile have fetched from the next file.
   for (std::uint32_t& material : piece.mesh.material_ids)
     if (material != no_index) material += model.first_material;
   if (model.moved != glm::dvec3(0))
@@ -202,7 +202,7 @@ void Models::parse(StreamPiece& piece, const PiecePlace& place) const {
 
 namespace {
 
-/// Hands out pieces, and remembers the error of the first piece that had one.
+/// Hands out pieces, and remembers the error of the earliest piece that failed.
 class Queue {
  public:
   Queue(Models& models, std::uint32_t triangles) : models_(models), triangles_(triangles) {}
@@ -210,7 +210,7 @@ class Queue {
   bool fetch(StreamPiece& piece, PiecePlace& place, const Execution& execution) {
     const std::lock_guard lock(mutex_);
     if (error_) return false;
-    place.number = fetched_;  // should this fetch fail
+    place.number = fetched_;  // for an error of this fetch
     const bool got = models_.fetch(piece, place, triangles_);
     if (got) fetched_ = place.number + 1;
     report_progress(execution, "stream", models_.fraction());
@@ -218,7 +218,7 @@ class Queue {
   }
   void fail(std::size_t number) {
     const std::lock_guard lock(mutex_);
-    // The earliest piece's, as one thread alone would have met it: messages do not depend on threads.
+    // The earliest piece counts, as for a single thread: messages do not depend on threads.
     if (error_ && number_ <= number) return;
     error_ = std::current_exception();
     number_ = number;
@@ -240,7 +240,7 @@ class Queue {
 void for_each_piece(Models& models, const LoopOptions& options, const Execution& execution,
                     const std::function<void(int, StreamPiece&, const PiecePlace&)>& work) {
   Queue queue(models, options.triangles_at_once);
-  // An index for each worker rather than for each piece: how many pieces there are is known only at the end.
+  // One index per worker and not per piece, because the number of pieces is known only at the end.
   parallel_for(execution, std::size_t(options.workers), 1, [&](std::size_t worker, std::size_t) {
     StreamPiece piece;
     PiecePlace place;

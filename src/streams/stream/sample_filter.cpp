@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Corners are put on the screen as every method does it, but cut off instead of rounded to 1/256 pixel, and the box
-// around them is made a unit larger on each side. So no triangle is lost that a method would draw, and a few too many
-// are kept, which costs time and changes nothing.
+// Vertices are projected as in every method, but truncated instead of rounded to 1/256 pixel. The box around a triangle
+// is therefore enlarged by one unit on each side. No triangle that a method would draw is lost. A few too many are
+// kept, which costs time and changes no result.
 #include "stream/sample_filter.h"
 
 #include <algorithm>
@@ -9,10 +9,10 @@
 namespace frontmost::streaming {
 namespace {
 
-/// Planes that a corner may be beyond. Where all three corners are beyond the same one, nothing is seen.
+/// Planes that a vertex may be beyond. A triangle whose three vertices are beyond the same plane is not seen.
 enum Beyond : std::uint32_t { near = 1, far = 2, left = 4, right = 8, top = 16, bottom = 32, unknown = 64 };
 
-/// The first pixel with a sample at `offset` that is not before `at`; the last that is not after it.
+/// The first pixel whose sample at `offset` is at or after `at`; the last pixel whose sample is at or before `at`.
 std::int32_t first_pixel(std::int32_t at, std::int32_t offset) { return (at - offset + kSubPixels - 1) >> 8; }
 std::int32_t last_pixel(std::int32_t at, std::int32_t offset) { return (at - offset) >> 8; }
 static_assert(kSubPixels == 1 << 8);
@@ -37,14 +37,14 @@ SampleFilter::Corner SampleFilter::corner_of(const glm::vec3& position) const {
   const HomogeneousVertex v = transform(transform_, position);
   if (is_plain(transform_, v)) {
     const float inverse = transform_.orthographic ? 1.0f : 1.0f / v.d;
-    // Cut off, not rounded: that is quicker, and less than one unit away.
+    // Truncating is faster than rounding, and less than one unit off.
     return {int(v.x * inverse) + transform_.centre_x, int(v.y * inverse) + transform_.centre_y, 0};
   }
   std::uint32_t beyond = unknown;
   if (v.d < transform_.near) beyond |= near;
   if (v.d > transform_.far) beyond |= far;
   const float reach = float(kGuardBand) * (transform_.orthographic ? 1.0f : v.d);
-  // Sides are told only in front of the eye; behind it they would be turned round.
+  // Sides are only determined in front of the eye; behind it they would be mirrored.
   if (v.d >= transform_.near && reach <= std::numeric_limits<float>::max()) {
     if (v.x < -reach) beyond |= left;
     if (v.x > reach) beyond |= right;
@@ -78,11 +78,11 @@ PixelBounds SampleFilter::mark(const Mesh& mesh, std::vector<std::uint8_t>& mark
     if ((a.beyond | b.beyond | c.beyond) != 0) {
       if ((a.beyond & b.beyond & c.beyond & ~std::uint32_t(unknown)) != 0) continue;
       marks[t] = 1;
-      // Where it meets the screen is for the clipper to find out.
+      // The clipper finds out where the triangle meets the screen.
       pixels = {0, 0, width_, height_};
       continue;
     }
-    // One unit more on each side, for what was cut off above.
+    // One more unit on each side makes up for truncation.
     const Extent extent{std::min({a.x, b.x, c.x}) - 1, std::min({a.y, b.y, c.y}) - 1, std::max({a.x, b.x, c.x}) + 1,
                         std::max({a.y, b.y, c.y}) + 1};
     if (!may_hold_sample(extent)) continue;

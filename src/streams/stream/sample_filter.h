@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles may hold a sample of a view at all. Of a stream as long as these are for, most are smaller than what
-// lies between samples, or outside of the picture: they need not be made into surfaces.
+// Finds the triangles that may cover a sample of a view. In long streams most triangles lie between samples or outside
+// of the picture. No surfaces have to be made from them.
 //
 //      .       .       .        samples
-//         /\                    holds none of them: its box lies between two columns and two rows
+//         /\                    covers no sample: its box lies between two columns and two rows
 //      .  --   .       .
 //           ____
-//      .   / .  \      .        may hold one: its box does
+//      .   / .  \      .        may cover one: its box does
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace frontmost::streaming {
 
-/// Pixels from (x0, y0) to before (x1, y1).
+/// Pixels from (x0, y0) up to, but without, (x1, y1).
 struct PixelBounds {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 
@@ -30,18 +30,18 @@ class SampleFilter {
  public:
   explicit SampleFilter(const View& view);
 
-  /// Sets the mark of every triangle that may hold a sample: of all that do, and of few others. By the methods' own
-  /// snapping, so nothing that they would show is lost. \returns the pixels that the triangles may cover.
+  /// Marks every triangle that may cover a sample: all that do, and few others. It allows for the snapping of the
+  /// methods, so no triangle that they would show is lost. \returns the pixels that marked triangles may cover.
   PixelBounds mark(const Mesh& mesh, std::vector<std::uint8_t>& marks);
 
  private:
-  /// A vertex on the screen, in 1/256 pixel from the picture's top left corner, to one such unit; or the planes that it
-  /// is beyond.
+  /// A vertex on the screen, in 1/256 pixel from the picture's top left corner, accurate to one unit; or the planes
+  /// that it is beyond.
   struct Corner {
     std::int32_t x, y;
     std::uint32_t beyond;
   };
-  /// Both ends inclusive, in the same unit.
+  /// A range of screen coordinates in 1/256 pixel, both ends inclusive.
   struct Extent {
     std::int32_t x0, y0, x1, y1;
   };
@@ -52,8 +52,8 @@ class SampleFilter {
 
   ScreenTransform transform_;
   int width_, height_;
-  std::vector<glm::ivec2> offsets_;  ///< of the samples within a pixel
-  std::vector<Corner> corners_;      ///< of the mesh at hand
+  std::vector<glm::ivec2> offsets_;  ///< sample positions within a pixel
+  std::vector<Corner> corners_;      ///< vertices of the current mesh
 };
 
 }  // namespace frontmost::streaming

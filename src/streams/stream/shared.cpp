@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists are gathered on rank 0, put together there, and sent to all. Planes are merged by one maximum of integers.
+// Lists are gathered and joined on rank 0, and sent to all ranks. Planes are merged by one maximum of integers.
 #include "stream/shared.h"
 
 #include <algorithm>
@@ -47,7 +47,7 @@ void put(const Kept& kept, MessageWriter& writer) {
 }
 
 std::size_t size_of(const Kept& kept) {
-  constexpr std::size_t counts = 64;  // and its place
+  constexpr std::size_t counts = 64;  // including the place
   const auto bytes = [](const auto& list) { return list.size() * sizeof(list[0]); };
   return counts + bytes(kept.triangles) + bytes(kept.mesh.positions) + bytes(kept.mesh.normals.values) +
          bytes(kept.mesh.texcoords.values) + bytes(kept.mesh.colors.values) + bytes(kept.mesh.material_ids);
@@ -63,7 +63,7 @@ Kept get_kept(MessageReader& reader) {
   kept.mesh.texcoords.values = reader.get_list<glm::vec2>();
   kept.mesh.colors.values = reader.get_list<glm::vec4>();
   kept.mesh.material_ids = reader.get_list<std::uint32_t>();
-  // Each has corners of its own, in this order.
+  // Each triangle has three vertices of its own, in order.
   kept.mesh.triangles.reserve(kept.triangles.size());
   for (std::uint32_t t = 0; t < kept.triangles.size(); ++t)
     kept.mesh.triangles.emplace_back(3 * t, 3 * t + 1, 3 * t + 2);
@@ -100,7 +100,7 @@ std::vector<glm::vec3> share(Ranks& ranks, const std::vector<glm::vec3>& mine) {
 }
 
 void share(Ranks& ranks, Visible& visible, const Execution& execution) {
-  // In runs: all at once would be as much memory again, and engines of messages are not quicker for it.
+  // Merging in runs: the whole plane at once would take as much memory again, and would not be faster.
   constexpr std::size_t run = 1u << 20, samples_at_once = 1u << 16;
   PrimitiveId* const ids = visible.primitives.data();
   float* const keys = visible.keys.data();
@@ -129,7 +129,7 @@ KeptPieces gather(Ranks& ranks, KeptPieces mine) {
     writer.reserve(bytes);
     for (const auto& [number, kept] : mine) put(kept, writer);
   }
-  mine.clear();  // both together would be twice as much
+  mine.clear();  // keeping both would take twice the memory
   for (Ranks::Message& message : ranks.gather(writer.take())) {
     MessageReader reader(message);
     while (!reader.is_at_end()) all.push_back(get_kept(reader));

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What ranks that stream a model together make of their parts after a pass.
+// Merges the results of ranks that stream a model together, after each pass.
 //
 //   rank 0   pieces of its own --> planes, copies of triangles --+
 //   rank 1   pieces of its own --> planes, copies of triangles --+--> planes of the whole, on all ranks
-//   ...                                                          +--> copies of what those show, on rank 0
+//   ...                                                          +--> copies of the triangles seen there, on rank 0
 //
-// Each function is called by all ranks at the same place.
+// All ranks call each function at the same point.
 #pragma once
 
 #include <vector>
@@ -16,34 +16,34 @@
 
 namespace frontmost::streaming {
 
-/// What a pass finds beside what is seen.
+/// Results of a pass besides the visible triangles.
 struct PassFacts {
   std::vector<std::uint64_t> triangle_counts;  ///< by file
   std::vector<FileWarning> warnings;           ///< in the order of files
   Box bounds;
 };
-/// Those of all ranks, on all ranks.
+/// \returns on all ranks the facts of all ranks together.
 [[nodiscard]] PassFacts share(Ranks& ranks, const PassFacts& mine);
 
-/// The lists of all ranks in one, on all ranks.
+/// \returns on all ranks the lists of all ranks, joined.
 [[nodiscard]] std::vector<glm::vec3> share(Ranks& ranks, const std::vector<glm::vec3>& mine);
 
-/// What all ranks see becomes what each sees. Ids are those of the whole.
+/// Merges the planes of all ranks into the same planes on each. Ids are those of the whole model.
 void share(Ranks& ranks, Visible& visible, const Execution& execution);
 
-/// The copies of all ranks, on rank 0; none on others. Places are in the whole.
+/// \returns on rank 0 the kept triangles of all ranks, and nothing on other ranks. Places are in the whole model.
 [[nodiscard]] KeptPieces gather(Ranks& ranks, KeptPieces mine);
 
-/// From the ids of a pass in which only files of this rank were counted to those of the whole.
+/// Maps ids of a pass, in which only this rank's files were counted, to ids of the whole model.
 class IdShift {
  public:
-  /// `from` are where the ids of the files began, `counts` how many there were: files that were not read have none.
+  /// `from` and `to` have each file's first id, `counts` its number of ids in the pass: 0 for a file that was not read.
   IdShift(const std::vector<PrimitiveId>& from, const std::vector<std::uint64_t>& counts,
           const std::vector<PrimitiveId>& to);
 
-  /// Precondition: it is an id of the pass.
+  /// Precondition: `id` is an id of the pass.
   [[nodiscard]] PrimitiveId operator()(PrimitiveId id) const;
-  /// Of all but no_primitive.
+  /// Replaces all ids but no_primitive.
   void apply(std::span<PrimitiveId> ids, const Execution& execution) const;
 
  private:

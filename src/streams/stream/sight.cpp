@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawing a piece, and laying its answer over what was there. A lock is held for as long as that takes: it goes through
-// the pixels that the piece may cover, which are few when pieces are parts of a large model.
+// Draws a piece and merges its answer. Merging holds a lock, and goes only through the pixels that the piece may cover.
+// These are few if pieces are parts of a large model.
 #include "stream/sight.h"
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 namespace frontmost::streaming {
 namespace {
 
-/// Calls visit(id - first) for runs of equal ids within [first, first + count). Most samples show something else, so
-/// many are looked at in one go.
+/// Calls visit(id - first) for every sample whose id is in [first, first + count). Most ids are outside, so a run of
+/// samples is tested at once.
 template <class Visit>
 void for_ids_within(const Visible& visible, PrimitiveId first, std::size_t count, const Visit& visit) {
   constexpr std::size_t run = 64;
@@ -26,7 +26,7 @@ void for_ids_within(const Visible& visible, PrimitiveId first, std::size_t count
   }
 }
 
-/// Calls visit(index of the sample, id, key) where something is seen.
+/// Calls visit(index of the sample, id, key) for every sample where something is seen.
 template <class Visit>
 void for_covered_samples(const Visible& visible, const PixelBounds& pixels, const Visit& visit) {
   for (int sample = 0; sample < visible.view.samples; ++sample)
@@ -44,7 +44,7 @@ SightGatherer::SightGatherer(const std::vector<View>& views, const SightNeeds& n
     visible_.push_back(nothing_visible(view));
     sample_count_ += view.sample_count();
   }
-  // Below this, looking for hidden ones costs more than keeping them: it goes through all samples.
+  // Up to this number, keeping hidden triangles costs less than finding them, which goes through all samples.
   limit_ = std::max<std::size_t>(std::size_t(1) << 20, sample_count_ / 2);
 }
 
@@ -62,7 +62,7 @@ std::vector<bool> SightGatherer::merge(const std::vector<const Visible*>& piece,
       PrimitiveId& last_id = visible_[v].primitives[i];
       float& last_key = visible_[v].keys[i];
       const PrimitiveId new_id = place.first + selection.numbers[id];
-      // Equal keys go to the lesser id, as in a frame of all at once: then the order of pieces does not matter.
+      // Equal keys go to the lower id, as in a single frame, so the order of pieces does not matter.
       if (key < last_key || (key == last_key && new_id >= last_id)) return;
       last_id = new_id;
       last_key = key;
@@ -79,7 +79,7 @@ void SightGatherer::keep(Kept kept) {
   kept_.emplace(kept.place.number, std::move(kept));
   if (kept_count_ <= limit_) return;
   forget_hidden();
-  // By half of what stayed, so that what is kept is gone through a logarithmic number of times.
+  // The limit grows by half of what stayed, so the kept triangles are searched a logarithmic number of times.
   limit_ = std::max(limit_, kept_count_ + kept_count_ / 2);
 }
 
@@ -93,7 +93,7 @@ void SightGatherer::share(Ranks& ranks, const IdShift& shift, const Execution& e
 
 void SightGatherer::finish() { forget_hidden(); }
 
-/// In slices of ids, so that a bit for each costs 32 MiB at most, however long the stream is.
+/// Works in slices of ids, so that one bit per id takes 32 MiB at most, however long the stream is.
 void SightGatherer::forget_hidden() {
   constexpr std::uint64_t slice = std::uint64_t(1) << 28;
   if (kept_.empty()) return;
@@ -104,7 +104,7 @@ void SightGatherer::forget_hidden() {
     std::vector<bool> seen(count);
     for (const Visible& visible : visible_)
       for_ids_within(visible, PrimitiveId(first), count, [&](std::uint32_t id) { seen[id] = true; });
-    // What lies outside of the slice stays, for its own.
+    // Triangles outside of the slice stay; another slice decides about them.
     const auto is_wanted = [&](PrimitiveId id) { return id - first >= count || seen[std::size_t(id - first)]; };
     for (auto& [number, kept] : kept_) thin_out(kept, is_wanted);
   }
@@ -129,7 +129,7 @@ Selection Drawer::select(const Mesh& mesh, const SightGatherer& sight) {
 
 namespace {
 
-/// A few at a time: the mesh's own arrays are not in this shape.
+/// Passes on a few triangles at a time, because the mesh's own arrays do not have this layout.
 void tell_corners(const Mesh& mesh, const std::function<void(CornerSpan)>& tell) {
   std::vector<std::array<glm::vec3, 3>> corners;
   constexpr std::size_t at_once = 1024;
@@ -162,7 +162,7 @@ void Drawer::draw_selection(StreamPiece& piece, const PiecePlace& place, const S
     scene_.instances.emplace_back();
     buffers_.resize(sight.view_count());
   }
-  // Positions alone: what is visible depends on nothing else.
+  // Only positions are used: visibility depends on nothing else.
   Mesh& drawn = scene_.meshes[0];
   drawn.triangles.clear();
   for (const std::uint32_t t : selection.numbers) drawn.triangles.push_back(piece.mesh.triangles[t]);

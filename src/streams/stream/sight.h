@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What views show of the pieces so far.
+// Gathers what views show of the pieces so far.
 //
 //   piece --SampleFilter--> triangles that may be seen --ZBuffer--> its Visible --merge--> Visible of all so far
 //                                                                                    |
 //                                                               triangles that win a sample are kept (Kept)
 //
-// The first part is a Drawer's, of which every worker has one; merging and keeping are the SightGatherer's, under a
-// lock.
+// Every worker has a Drawer, which does the first part. The SightGatherer merges and keeps, under a lock.
 #pragma once
 
 #include <atomic>
@@ -23,16 +22,16 @@
 
 namespace frontmost::streaming {
 
-/// What of a piece is drawn: the triangles that may hold a sample, renumbered.
+/// The part of a piece that is drawn: triangles that may cover a sample, renumbered.
 struct Selection {
   std::vector<std::uint32_t> numbers;  ///< within the piece, ascending
-  std::vector<PixelBounds> pixels;     ///< that they may cover, by view
+  std::vector<PixelBounds> pixels;     ///< pixels that the triangles may cover, by view
 };
 
-/// What is to be known beside what is visible.
+/// Facts needed besides the visible samples.
 struct SightNeeds {
-  bool triangles = false;                            ///< copies of those that are seen
-  bool bounds = false;                               ///< of all triangles
+  bool triangles = false;                            ///< copies of the visible triangles
+  bool bounds = false;                               ///< bounds of all triangles
   std::function<void(CornerSpan)> unseen = nullptr;  ///< as in StreamNeeds
 };
 
@@ -46,17 +45,17 @@ class SightGatherer {
   [[nodiscard]] std::size_t view_count() const { return visible_.size(); }
   [[nodiscard]] const View& view(std::size_t i) const { return visible_[i].view; }
 
-  /// Nothing is seen in the first view so far.
+  /// True while nothing is seen in the first view.
   [[nodiscard]] bool is_blank() const { return is_blank_; }
   void include(const Box& bounds);
-  /// Lays one piece's answers over what was there: at every sample the greater key stays, at equal keys the lower
-  /// number in the stream, as by merge(). \returns for each triangle of the selection whether it is seen now.
+  /// Merges one piece's answers into the planes: at every sample the greater key wins, at equal keys the lower number
+  /// in the stream, as in frontmost::merge(). \returns for each triangle of the selection whether it is visible now.
   std::vector<bool> merge(const std::vector<const Visible*>& piece, const PiecePlace& place,
                           const Selection& selection);
   void keep(Kept kept);
-  /// After the last piece: what is seen becomes what all ranks see. `shift` leads to the ids of the whole.
+  /// After the last piece: merges the planes of all ranks. `shift` maps ids to those of the whole model.
   void share(Ranks& ranks, const IdShift& shift, const Execution& execution);
-  /// After that: forgets what was hidden by later ones, or by those of other ranks.
+  /// After share(), if there are ranks: removes kept triangles that later pieces or other ranks hide.
   void finish();
 
   [[nodiscard]] KeptPieces take_kept() { return std::move(kept_); }
@@ -76,23 +75,23 @@ class SightGatherer {
   Box bounds_;
 };
 
-/// One worker: makes surfaces of pieces and draws them, in memory that is used again.
+/// Makes surfaces of pieces and draws them, for one worker, in memory that is reused.
 class Drawer {
  public:
-  /// `frame` is what pieces are put into: materials and the instances.
+  /// `frame` has the materials and instances that pieces belong to.
   void draw(StreamPiece& piece, const PiecePlace& place, const Scene& frame, SightGatherer& sight,
             const Execution& execution);
 
  private:
   void draw_selection(StreamPiece& piece, const PiecePlace& place, const Scene& frame, SightGatherer& sight,
                       const Execution& execution);
-  /// Those that may hold a sample of one of the views.
+  /// Selects the triangles that may cover a sample of one of the views.
   [[nodiscard]] Selection select(const Mesh& mesh, const SightGatherer& sight);
 
   Scene scene_;
   std::vector<ZBuffer> buffers_;
   std::vector<SampleFilter> filters_;
-  std::vector<std::uint8_t> marks_;  ///< of the piece's triangles
+  std::vector<std::uint8_t> marks_;  ///< by triangle of the piece
 };
 
 }  // namespace frontmost::streaming

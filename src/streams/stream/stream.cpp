@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The passes over a stream. Pieces are drawn on their own and merged; what is nearest is a minimum, so neither their
-// size nor their order shows in the result, nor which rank has read them.
+// The passes over a stream. Pieces are drawn one by one and merged. The nearest triangle is a minimum, so the result
+// does not depend on the size or order of pieces, nor on the rank that read them.
 #include <algorithm>
 #include <filesystem>
 #include <mutex>
@@ -28,7 +28,7 @@ Turns turns_of(const StreamOptions& options) {
   return {options.ranks->number(), options.ranks->count(), options.readers};
 }
 
-/// So small that each rank gets some of what all of them read.
+/// The size of pieces, small enough that every rank gets some of each shared file.
 std::uint32_t shared_piece_size(const std::vector<std::string>& paths, const StreamOptions& options) {
   if (!options.ranks) return options.triangles_at_once;
   constexpr std::uint64_t bytes_per_triangle = 50, pieces_each = 4, least = 1u << 12;
@@ -55,8 +55,8 @@ struct Stream::State {
 
   [[nodiscard]] bool has_results() const { return !options.ranks || options.ranks->number() == 0; }
 
-  /// After the first pass, which has found bounds: what other ranks have to say of it. \returns the way from this
-  /// pass's ids to those of the whole.
+  /// Exchanges facts with the other ranks after the first pass, which has found bounds. \returns the map from this
+  /// pass's ids to ids of the whole model.
   IdShift share_facts(Box& found) {
     const std::vector<PrimitiveId> from = models.first_ids();
     const std::vector<std::uint64_t> counts = models.triangle_counts();
@@ -77,7 +77,7 @@ struct Stream::State {
     models.rewind();
   }
 
-  /// As many as the memory for pieces allows; the threads are shared out among them.
+  /// Options of a pass: as many workers as the memory for pieces allows, which share the threads.
   [[nodiscard]] LoopOptions loop_options(std::size_t samples, const Execution& execution) const {
     constexpr std::size_t memory = std::size_t(512) << 20, bytes_per_triangle = 220, bytes_per_sample = 8;
     const std::size_t each = options.triangles_at_once * bytes_per_triangle + samples * bytes_per_sample;
@@ -85,7 +85,7 @@ struct Stream::State {
     return {options.triangles_at_once, std::min(thread_count(execution), most)};
   }
 
-  /// Calls work(worker, piece, place, execution of the worker) for every piece; `samples` are drawn of each.
+  /// Calls work(worker, piece, place, execution of the worker) for every piece; a piece is drawn into `samples` in all.
   template <class Work>
   void pass(std::size_t samples, const Execution& execution, const Work& work);
   KeptPieces find_visible(const std::vector<View>& views, const StreamNeeds& needs, Excerpt& excerpt,
@@ -95,8 +95,8 @@ struct Stream::State {
   StreamOptions options;
   Models models;
   int passes = 0;
-  std::optional<Box> bounds;                    ///< once a pass has looked
-  std::optional<std::uint64_t> triangle_count;  ///< of all ranks, once they have told each other
+  std::optional<Box> bounds;                    ///< set by the first pass that finds them
+  std::optional<std::uint64_t> triangle_count;  ///< of all ranks, once they have exchanged facts
 };
 
 Stream::Stream(const std::vector<std::string>& paths, const StreamOptions& options, const Execution& execution)
@@ -115,7 +115,7 @@ Box Stream::bounds() const { return state_->bounds.value_or(Box{}); }
 
 namespace {
 
-/// What the threads of one worker are. Its stages do not report: the loop over pieces does.
+/// The threads of one worker. They report no progress of their own: the loop over pieces does.
 struct WorkerExecution {
   WorkerExecution(const Execution& whole, int workers) {
     if (whole.watch) quiet.cancelled = whole.watch->cancelled;
@@ -130,7 +130,7 @@ struct WorkerExecution {
 
 bool lacks_normals(const Kept& piece) { return piece.mesh.normals.empty(); }
 
-/// The corners of the triangles among those kept whose smooth normals will be looked at.
+/// Vertices of the kept triangles that are large enough on the screen for their smooth normals to be used.
 std::vector<glm::vec3> large_corners(const KeptPieces& kept, const std::vector<Visible>& visible,
                                      const Execution& execution) {
   const std::vector<PrimitiveId> ids = ids_of(kept);
@@ -151,10 +151,10 @@ std::vector<glm::vec3> large_corners(const KeptPieces& kept, const std::vector<V
   return corners;
 }
 
-/// What touches large triangles, beside what is seen.
+/// Finds the triangles that touch large ones, in addition to the visible ones.
 class NeighbourFinder {
  public:
-  /// Of `seen`, copies are made again: in the order of the stream, among their neighbours.
+  /// Triangles of `seen` are copied anew, so that they and their neighbours are in the order of the stream.
   NeighbourFinder(KeptPieces seen, const std::vector<glm::vec3>& corners)
       : seen_(std::move(seen)), touched_(corners.size()) {
     for (const glm::vec3& position : corners) touched_.add(position);
@@ -216,7 +216,7 @@ Scene Stream::outline(const View& direction, double margin, const Execution& exe
   return scene;
 }
 
-/// The first pass of look(): what is visible on any rank, and copies of what of it was read here.
+/// The first pass of look(): finds what is visible on any rank, and keeps copies of the triangles read here.
 KeptPieces Stream::State::find_visible(const std::vector<View>& views, const StreamNeeds& needs, Excerpt& excerpt,
                                        const Execution& execution) {
   SightGatherer sight(views, {.triangles = true, .bounds = !bounds, .unseen = needs.unseen});
@@ -233,7 +233,7 @@ KeptPieces Stream::State::find_visible(const std::vector<View>& views, const Str
   return sight.take_kept();
 }
 
-/// The second: what the light sees, and the neighbours of what is seen.
+/// The second pass of look(): finds what the light sees, and the neighbours of visible triangles.
 KeptPieces Stream::State::find_needs(KeptPieces kept, const StreamNeeds& needs, Excerpt& excerpt,
                                      const Execution& execution) {
   std::vector<View> light;

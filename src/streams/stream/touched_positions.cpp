@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A table with open addressing, filled once and then only counted in. Counts are atomic, because several threads ask at
-// the same time; positions are not written any more by then.
+// A table with open addressing. It is filled once; later only its counts change. Counts are atomic because several
+// threads ask at once. Positions are no longer written by then.
 #include "stream/touched_positions.h"
 
 #include <cstring>
@@ -8,12 +8,12 @@
 namespace frontmost::streaming {
 namespace {
 
-/// More corners than smooth normals look at in one place (shade/geometry/smooth_normals.cpp: 256), so that these are
-/// seen to be too many here as well.
+/// More vertices than smooth normals examine at one position (shade/geometry/smooth_normals.cpp: 256), so that such a
+/// position is recognised there as having too many.
 constexpr std::uint32_t most_at_one_place = 1000;
 
 std::array<std::uint32_t, 3> bits_of(const glm::vec3& position) {
-  const glm::vec3 p = position + 0.0f;  // -0 is 0
+  const glm::vec3 p = position + 0.0f;  // turns -0 into 0
   std::array<std::uint32_t, 3> bits;
   std::memcpy(bits.data(), &p, sizeof bits);
   return bits;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The accounts of all objects: what the picture shows is read once; then each object is drawn alone, as a mask, and
-// what the picture shows under the mask is counted.
+// The accounts of all objects. The picture is read once; then each object is drawn alone, as a mask, and the samples
+// that the picture shows under the mask are counted.
 //
 //    picture --read--> runs of objects that are seen --+
 //    object  --draw--> mask on the canvas -------------+--> counts by object that is seen: itself, or what hides it
 //
-// A sample of which the picture shows nothing is in no mask, so that the counts of an object add up to what of it is in
-// frame. Rejected: drawing each object alone by zbuffer() (13 s for a city of 10,000 objects at 1080p); lists of all
-// fragments of every sample (1.4 s and 1.7 GiB).
+// A sample that shows nothing in the picture is in no mask, so the counts of an object add up to its samples in frame.
+// Slower alternatives: drawing each object alone by zbuffer() (13 s for a city of 10,000 objects at 1080p); lists of
+// all fragments of every sample (1.4 s and 1.7 GiB).
 
 #include <algorithm>
 #include <memory>
@@ -27,7 +27,7 @@ namespace {
 
 constexpr double kLargestScale = 16;
 
-/// Of pixels of the canvas.
+/// A rectangle of the canvas as pixels of the picture.
 PixelBox box_of(const PixelRect& rect, const glm::ivec2& margin) {
   if (rect.is_empty()) return {};
   return {rect.x0 - margin.x, rect.y0 - margin.y, rect.x1 - rect.x0 + 1, rect.y1 - rect.y0 + 1};
@@ -52,7 +52,7 @@ SampleSet count_samples(const ObjectMask& mask, const PixelRect& rect, const glm
   return set;
 }
 
-/// What a thread needs for one object after another.
+/// Memory of one thread, used for one object after another.
 struct AccountScratch {
   AccountScratch(const PlacedScene& scene, const ObjectCanvas& canvas, Isa isa)
       : mask(scene, canvas, isa), counts{std::vector<std::uint32_t>(scene.instance_bounds.size(), 0), {}} {}

@@ -18,22 +18,22 @@ namespace {
 constexpr int kBandRows = 32;
 constexpr float kNotCovered = -1;  // keys are 0 and more
 
-/// What one object covers of a column.
+/// The part of a column that one object covers.
 struct HiderPiece {
   std::uint32_t object;
-  int x0, x1;  ///< pixels of the column, both included
+  int x0, x1;  ///< pixels of the column, both inclusive
   int y0, y1;  ///< rows of the band
   float nearest, farthest;
-  std::size_t words, keys;  ///< where those of row y0 begin: a word, and a key from x0 to x1, for each row
+  std::size_t words, keys;  ///< beginning of row y0; each row has a word, and a key for each x from x0 to x1
 };
 
-/// The nearest object of a sample, and the nearest of the others.
+/// The nearest object of a sample and the second nearest one.
 struct FrontTwo {
   float nearest, next;
   std::uint32_t nearest_object, next_object;
 };
 
-/// Sorts pairs, and adds up those that are the same.
+/// Sorts pairs and merges equal ones, adding their counts.
 void combine(std::vector<HiddenSamples>& pairs) {
   std::sort(pairs.begin(), pairs.end(), [](const HiddenSamples& a, const HiddenSamples& b) {
     return a.object != b.object ? a.object < b.object : a.hider < b.hider;
@@ -48,7 +48,7 @@ void combine(std::vector<HiddenSamples>& pairs) {
   pairs.resize(count);
 }
 
-/// One band after another. For one thread; borrows everything.
+/// Searches one band after another. For one thread; borrows everything.
 class BandHiders {
  public:
   BandHiders(const PlacedScene& scene, const ObjectCanvas& canvas, std::span<const ObjectAccount> objects, Isa isa)
@@ -61,7 +61,7 @@ class BandHiders {
         columns_(std::size_t(canvas.view.width + kWordPixels - 1) / kWordPixels),
         fronts_(std::size_t(kBandRows) * kWordPixels) {}
 
-  /// Adds what is hidden of one sample of the pixels from row y0 on.
+  /// Adds the hidden samples with one sample number, in the pixels of the band that begins at row y0.
   void find(std::size_t sample, int y0, HiderLists& lists) {
     offset_ = sample_offsets(canvas_.view.samples)[sample];
     band_ = {0, y0, canvas_.view.width - 1, std::min(y0 + kBandRows, canvas_.view.height) - 1};
@@ -136,7 +136,7 @@ class BandHiders {
     for (int i = 0; i < x1 - x0; ++i) row[i] = std::max(row[i], key_of(first + i * kSubPixels, at_y));
   }
 
-  /// Keeps what the plane shows of a column.
+  /// Keeps the part of an object in a column of the plane.
   void add_piece(std::uint32_t object, int word, const PixelRect& rect) {
     HiderPiece piece{object,
                      std::max(rect.x0 - word * kWordPixels, 0),
@@ -172,7 +172,7 @@ class BandHiders {
   void compare_pieces(const std::vector<HiderPiece>& column, std::vector<HiddenSamples>& any) const {
     for (std::size_t i = 0; i < column.size(); ++i)
       for (std::size_t k = i + 1; k < column.size(); ++k) {
-        const HiderPiece &a = column[i], &b = column[k];  // a has the lower number, and is before b at equal keys
+        const HiderPiece &a = column[i], &b = column[k];  // at equal keys a, with the lower number, is in front
         const int y0 = std::max(a.y0, b.y0), y1 = std::min(a.y1, b.y1);
         if (y1 < y0) continue;
         const std::span<const std::uint64_t> of_a = words_from(a, y0, y1), of_b = words_from(b, y0, y1);
@@ -235,7 +235,7 @@ class BandHiders {
   std::span<const ObjectAccount> objects_;
   std::vector<std::size_t> first_;
   PlaceTarget target_;
-  Buffer<float> plane_;  // the nearest keys of one object in the band
+  Buffer<float> plane_;  // nearest keys of one object in the band
   std::vector<std::vector<HiderPiece>> columns_;
   std::vector<std::uint64_t> words_;
   std::vector<float> keys_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order of objects that hide each other: cycles become one, by Tarjan's search, and what is left has ranks.
+// The order of objects that hide each other. Tarjan's search joins each cycle into one component; the components have
+// ranks.
 //
 //    a hides b, b hides c, c hides b, c hides d          a  ->  { b, c }  ->  d
 //                                                        0        1           2
@@ -10,7 +11,7 @@
 namespace frontmost {
 namespace {
 
-/// Components come out when all that they hide has come out.
+/// Finds the components. A component is complete after all components that it hides.
 class CycleSearch {
  public:
   CycleSearch(std::size_t count, std::span<const HiddenSamples> pairs)
@@ -33,7 +34,7 @@ class CycleSearch {
     std::vector<std::vector<std::uint32_t>> members(component_count_);
     for (std::uint32_t i = 0; i < component_.size(); ++i) members[component_[i]].push_back(i);
     std::vector<std::uint32_t> ranks(component_count_, 0);
-    // The last one hides what came before it.
+    // Components hide only those that were completed before them.
     for (std::size_t from = component_count_; from-- > 0;)
       for (const std::uint32_t object : members[from])
         for (std::size_t k = first_[object]; k < first_[object + 1]; ++k) {
@@ -83,8 +84,8 @@ class CycleSearch {
     ++component_count_;
   }
 
-  std::vector<std::size_t> first_, next_;  // by object: in `hidden_`
-  std::vector<std::uint32_t> hidden_;      // by their hiders
+  std::vector<std::size_t> first_, next_;  // by object: index into `hidden_`
+  std::vector<std::uint32_t> hidden_;      // hidden objects, by hider
   std::vector<std::uint32_t> numbers_, lowest_, component_, open_;
   std::uint32_t entered_ = 0, component_count_ = 0;
 };

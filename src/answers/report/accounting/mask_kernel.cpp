@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Marking what triangles cover, and counting what is marked.
+// Marking the samples that triangles cover, and counting marked samples.
 //
-// A row of a triangle is a span: from the first pixel whose sample lies inside of all edges that go up to the last that
-// lies inside of those that go down. Where an edge E(x) = n - d * 256 x changes its sign is n / (256 d), rounded up:
+// A row of a triangle is a span. It begins at the first pixel whose sample lies inside all edges that go up, and ends
+// before the first pixel whose sample lies outside an edge that goes down. The sign of an edge E(x) = n - d * 256 x
+// changes at n / (256 d), rounded up:
 //
-//    edge goes up    (left, with its points)       first pixel    ceil(n / (256 d))
-//    edge goes down  (right, without its points)   end            ceil(n / (256 d))
+//    edge goes up    (left, points inclusive)       first pixel    ceil(n / (256 d))
+//    edge goes down  (right, points exclusive)   end            ceil(n / (256 d))
 //
-// n is an integer below 2^53 and exact in a double. Half of a unit less, the quotient is no integer, and at least
-// 1 / (512 d) > 2^-33 away from one, while a product with a reciprocal is off by less than 2^-36 for pixels of any
-// canvas; so rounding up finds the right integer, as exact arithmetic would.
+// n is an integer below 2^53 and exact in a double. With n - 1/2 in place of n, the quotient is at least 1 / (512 d) >
+// 2^-33 away from any integer. A product with a reciprocal is wrong by less than 2^-36 for pixels of any canvas.
+// Rounding up therefore finds the same integer as exact arithmetic.
 
 #include "report/accounting/mask.h"
 
@@ -35,16 +36,16 @@ using zbuffer_detail::HWY_NAMESPACE::RangeOf;
 
 using DD = hn::ScalableTag<double>;
 using VD = hn::Vec<DD>;
-constexpr std::size_t kMaxRows = hn::MaxLanes(DD());  // that are found at once
+constexpr std::size_t kMaxRows = hn::MaxLanes(DD());  // rows found at once
 
-/// The corners of a triangle, so turned that its area is positive.
+/// The corners of a triangle, ordered so that its area is positive.
 struct MaskTriangle {
   std::int32_t x[3], y[3];
 };
 
-/// Where an edge that is not level begins or ends spans, as a linear function of the row, in pixels.
+/// The bound of spans at an edge that is not level, as a linear function of the row, in pixels.
 struct SpanSide {
-  double numerator, step;  ///< of the first row, and from row to row; integers but for half a unit
+  double numerator, step;  ///< at the first row, and per row; integers, less half a unit
   double inverse;
 };
 
@@ -60,7 +61,7 @@ class SpanFinder {
   [[nodiscard]] int first() const { return first_; }
   [[nodiscard]] int last() const { return last_; }
 
-  /// Calls visit(row, begin, end) for vectors of rows, the first of which is `row`.
+  /// Calls visit(row, begin, end) for vectors of rows that begin at `row`.
   template <class Visit>
   HWY_INLINE void ForRows(const Visit& visit) const {
     const DD d;
@@ -69,7 +70,7 @@ class SpanFinder {
       VD begin = hn::Zero(d), end = hn::Set(d, double(width_));
       for (int i = 0; i < left_count_; ++i) begin = hn::Max(begin, At(left_[i], below));
       for (int i = 0; i < right_count_; ++i) end = hn::Min(end, At(right_[i], below));
-      // Limited to the canvas, so that all of them are small integers.
+      // The bounds are limited to the canvas, so all of them are small integers.
       visit(row, hn::Min(begin, hn::Set(d, double(width_))), hn::Max(end, hn::Zero(d)));
     }
   }
@@ -85,12 +86,12 @@ class SpanFinder {
     const int n = k == 2 ? 0 : k + 1;
     const double dx = t.x[n] - t.x[k], dy = t.y[n] - t.y[k];
     if (dy == 0) {
-      // Level: above it nothing is covered, and a lower side does not have its points.
+      // A level edge: nothing above it is covered, and a lower edge excludes its own points.
       if (dx < 0 && last_ * 256 + plane.place.y == t.y[k]) --last_;
       return;
     }
     const double first_y = first_ * 256 + plane.place.y - t.y[k], from_x = t.x[k] - plane.place.x;
-    // Of an edge that goes up signs are turned, so that the divisor is positive.
+    // An edge that goes up has its signs inverted, so that the divisor is positive.
     const double sign = dy < 0 ? -1 : 1;
     const SpanSide side{sign * (dx * first_y + dy * from_x) - 0.5, sign * dx * 256, sign / (dy * 256)};
     if (dy < 0)
@@ -117,7 +118,7 @@ HWY_INLINE void MarkSpan(std::uint64_t* row, int begin, int end) {
   row[last] |= to;
 }
 
-/// A triangle by itself, many rows at once.
+/// Marks one triangle, many rows at once.
 void MarkTriangle(const MaskPlane& plane, const MaskTriangle& triangle) {
   const hn::Rebind<std::int32_t, DD> d32;
   const SpanFinder finder(plane, triangle);
@@ -131,12 +132,12 @@ void MarkTriangle(const MaskPlane& plane, const MaskTriangle& triangle) {
   });
 }
 
-/// Small triangles, a vector of them in step: a row of each at a time.
+/// Marks small triangles, a vector of them in step, one row of each at a time.
 class SmallMarker {
  public:
-  /// Triangles larger than this, in pixels, are marked by themselves. Edge values of smaller ones fit 32 bits, and
-  /// without their lower 8, which decide nothing, floats; of 64 pixels quotients are off by less than 2^-16, and half
-  /// of a unit less, at least 2^-15 away from integers.
+  /// Triangles larger than this, in pixels, are marked one by one. The edge values of smaller ones fit into 32 bits.
+  /// Their lower 8 bits decide nothing; without these they fit into floats. Over 64 pixels a quotient is wrong by less
+  /// than 2^-16; with half a unit subtracted it is at least 2^-15 away from any integer.
   static constexpr std::int32_t kMostPixels = 62, kMostRows = 32;
 
   SmallMarker(const MaskPlane& plane, const BatchColumns& columns) : plane_(plane), columns_(columns) {}
@@ -186,9 +187,9 @@ class SmallMarker {
     }
   }
 
-  /// An edge's value at pixel x, from the left, is n + s x. `edge` is -(n + 1/2), `step` what n grows by from row to
-  /// row, and the edge is crossed at edge * inverse. A level edge counts as a left one that is crossed far off: to the
-  /// left where it has the row inside, else to the right.
+  /// The value of an edge at pixel x, from the left, is n + s x. `edge` is -(n + 1/2), `step` the growth of n per row,
+  /// and the edge is crossed at edge * inverse. A level edge counts as a left edge that is crossed far away: to the
+  /// left if the row lies inside of it, otherwise to the right.
   HWY_INLINE void SetUpEdge(int k, VF& edge, VF& step, VF& inverse, MF& is_left) const {
     const DI d;
     const DF df;
@@ -205,7 +206,7 @@ class SmallMarker {
     is_left = hn::RebindMask(df, hn::Not(hn::Gt(dy, zero)));
   }
 
-  /// Pixels [begin, end) from the left of a row of each triangle.
+  /// Marks pixels [begin, end), counted from the left, in a row of each triangle.
   HWY_INLINE void MarkRow(MI live, VI row, VI begin, VI end) {
     const DI d;
     const VI stop = hn::Min(hn::Add(left_, end), hn::Set(d, plane_.width)), start = hn::Add(left_, begin);
@@ -227,7 +228,7 @@ class SmallMarker {
 
   const MaskPlane& plane_;
   const BatchColumns& columns_;
-  // Of the packet.
+  // The packet that is being marked.
   VI x_[3], y_[3];
   PixelRange rows_;
   VI left_;  // the first pixel column
@@ -261,7 +262,7 @@ void MarkSpans(const MaskPlane& plane, const RowSpans& spans) {
   }
 }
 
-/// The bits of a word that are pixels [x0, x1].
+/// The bits of a word for pixels [x0, x1].
 HWY_INLINE std::uint64_t BitsWithin(int word, int x0, int x1) {
   const int first = x0 - word * kWordPixels, last = x1 - word * kWordPixels;
   std::uint64_t bits = ~std::uint64_t(0);
@@ -304,7 +305,7 @@ SeenSpan FindSeenSpan(std::span<const PrimitiveId> ids, const float* keys, Primi
   const DI di;
   const DF df;
   SeenSpan span{0, 0};
-  // Keys are not negative: they order as their bits do.
+  // Keys are not negative, so they are ordered like their bits.
   auto nearest = hn::Zero(di);
   for (; span.end + hn::Lanes(d) <= ids.size(); span.end += hn::Lanes(d)) {
     const auto number = hn::Sub(hn::LoadU(d, ids.data() + span.end), hn::Set(d, first));

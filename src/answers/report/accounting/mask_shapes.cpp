@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Masks as COCO has them: run lengths and polygons.
+// Masks in COCO's formats: run lengths and polygons.
 //
-//    row 0      ####         one polygon: each row goes on with the only run above it that it touches
+//    row 0      ####         one polygon: each run continues the only run above that it touches
 //    row 1      ######
-//    row 2      ##  ##       where a run parts or two come together, polygons end and others begin
+//    row 2      ##  ##       where a run splits or two merge, polygons end and others begin
 #include <algorithm>
 
 #include "frontmost/report.h"
@@ -15,7 +15,7 @@ bool is_in(MaskPixel pixel, MaskPart part) {
   return pixel == MaskPixel::visible || (part == MaskPart::whole && pixel == MaskPixel::hidden);
 }
 
-/// Five bits a character, the lowest first; the fifth bit of the last one is the sign.
+/// Appends five bits a character, the lowest first; the fifth bit of the last character is the sign.
 void append_number(std::int64_t value, std::string& text) {
   for (bool more = true; more;) {
     const std::int64_t low = value & 31;
@@ -25,7 +25,7 @@ void append_number(std::int64_t value, std::string& text) {
   }
 }
 
-/// Pixels [x0, x1) of a row, and the polygon that they are of: its sides from the top, x and y in turn.
+/// Pixels [x0, x1) of a row and the sides of their polygon, from the top, x and y alternating.
 struct MaskRun {
   int x0, x1;
   std::vector<int> left{}, right{};
@@ -46,7 +46,7 @@ std::vector<MaskRun> runs_of_row(const PixelMask& mask, MaskPart part, int row) 
   return runs;
 }
 
-/// The run of a list that another one touches; null where there are none or several.
+/// The only run of the list that `by` touches; null if it touches none or several.
 MaskRun* only_touched(std::vector<MaskRun>& runs, const MaskRun& by) {
   MaskRun* found = nullptr;
   for (MaskRun& run : runs) {
@@ -57,7 +57,7 @@ MaskRun* only_touched(std::vector<MaskRun>& runs, const MaskRun& by) {
   return found;
 }
 
-/// Down the right side and up the left one.
+/// The polygon in one order: down its right side and up its left one.
 std::vector<int> closed_polygon(MaskRun& run, int y) {
   std::vector<int> polygon = std::move(run.right);
   polygon.insert(polygon.end(), {run.x1, y, run.x0, y});
@@ -66,7 +66,7 @@ std::vector<int> closed_polygon(MaskRun& run, int y) {
   return polygon;
 }
 
-/// The polygon of the run above goes on with another one below y.
+/// Continues the polygon of the run above with another run below y.
 void go_on(MaskRun& above, MaskRun& run, int y) {
   run.left = std::move(above.left);
   run.right = std::move(above.right);
@@ -79,7 +79,7 @@ void go_on(MaskRun& above, MaskRun& run, int y) {
 
 std::string coco_runs(const PixelMask& mask, MaskPart part, const glm::ivec2& size) {
   std::vector<std::int64_t> runs;
-  std::int64_t end = 0;  // of the runs so far
+  std::int64_t end = 0;  // end of the runs so far
   for (int x = mask.box.x; x < mask.box.x + mask.box.width; ++x)
     for (int y = mask.box.y; y < mask.box.y + mask.box.height; ++y) {
       if (!is_in(mask.at(x, y), part)) continue;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // One object alone on the canvas.
 //
-// The stage that places triangles is the z-buffer's own, with the picture's transform and another top left corner: so
-// what is marked within the frame is to the sample what zbuffer() would draw of the object. Triangles with holes come
-// last; a sample that is marked already need not be looked up in their textures.
+// Triangles are placed by the z-buffer's own stage, with the picture's transform and another top left corner. The marks
+// within the frame are therefore exactly the samples that zbuffer() would draw of the object. Triangles with holes come
+// last, since samples that are already marked need no look-up in their textures.
 
 #include "report/accounting/object_mask.h"
 
@@ -16,7 +16,7 @@ using namespace zbuffer_detail;
 
 namespace {
 
-constexpr int kLargestCanvas = 2 * kGuardBand / kSubPixels;  // pixels: what reaches beyond is clipped
+constexpr int kLargestCanvas = 2 * kGuardBand / kSubPixels;  // pixels; triangles are clipped beyond
 constexpr PixelRect kNoPixels{1 << 30, 1 << 30, -1, -1};
 
 int margin_of(int size, double scale) { return int(std::min((scale - 1) / 2 * size, (kLargestCanvas - size) / 2.0)); }
@@ -34,7 +34,7 @@ ScreenTransform moved(ScreenTransform transform, const glm::ivec2& margin) {
   return transform;
 }
 
-/// Of a triangle that is not wholly outside.
+/// Whether a triangle crosses the near plane. Precondition: it does not lie wholly outside.
 bool crosses_near(const glm::uvec3& vertices, const SnappedVertices& snapped) {
   constexpr std::int32_t kBeforeNear = 1;
   for (int k = 0; k < 3; ++k) {
@@ -176,7 +176,7 @@ void ObjectMask::draw_cutout(const TriangleRecord& record) {
   const ScreenCutout cutout((*scene_.cutouts)[record.id], canvas_.rays);
   for (const MaskPlane& plane : planes_) {
     find_spans(plane, record, spans_, target_.isa);
-    const glm::ivec2 first = plane.place - canvas_.margin * kSubPixels;  // from the picture's top left
+    const glm::ivec2 first = plane.place - canvas_.margin * kSubPixels;  // relative to the picture's top left
     for (int i = 0; i < spans_.count; ++i) {
       const int y = spans_.first + i;
       for (int x = spans_.begin[std::size_t(i)]; x < spans_.end[std::size_t(i)]; ++x) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawing one object alone: its triangles, placed as the z-buffer places them, marked on the canvas.
+// Drawing one object alone: its triangles are placed as in the z-buffer and marked on the canvas.
 #pragma once
 
 #include <vector>
@@ -11,45 +11,45 @@
 
 namespace frontmost::accounting_detail {
 
-/// The picture and what is around it. Vertices lie on it where the picture has them, to the bit, moved by the margin.
+/// The picture and its surroundings. Vertices have the picture's positions, to the bit, shifted by the margin.
 struct ObjectCanvas {
-  glm::ivec2 margin;          ///< in pixels, to the left of the picture and above it; negative where only a part is
-  PixelRect frame;            ///< the picture, or its part, on the canvas
-  View view;                  ///< of which the size, the samples and the culling are the canvas'
-  ScreenTransform transform;  ///< to the canvas' top left corner
-  ScreenRays rays;            ///< of the picture, about its own top left corner
+  glm::ivec2 margin;          ///< pixels to the left of the picture and above it; negative for a part of the picture
+  PixelRect frame;            ///< the picture, or the part of it, on the canvas
+  View view;                  ///< only its size, samples and culling are the canvas'
+  ScreenTransform transform;  ///< relative to the canvas' top left corner
+  ScreenRays rays;            ///< of the picture, relative to the picture's top left corner
 
   /// `scale`: AccountingOptions::canvas. Preconditions: the view is valid, and the scale in range.
   ObjectCanvas(const View& picture, double scale);
-  /// A part of the picture alone. Preconditions: the view is valid, and the part not empty and within the picture.
+  /// A canvas of a part of the picture. Preconditions: the view is valid; the part is not empty and lies within the
+  /// picture.
   ObjectCanvas(const View& picture, const PixelRect& part);
 };
 
-/// Where the ranges of each instance begin among those of the scene, and the end of the last.
+/// Index of the first range of each instance, and the number of all ranges.
 [[nodiscard]] std::vector<std::size_t> first_ranges(const PlacedScene& scene);
 
-/// The mask of one object after another. For one thread; borrows everything.
+/// Draws the mask of one object after another. For one thread; borrows everything.
 class ObjectMask {
  public:
   ObjectMask(const PlacedScene& scene, const ObjectCanvas& canvas, Isa isa);
 
-  /// Marks what the object of these ranges covers, in place of the one before.
+  /// Marks what the object of these ranges covers. Replaces the mask of the object before.
   void draw(std::span<const MeshRange> ranges);
 
-  /// By sample.
+  /// One plane for each sample number.
   [[nodiscard]] std::span<const MaskPlane> planes() const { return planes_; }
-  /// Everything that is marked lies within; empty where nothing is.
+  /// A rectangle around all marked samples; empty if none is marked.
   [[nodiscard]] const PixelRect& touched() const { return touched_; }
   /// Whether a triangle reaches across the near plane.
   [[nodiscard]] bool is_cut_by_near() const { return is_cut_by_near_; }
 
  private:
   void clear();
-  /// Whether triangles that follow one another have vertices from all over the mesh: all of them are placed at once
-  /// then.
+  /// Whether consecutive triangles have vertices from all over the mesh. All vertices are then placed at once.
   [[nodiscard]] bool is_strewn(std::span<const MeshRange> ranges) const;
   void draw_at_once(std::span<const MeshRange> ranges);
-  /// Precondition: their vertices are those of the scratch.
+  /// Precondition: the scratch holds the vertices of these triangles.
   void draw_triangles(const WorldTriangles& triangles);
   void draw_small();
   void draw_large(const TriangleRecord& record);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Masks as pixels: an object is drawn alone within the frame, and looked up in what is visible.
+// Masks as pixels: an object is drawn alone within the frame, and compared with what is visible.
 #include "base/parallel.h"
 #include "report/accounting/object_mask.h"
 #include "view/answer.h"

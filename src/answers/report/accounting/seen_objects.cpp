@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading a picture: bands of rows, each by one thread, into runs and tallies of what they show.
+// Reading a picture: each thread reads bands of rows and makes runs and tallies of what they show.
 //
-// Only objects that a band shows have a tally in it, so that a million objects of which few are seen cost nothing. Sums
-// are of integers: in whichever order bands are added up, they are the same.
+// A band has tallies only of objects that it shows, so a million objects of which few are seen cost nothing. Sums are
+// of integers, so the order in which bands are added does not matter.
 
 #include "report/accounting/seen_objects.h"
 
@@ -15,7 +15,7 @@
 namespace frontmost::accounting_detail {
 namespace {
 
-/// The tallies of one band, found by object.
+/// The tallies of one band, by object.
 class TallyList {
  public:
   explicit TallyList(std::size_t object_count) : places_(object_count, 0) {}
@@ -28,18 +28,18 @@ class TallyList {
     }
     return tallies_[place - 1];
   }
-  /// The tallies, which leave the list empty.
+  /// Returns the tallies and empties the list.
   [[nodiscard]] std::vector<SeenTally> take() {
     for (const SeenTally& tally : tallies_) places_[tally.object] = 0;
     return std::exchange(tallies_, {});
   }
 
  private:
-  std::vector<std::uint32_t> places_;  // by object: in `tallies_`, counted from 1; 0 where it has none
+  std::vector<std::uint32_t> places_;  // by object: index into `tallies_` plus 1; 0 if it has none
   std::vector<SeenTally> tallies_;
 };
 
-/// The ids of one object, or the one of none.
+/// The ids of one object, or no_primitive.
 struct ObjectIds {
   std::uint32_t object = no_index;
   PrimitiveId first = no_primitive;
@@ -85,11 +85,11 @@ class BandReader {
     return {std::uint32_t(next - first_primitives_.begin() - 1), first, *next - first};
   }
 
-  /// Of a run of pixels in one row.
+  /// The tally of a run of pixels in one row.
   [[nodiscard]] SeenTally tally_of(const PixelRect& run, std::uint32_t object, float nearest, int sample) const {
     const glm::ivec2 offset = sample_offsets(visible_.view.samples)[std::size_t(sample)];
     const auto count = std::uint64_t(run.x1 - run.x0 + 1);
-    // Both ends together are twice the middle, in half pixels.
+    // The sum of both ends is twice the middle, in half pixels.
     const std::uint64_t sum_x =
         count * std::uint64_t(run.x0 + run.x1) * (kSubPixels / 2) + count * std::uint64_t(offset.x);
     const std::uint64_t sum_y = count * std::uint64_t(run.y0 * kSubPixels + offset.y);
@@ -98,7 +98,7 @@ class BandReader {
 
   const std::vector<PrimitiveId>& first_primitives_;
   const Visible& visible_;
-  int left_;  // the picture's first pixel in its word
+  int left_;  // index of the picture's first pixel in its word
   Isa isa_;
 };
 

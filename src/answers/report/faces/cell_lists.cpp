@@ -9,11 +9,11 @@
 namespace frontmost::faces_detail {
 namespace {
 
-/// Pixels along a side of the cells that the picture is divided into at first.
+/// Side of the largest cells, in pixels.
 constexpr int kLargestCell = 32;
 constexpr int kPart = kLargestCell / int(CellLists::parts_along);
 
-/// From x, y to x + size, y + size as far as that is in the picture.
+/// The box from x, y to x + size, y + size, as far as it lies in the picture.
 CellBox square(int x, int y, int size, const View& view) {
   return {double(x), double(y), double(std::min(x + size, view.width)), double(std::min(y + size, view.height))};
 }
@@ -21,7 +21,7 @@ CellBox square(int x, int y, int size, const View& view) {
 }  // namespace
 
 std::uint32_t order_of(double key) {
-  const float rounded = float(key) + 0.0f;  // -0 is 0
+  const float rounded = float(key) + 0.0f;  // turns -0 into 0
   std::uint32_t bits;
   std::memcpy(&bits, &rounded, sizeof bits);
   return (bits >> 31) != 0 ? bits : ~bits & 0x7FFFFFFFu;
@@ -58,7 +58,7 @@ CellLists::CellLists(const ViewedFaces& screen, const View& view)
 
 void CellLists::find_spans(const ViewedFaces& screen, const View& view) {
   const auto part_at = [](double at, int size) {
-    return std::uint32_t(std::clamp(int(at * (1.0 / kPart)), 0, (size - 1) / kPart));  // what is cut off below 0 is 0
+    return std::uint32_t(std::clamp(int(at * (1.0 / kPart)), 0, (size - 1) / kPart));  // clamps to the picture
   };
   for (std::uint32_t i = 0; i < spans_.size(); ++i) {
     const auto& c = screen.faces[i].corners;

@@ -17,42 +17,42 @@
 namespace frontmost::faces_detail {
 namespace {
 
-/// Cells are not divided further at this side, in pixels.
+/// Side of the smallest cells, in pixels.
 constexpr double kSmallestCell = 1.0 / 1024;
-/// So few faces are cut by each other sooner than a cell is divided.
+/// A cell with at most this number of faces is not divided: its faces are cut by each other.
 constexpr std::size_t kFewFaces = 128;
-/// More faces than this are worth dividing a cell for, even if most of them reach into all of its parts: there, they
-/// hide each other.
+/// A cell with more faces than this is divided even if most of them reach into all of its parts: they hide each other
+/// there.
 constexpr std::size_t kManyFaces = 256;
-/// The largest cells with more faces are divided before anything is asked of these.
+/// The largest cells with more faces than this are divided before their faces are examined.
 constexpr std::size_t kManyListed = 500;
-/// Cells with more faces are divided into 4 x 4 at once.
+/// Cells with more faces than this are divided into 4 x 4 at once.
 constexpr std::size_t kCrowd = 300;
 
-/// Cells with more faces than this, which stay as many in its parts, are not divided at any size.
+/// Cells with more faces than this, all of which its parts would have as well, are not divided at any size.
 constexpr std::size_t kManySides = 1024;
-/// What it takes to put a face into the list of a cell, and the list in order, in steps of about ten nanoseconds.
+/// Cost of entering a face into the list of a cell and of ordering the list, in steps of about ten nanoseconds.
 constexpr std::uint64_t kStepsInCell = 8;
-/// So many faces that cover a cell and are not told apart by the ranges of their keys are told apart by their planes.
+/// If more faces than this cover a cell and their ranges of keys do not order them, their planes do.
 constexpr std::size_t kManyCovers = 32;
 
-constexpr double kNever = -std::numeric_limits<double>::infinity();  ///< a key that nothing lies behind
+constexpr double kNever = -std::numeric_limits<double>::infinity();  ///< a key with nothing behind it
 
-/// A face that is seen as far as it lies in a cell, out of which it reaches.
+/// A face of which the part within a cell is seen, and which extends beyond the cell.
 struct ToldPart {
   std::uint32_t face;
   CellBox box;
 };
 
-/// What cells say of faces, any of them at any time.
+/// Findings of cells about faces. Any cell may set them at any time.
 class FaceMarks {
  public:
   explicit FaceMarks(std::size_t count) : seen_(new Mark[count]()), partial_(new Mark[count]()) {}
-  /// In a cell that it reaches out of.
+  /// The face is seen in a cell that it extends beyond.
   void set_seen(std::uint32_t face) { seen_[face].store(kSeen, std::memory_order_relaxed); }
-  /// In the one cell that it lies in.
+  /// The face is seen in the one cell in which it lies.
   void set_whole(std::uint32_t face) { seen_[face].store(kWhole, std::memory_order_relaxed); }
-  /// Somewhere it may be hidden, or outside of the picture, if it is not seen in the one cell that it lies in.
+  /// The face may be hidden somewhere, or outside the picture, unless it is seen in the one cell in which it lies.
   void set_partial(std::uint32_t face) { partial_[face].store(1, std::memory_order_relaxed); }
   [[nodiscard]] bool is_partial(std::uint32_t face) const {
     return partial_[face].load(std::memory_order_relaxed) != 0;
@@ -69,7 +69,7 @@ class FaceMarks {
   std::unique_ptr<Mark[]> seen_, partial_;
 };
 
-/// Looks at one of the largest cells after the other.
+/// Solves one of the largest cells after another.
 class CellSolver {
  public:
   CellSolver(const FacesOfView& faces, FaceMarks& marks, const std::function<void(std::uint64_t)>& tell)
@@ -78,25 +78,25 @@ class CellSolver {
   void solve(const CellLists& lists, std::size_t cell, const View& view);
 
   void clip(const ToldPart& part, std::vector<SeenPart>& seen) { cutter_.clip(part.box, part.face, seen); }
-  /// Tells what of the work was not told yet.
+  /// Reports the remaining work.
   void tell_rest() { cutter_.tell_rest(); }
 
   std::vector<SeenPart> parts;
   std::vector<ToldPart> told;
 
  private:
-  /// What is known of a cell's list once it is in order: from `kept` on everything is hidden; if `is_told`, all before
-  /// is seen. Nothing that was left out of the list is nearer than `removed`.
+  /// Findings about an ordered list of a cell. Faces from `kept` on are hidden. If `is_told`, all faces before are
+  /// seen. No face that was left out of the list is nearer than `removed`.
   struct Sorted {
     std::size_t kept;
     bool is_told;
     double removed;
   };
 
-  /// The group at the end of the list, while that grows from the nearest on.
+  /// The last group of the list, while the list grows from the nearest face on.
   struct LastGroup {
     std::size_t begin, looked_at;
-    double covered = kNever;  ///< the farthest key of a face that covers the cell
+    double covered = kNever;  ///< nearest of the farthest keys of faces that cover the cell
     double farthest = -kNever;
     bool is_ending = false;
   };
@@ -112,7 +112,7 @@ class CellSolver {
   template <class Index>
   [[nodiscard]] double add_nearest(const CellBox& box, double removed, std::size_t& end, const Index& index);
   void gather(std::uint32_t face, const CellBox& box);
-  /// Adds a face of a larger cell to the end of the list where it reaches into the box.
+  /// Appends a face of a larger cell to the list if it reaches into the box.
   void add(const FaceInBox& face, const CellBox& box);
   [[nodiscard]] bool reaches_into(const CellBox& box, FaceInBox& face) const;
   void divide(const CellBox& box, std::size_t first, double removed);
@@ -123,7 +123,7 @@ class CellSolver {
   [[nodiscard]] Sorted sort(const CellBox& box, std::size_t first, double removed);
   [[nodiscard]] int count_at(const glm::dvec2& place, std::size_t first, std::size_t last) const;
   void show_all(const CellBox& box, std::size_t first);
-  /// Takes the list from `first` on away: nothing of it is seen in the cell, or only parts.
+  /// Removes the list from `first` on: its faces are not seen in the cell, or only partly.
   void drop(std::size_t first) {
     for (std::size_t i = first; i < list_.size(); ++i) marks_.set_partial(gathered_[list_[i].number].face);
     list_.resize(first);
@@ -133,14 +133,14 @@ class CellSolver {
   FaceMarks& marks_;
   PieceCutter cutter_;
   RoughOrder order_;
-  std::vector<std::uint16_t> parts_of_faces_;  ///< of the order's, bits of those of the cell that their boxes meet
-  std::size_t least_looked_at_ = 0;            ///< what lies behind in the order is hidden in some part
+  std::vector<std::uint16_t> parts_of_faces_;  ///< by face of `order_`: parts of the cell that its box meets, as bits
+  std::size_t least_looked_at_ = 0;            ///< faces from here on in the order are hidden in some part
   std::vector<GatheredFace> gathered_;
-  std::vector<FaceInBox> list_;  ///< of the cell that is looked at, behind those of the cells that it is a part of
+  std::vector<FaceInBox> list_;  ///< of the current cell, after those of the larger cells around it
   std::vector<std::uint32_t> members_;
 };
 
-/// Lists come nearly in order.
+/// Sorts a list that is nearly sorted.
 template <class Iterator, class Before>
 void sort_nearly_sorted(Iterator begin, Iterator end, const Before& before) {
   std::ptrdiff_t moves_left = 8 * (end - begin);
@@ -154,7 +154,7 @@ void sort_nearly_sorted(Iterator begin, Iterator end, const Before& before) {
   }
 }
 
-/// Off the middle, through which the sides of symmetric models pass.
+/// A place in a box, away from the middle, through which the sides of symmetric models pass.
 glm::dvec2 place_in(const CellBox& box) {
   return {box.left + 0.4372 * (box.right - box.left), box.top + 0.5611 * (box.bottom - box.top)};
 }
@@ -177,8 +177,8 @@ void CellSolver::solve(const CellLists& lists, std::size_t cell, const View& vie
   for (std::size_t i = least_looked_at_; i < faces.size(); ++i) marks_.set_partial(face_of(faces[i]));
 }
 
-/// Fills the list with faces of some parts, the nearest first, until what is left is hidden.
-/// \returns the nearest key of what is left.
+/// Fills the list with faces of some parts, the nearest first, until the remaining faces are hidden. \returns the
+/// nearest key of the remaining faces.
 double CellSolver::gather_nearest(const CellBox& box, std::uint16_t part) {
   const glm::dvec2 place = place_in(box);
   LastGroup group{list_.size(), list_.size()};
@@ -195,7 +195,7 @@ double CellSolver::gather_nearest(const CellBox& box, std::uint16_t part) {
   return kNever;
 }
 
-/// Whether a group that lies before all that is not in the list yet hides it; else a new group begins.
+/// Whether a group that lies in front of all faces not yet in the list hides them. If not, a new group begins.
 bool CellSolver::hides_rest(LastGroup& group, const glm::dvec2& place) {
   if (!group.is_ending && count_at(place, group.begin, list_.size()) > 0) return true;
   group = {list_.size(), list_.size(), group.covered};
@@ -211,14 +211,14 @@ void CellSolver::look_at_new(LastGroup& group) {
   }
 }
 
-/// Adds faces of a larger cell, the nearest first, until what is left is hidden: all from `end` on.
-/// \returns the nearest key of what is left.
+/// Adds faces of a larger cell, the nearest first, until the remaining faces are hidden: all from `end` on. \returns
+/// the nearest key of the remaining faces.
 template <class Index>
 double CellSolver::add_nearest(const CellBox& box, double removed, std::size_t& end, const Index& index) {
   const glm::dvec2 place = place_in(box);
   LastGroup group{list_.size(), list_.size()};
   for (std::size_t i = 0; i < end; ++i) {
-    const FaceInBox face = list_[index(i)];  // a copy: the list grows
+    const FaceInBox face = list_[index(i)];  // a copy, because the list grows
     if (face.nearest < group.covered ||
         (std::max(face.nearest, removed) < group.farthest && i > 0 && hides_rest(group, place))) {
       end = i;
@@ -244,12 +244,12 @@ void CellSolver::add(const FaceInBox& face, const CellBox& box) {
   const Range &x = gathered.x, &y = gathered.y;
   if (x.high <= box.left || x.low >= box.right || y.high <= box.top || y.low >= box.bottom) return;
   list_.push_back(face);
-  // What lies in the cell as a whole did so in all larger ones, and gather() said all there is to know.
+  // A face that lies wholly in the cell did so in all larger cells, and gather() has set all of its values.
   const bool is_inside = x.low >= box.left && x.high <= box.right && y.low >= box.top && y.high <= box.bottom;
   if (!is_inside && !reaches_into(box, list_.back())) list_.pop_back();
 }
 
-/// Finds what is to be known of a face that reaches out of the box. \returns whether it reaches into it.
+/// Sets the values of a face that extends beyond the box. \returns whether it reaches into the box.
 bool CellSolver::reaches_into(const CellBox& box, FaceInBox& found) const {
   const GatheredFace& gathered = gathered_[found.number];
   const ScreenPoint* const p = gathered.corners;
@@ -261,7 +261,7 @@ bool CellSolver::reaches_into(const CellBox& box, FaceInBox& found) const {
   for (int k = 0; k < 3; ++k) {
     const ScreenPoint &a = p[k], &b = p[k == 2 ? 0 : k + 1];
     const double along_x = b.x - a.x, along_y = b.y - a.y;
-    // How far within the side the middle lies, and how much that varies over the box.
+    // Distance of the box's middle from the side, positive inside, and its variation over the box.
     const double within = inwards * (along_x * (middle_y - a.y) - along_y * (middle_x - a.x));
     const double varies = std::abs(along_x) * half_y + std::abs(along_y) * half_x;
     const double narrow = kNarrow * (std::abs(along_x) + std::abs(along_y));
@@ -282,7 +282,7 @@ bool CellSolver::reaches_into(const CellBox& box, FaceInBox& found) const {
   return true;
 }
 
-/// Finishes the cell whose list begins at `first`, and takes its list away. Nothing that was left out of the list is
+/// Finishes the cell whose list begins at `first`, and removes the list. No face that was left out of the list is
 /// nearer than `removed`.
 void CellSolver::divide(const CellBox& box, std::size_t first, double removed) {
   cutter_.count(kStepsInCell * (list_.size() - first));
@@ -297,7 +297,8 @@ void CellSolver::divide(const CellBox& box, std::size_t first, double removed) {
   list_.resize(first);
 }
 
-/// \returns false where it would not help: the cell is too small, or most of its faces reach into all parts of it.
+/// Divides a cell into four. \returns false if that would not help: the cell is too small, or most of its faces reach
+/// into all parts.
 bool CellSolver::divide_further(const CellBox& box, std::size_t first, double removed) {
   const double size = std::max(box.right - box.left, box.bottom - box.top);
   if (size <= kSmallestCell) return false;
@@ -309,7 +310,7 @@ bool CellSolver::divide_further(const CellBox& box, std::size_t first, double re
                                    {box.left, middle_y, middle_x, box.bottom},
                                    {middle_x, middle_y, box.right, box.bottom}};
   std::size_t begins[4], left_out = 0, pairs = 0;
-  double nearest[4];  // of what is left out
+  double nearest[4];  // nearest keys of the faces left out
   for (std::size_t k = 0; k < 4; ++k) {
     begins[k] = list_.size();
     std::size_t end = count;
@@ -318,18 +319,19 @@ bool CellSolver::divide_further(const CellBox& box, std::size_t first, double re
     if (count > kManySides) nearest[k] = std::max(nearest[k], drop_covered(parts_of_box[k], begins[k]));
     pairs += (list_.size() - begins[k]) * (list_.size() - begins[k]);
   }
-  // Where sides lie along a line, very small cells hold as many of them as the larger one.
+  // If sides lie along one line, very small cells hold as many of them as larger ones.
   const bool helps = count > kManyFaces ? pairs < count * count : list_.size() - last < 3 * count;
   if (!helps && (count <= kManyFaces || count > kManySides || size <= 1)) {
     list_.resize(last);
     return false;
   }
   for (std::size_t i = last - left_out; i < last; ++i) marks_.set_partial(gathered_[list_[i].number].face);
-  for (std::size_t k = 4; k-- > 0;) divide(parts_of_box[k], begins[k], nearest[k]);  // the last list goes first
+  for (std::size_t k = 4; k-- > 0;) divide(parts_of_box[k], begins[k], nearest[k]);  // the last list is finished first
   return true;
 }
 
-/// Divides a cell into 4 x 4, by the boxes of its faces first. \returns false where very many of these meet all parts.
+/// Divides a cell into 4 x 4, at first by the boxes of its faces. \returns false if very many of these boxes meet all
+/// parts.
 bool CellSolver::divide_crowd(const CellBox& box, std::size_t first, double removed) {
   constexpr int kAlong = 4;
   const double width = (box.right - box.left) / kAlong, height = (box.bottom - box.top) / kAlong;
@@ -366,7 +368,8 @@ bool CellSolver::divide_crowd(const CellBox& box, std::size_t first, double remo
   return true;
 }
 
-/// Drops what a face that covers the cell hides, where very many cover it. \returns the nearest key of what is dropped.
+/// Drops faces hidden by a face that covers the cell, if very many faces cover it. \returns the nearest key of the
+/// dropped faces.
 double CellSolver::drop_covered(const CellBox& box, std::size_t first) {
   const std::span<FaceInBox> list = std::span(list_).subspan(first);
   const auto covers = [](const FaceInBox& face) { return face.is_all; };
@@ -378,10 +381,10 @@ double CellSolver::drop_covered(const CellBox& box, std::size_t first) {
   return nearest;
 }
 
-/// Brings the list into the order of its nearest keys, and tells what that tells.
+/// Orders the list by nearest keys, and derives what the order shows.
 CellSolver::Sorted CellSolver::sort(const CellBox& box, std::size_t first, double removed) {
   const auto begin = list_.begin() + std::ptrdiff_t(first);
-  // What lies behind something that covers the cell alone need not be put in order.
+  // Faces behind a face that covers the whole cell need not be ordered.
   double covered = kNever;
   for (auto face = begin; face != list_.end(); ++face)
     if (face->is_all) covered = std::max(covered, face->farthest);
@@ -404,8 +407,8 @@ CellSolver::Sorted CellSolver::sort(const CellBox& box, std::size_t first, doubl
       farthest = std::min(farthest, list_[i].farthest);
       is_ending = is_ending || list_[i].is_ending;
     }
-    // A group that reaches back to what was removed is not whole: a surface of it may pass through what covers the
-    // cell. Nor are those behind it.
+    // A group that reaches back to removed faces may be incomplete: one of its surfaces may pass through the face that
+    // covers the cell. The same holds for all groups behind it.
     if (removed >= farthest) break;
     if (!is_ending) {
       const int count = count_at(place, group, i);
@@ -416,7 +419,7 @@ CellSolver::Sorted CellSolver::sort(const CellBox& box, std::size_t first, doubl
   return {list_.size() - first, false, removed};
 }
 
-/// Of faces with the same corners the first stays. Copies follow each other, as they are equally near.
+/// Keeps the first of faces with the same corners. Copies are neighbours in the list, since they are equally near.
 void CellSolver::leave_out_copies(std::size_t first) {
   const auto corner = [&](std::size_t i, int k) -> const ScreenPoint& { return gathered_[list_[i].number].corners[k]; };
   const auto has_corner = [&](std::size_t i, const ScreenPoint& p) {
@@ -436,7 +439,7 @@ void CellSolver::leave_out_copies(std::size_t first) {
   list_.resize(kept);
 }
 
-/// How many faces of a part of the list hold a place; -1 where one has it on its rim.
+/// The number of faces in a part of the list that contain a place; -1 if the place lies on the rim of one.
 int CellSolver::count_at(const glm::dvec2& place, std::size_t first, std::size_t last) const {
   int count = 0;
   for (std::size_t i = first; i < last; ++i) {
@@ -457,7 +460,7 @@ int CellSolver::count_at(const glm::dvec2& place, std::size_t first, std::size_t
   return count;
 }
 
-/// Every face of the list is seen as far as it lies in the cell.
+/// Marks every face of the list as seen, as far as it lies in the cell.
 void CellSolver::show_all(const CellBox& box, std::size_t first) {
   for (std::size_t i = first; i < list_.size(); ++i) {
     const GatheredFace& face = gathered_[list_[i].number];
@@ -471,7 +474,7 @@ void CellSolver::show_all(const CellBox& box, std::size_t first) {
   }
 }
 
-/// Where most faces lie over one of the largest cells.
+/// The text of an error, which names the largest cell with the most faces.
 std::string too_many_faces(const CellLists& lists, const FacesOfView& faces, const View& view) {
   std::size_t fullest = 0;
   for (std::size_t cell = 0; cell < lists.size(); ++cell)

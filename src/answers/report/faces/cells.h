@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is seen cell by cell of the picture: at once where nothing ends that matters, else in smaller cells.
+// Visible faces cell by cell of the picture: at once in cells where no relevant surface ends, else in smaller cells.
 //
-//    eye                      In a cell a group of faces lies nearer than all others, by the ranges of their keys.
-//     |    ____               Where no surface ends at a side of theirs within the cell, the number of them over a
-//     place |   /    \__  group     is the same everywhere (a side is plain where one face takes over from another); so
-//     one |  ~~~~~~~~~~           place tells it. Is it 1, then each of them is seen as far as it lies in the cell; is
-//     it |   . . . .   others    at least 1, then nothing else is.
+//    eye                      In a cell, a group of faces lies nearer than all others, by the ranges of their keys.
+//     |    ____               If no surface ends at their sides within the cell, the number of them over a place is
+//     |   /    \__  group     the same everywhere, so one place tells it. (A side is plain if one face continues
+//     |  ~~~~~~~~~~           another there.) If the number is 1, every face of the group is seen as far as it lies
+//     |   . . . .   others    in the cell. If it is 1 or more, nothing behind the group is seen.
 //     v
 #pragma once
 
@@ -14,12 +14,12 @@
 namespace frontmost::faces_detail {
 
 struct SeenParts {
-  Buffer<std::uint8_t> is_whole;             ///< by face: all of it is seen, and it has no parts
-  std::vector<std::vector<SeenPart>> parts;  ///< of the others; a face may have several
+  Buffer<std::uint8_t> is_whole;             ///< by face: all of it is seen; the face then has no parts
+  std::vector<std::vector<SeenPart>> parts;  ///< parts of the other faces; a face may have several
 };
 
-/// All that is seen in the view. The same for any number of threads. O(faces + cells in which surfaces end).
-/// \throws Error limit_exceeded where that takes more than FacesOfView::most_steps.
+/// Finds all visible parts in the view. The result is the same for any number of threads. O(faces + cells in which
+/// surfaces end). \throws Error limit_exceeded for more than FacesOfView::most_steps.
 [[nodiscard]] SeenParts seen_parts(const FacesOfView& faces, const View& view, const Execution& execution);
 
 }  // namespace frontmost::faces_detail

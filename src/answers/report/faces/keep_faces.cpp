@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene of some of another's triangles: every object has a mesh of its own, of what is kept of it alone.
+// A scene with some triangles of another one. Every object gets its own mesh, which holds only the kept triangles.
 #include <algorithm>
 
 #include "frontmost/report.h"
@@ -7,7 +7,7 @@
 namespace frontmost {
 namespace {
 
-/// Of values that are numbered, those that are kept, in their order.
+/// Selects kept values from a numbered list and renumbers them in their order.
 class KeptValues {
  public:
   explicit KeptValues(std::size_t count) : number_(count, no_index) {}
@@ -15,7 +15,7 @@ class KeptValues {
   void keep(const glm::uvec3& corners) {
     for (int k = 0; k < 3; ++k) number_[corners[k]] = 0;
   }
-  /// When all that is kept is known.
+  /// Assigns the new numbers. Call after the last keep().
   void count() {
     std::uint32_t next = 0;
     for (std::uint32_t& number : number_)

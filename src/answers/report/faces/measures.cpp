@@ -13,8 +13,8 @@ AreaRule::AreaRule(const View& view)
       step_y_((view.projection.top - view.projection.bottom) / view.height) {}
 
 Areas AreaRule::areas_of(std::span<const ScreenPoint> polygon) const {
-  // A fan about the first corner. The determinant of three directions is that of two differences, which lie in the
-  // plane of the image: small triangles lose nothing to rounding. (A. van Oosterom, J. Strackee. The Solid Angle of a
+  // The polygon is a fan about its first corner. The determinant of three directions equals that of two differences in
+  // the image plane, so small triangles lose nothing to rounding. (A. van Oosterom, J. Strackee. The Solid Angle of a
   // Plane Triangle. 1983.)
   const glm::dvec3 a = direction_to(polygon[0]), at = place_of(a, polygon[0].key);
   const double a_length = glm::length(a);
@@ -38,7 +38,7 @@ Areas AreaRule::areas_of(std::span<const ScreenPoint> polygon) const {
 }
 
 double angle_of(double x, double y) {
-  // The tangent of half the angle, until the series of the arcus tangent is short.
+  // The angle is halved, by its tangent, until the series of the arctangent is short.
   double t = y, times = 1;
   if (x > 0 && y < 0.05 * x) {
     t = y / x;

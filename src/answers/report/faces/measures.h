@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The three areas of a polygon on the screen: in the picture, in the scene, and as it is seen from the eye.
+// The three areas of a polygon on the screen: in the picture, in the scene, and as a solid angle from the eye.
 //
-// A place (x, y) of the picture lies in the direction (u, v, 1) of eye space, u and v affine in x and y. What is seen
-// there at key 1 / distance is at (u, v, 1) / key; in parallel projection at (u, v, -key), the key being -distance.
+// A place (x, y) of the picture has the direction (u, v, 1) in eye space; u and v are affine in x and y. A surface
+// point with key 1 / distance lies at (u, v, 1) / key; in parallel projection at (u, v, -key), with key -distance.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,7 @@
 
 namespace frontmost::faces_detail {
 
-/// A place in the picture, in pixels, and how near what is seen there lies: a key that is affine over the screen and
-/// greater for nearer.
+/// A place in the picture, in pixels, and the key of the surface there: affine over the screen, greater for nearer.
 struct ScreenPoint {
   double x, y, key;
 };
@@ -36,13 +35,13 @@ struct Areas {
   }
 };
 
-/// Areas as a view has them.
+/// Computes areas for a view.
 class AreaRule {
  public:
   explicit AreaRule(const View& view);
 
-  /// Of a convex polygon on one plane, wound either way. Precondition: at least three corners, keys above 0 in
-  /// perspective.
+  /// The areas of a convex polygon in one plane, wound either way. Precondition: at least three corners; keys above 0
+  /// in perspective.
   [[nodiscard]] Areas areas_of(std::span<const ScreenPoint> polygon) const;
 
  private:
@@ -57,8 +56,8 @@ class AreaRule {
   double left_, top_, step_x_, step_y_;
 };
 
-/// The angle of the point (x, y) from the x axis, for y >= 0. By square roots and a series alone, so that it is the
-/// same on every machine, to a few units of the last place.
+/// The angle of the point (x, y) from the x axis, for y >= 0. Uses only square roots and a series, so it is the same on
+/// every machine, up to a few units in the last place.
 [[nodiscard]] double angle_of(double x, double y);
 
 }  // namespace frontmost::faces_detail

@@ -10,13 +10,14 @@
 namespace frontmost::faces_detail {
 namespace {
 
-/// Keys that differ by no more than this share of themselves may be equal: doubles put them to some 2^-45.
+/// Keys that differ by at most this share of themselves may be equal; doubles are exact to about 2^-45.
 constexpr double kAlike = 1.0 / (1ll << 36);
-/// More faces than this are cut in an order of their own: it takes time to find, and pays where most overlap.
+/// More faces than this are reordered before they are cut. Finding the order takes time, and pays if most faces
+/// overlap.
 constexpr std::size_t kManyToCut = 128;
 
-/// Steps that things take, of about ten nanoseconds: to look at a face for a piece, to cut by it or to tell what is
-/// nearer, to find by exact signs whether it lies in a plane, and to keep what is seen.
+/// Costs in steps of about ten nanoseconds: examining a face for a piece; cutting by a face or comparing two; testing
+/// by exact signs whether a face lies in a plane; keeping a visible part.
 constexpr std::uint64_t kStepsOfLook = 1, kStepsOfCut = 8, kStepsOfPlane = 32, kStepsOfPart = 64;
 
 CellBox box_of(const ConvexPiece& polygon) {
@@ -33,7 +34,7 @@ CutLine side_of(const ScreenPoint& from, const ScreenPoint& to, double inwards) 
   return {a, b, -(a * from.x + b * from.y)};
 }
 
-/// Whether a triangle lies in the plane of another, exactly.
+/// Whether two triangles lie exactly in one plane.
 bool lie_in_one_plane(const std::array<glm::vec3, 3>& triangle, const std::array<glm::vec3, 3>& other) {
   const Leg ab{glm::dvec3(triangle[1]), glm::dvec3(triangle[0])}, ac{glm::dvec3(triangle[2]), glm::dvec3(triangle[0])};
   for (const glm::vec3& corner : other)
@@ -83,9 +84,9 @@ void PieceCutter::cut(const CellBox& box, std::span<const FaceInBox> list, std::
   }
 }
 
-/// Measures all keys from the plane of the first face, and orders the faces anew: keys of sheets that lie close behind
-/// each other differ by much more from end to end of a slanted box than from sheet to sheet. Faces in one plane follow
-/// each other by their ids, so that each hides those after it.
+/// Measures all keys relative to the plane of the first face, and reorders the faces. In a slanted box, keys of close
+/// sheets differ much more from end to end than from sheet to sheet. Faces in one plane are ordered by id, so that each
+/// hides those after it.
 void PieceCutter::order_by_planes(const CellBox& box) {
   count(kStepsOfPlane * candidates_.size());
   const AffineKey first = candidates_.front().plane;
@@ -183,16 +184,16 @@ void PieceCutter::clip(const CellBox& box, std::uint32_t face, std::vector<SeenP
   pieces_.clear();
 }
 
-/// Asks all faces that are left about a piece. What lies beside one of them is put aside, to be looked at later.
+/// Examines the remaining faces for a piece. The parts beside a face are put aside for later.
 void PieceCutter::finish(Piece& piece, std::vector<SeenPart>& seen) {
-  double farthest = -std::numeric_limits<double>::infinity();  // of what is in front
+  double farthest = -std::numeric_limits<double>::infinity();  // key of the front face
   if (piece.front != no_index) farthest = candidates_[piece.front].farthest;
   for (; piece.next < candidates_.size(); ++piece.next) {
     const Reach& reach = reaches_[piece.next];
     count(kStepsOfLook);
-    if (reach.nearest < farthest) break;  // and so are all after it
+    if (reach.nearest < farthest) break;  // all later faces are behind as well
     if (piece.front != no_index && candidates_[piece.front].plane_number == candidates_[piece.next].plane_number) {
-      piece.next = plane_ends_[candidates_[piece.next].plane_number] - 1;  // all of its plane have greater ids
+      piece.next = plane_ends_[candidates_[piece.next].plane_number] - 1;  // the others in its plane have greater ids
       continue;
     }
     const CellBox& around = piece.around;
@@ -220,7 +221,7 @@ bool PieceCutter::lies_behind(const Candidate& face, const Candidate& front, con
   return true;
 }
 
-/// Keeps what make(polygon) makes, to be looked at later, unless it is narrow. \returns whether it is kept.
+/// Keeps the polygon that make(polygon) makes for later, unless it is narrow. \returns whether it is kept.
 template <class Make>
 bool PieceCutter::put_aside(std::uint32_t front, std::uint32_t next, const Make& make) {
   Piece& piece = pieces_.emplace_back(front, next);
@@ -233,7 +234,7 @@ bool PieceCutter::put_aside(std::uint32_t front, std::uint32_t next, const Make&
   return is_kept;
 }
 
-/// Cuts what lies beside a face off from a piece. \returns whether anything is left; else the piece stays as it is.
+/// Cuts off the part of a piece beside a face. \returns whether anything is left; if not, the piece is unchanged.
 bool PieceCutter::cut_to(const Candidate& face, Piece& piece) {
   std::array<LineDistances, 3> distances;
   bool is_within = true;
@@ -268,8 +269,8 @@ bool PieceCutter::cut_to(const Candidate& face, Piece& piece) {
   return true;
 }
 
-/// Of a piece that a face covers whole, leaves what shows that face, or what shows the one that was in front before;
-/// the other part is put aside.
+/// Compares a face that covers the whole piece with the front face. The piece keeps the part where one of them is
+/// nearer; the other part is put aside.
 void PieceCutter::choose_nearer(std::uint32_t number, Piece& piece) {
   if (piece.front == no_index) {
     piece.front = number;
@@ -277,7 +278,7 @@ void PieceCutter::choose_nearer(std::uint32_t number, Piece& piece) {
   }
   const AffineKey &plane = candidates_[number].plane, &front = candidates_[piece.front].plane;
   const double along_x = plane.along_x - front.along_x, along_y = plane.along_y - front.along_y;
-  // The difference of both keys, as the distance from the line at which they are equal.
+  // The difference of both keys, as the distance from the line where they are equal.
   const auto difference = [&](const glm::dvec2& p) { return plane.at(p) - front.at(p); };
   LineDistances nearer;
   nearer.measure(piece.polygon, difference, kNarrow * std::sqrt(along_x * along_x + along_y * along_y));
@@ -307,8 +308,8 @@ void PieceCutter::choose_nearer(std::uint32_t number, Piece& piece) {
   piece.front = number;
 }
 
-/// Of two faces that doubles do not tell apart: the lower id where they lie in one plane, else the one that seems
-/// nearer.
+/// Decides between two faces that doubles cannot tell apart: the lower id if they lie in one plane, else the one that
+/// seems nearer.
 bool PieceCutter::is_preferred(const Candidate& face, const Candidate& front, const LineDistances& nearer) {
   count(kStepsOfPlane);
   const PrimitiveId id = faces_.screen.faces[face.face].id, front_id = faces_.screen.faces[front.face].id;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is seen in a small box of the picture, by cutting the box until every piece shows one face.
+// Visible faces in a small box of the picture: the box is cut until every piece shows one face.
 //
 //    .---------.        .----.----.       .--.-.----.
-//    |         |  --->  |    |  0 |  -->  |  |1|0|  |     the box, cut by the sides of face 0, and by those of face 1
-//    |_________|        |____|____|       |__|_|_|__|     where that is nearer: every place is in one piece
+//    |         |  --->  |    |  0 |  -->  |  |1|0|  |     The box is cut by the sides of face 0, then by those of
+//    |_________|        |____|____|       |__|_|_|__|     face 1 where it is nearer. Pieces do not overlap.
 #pragma once
 
 #include <functional>
@@ -15,37 +15,37 @@
 
 namespace frontmost::faces_detail {
 
-/// A face of one of the largest cells; these lie beside each other.
+/// A face of one of the largest cells. Such faces lie side by side in memory.
 struct GatheredFace {
   ScreenPoint corners[3];
-  Range x, y;  ///< of all of the face, also outside of the cell
+  Range x, y;  ///< of the whole face, also outside the cell
   std::uint32_t face;
   std::uint8_t ending;
 };
 
-/// A face over a box of the picture. Between its nearest and farthest key lie all that it has there.
+/// A face over a box of the picture. All its keys there lie between the farthest and the nearest one.
 struct FaceInBox {
   double nearest, farthest;
-  std::uint32_t number;  ///< of a gathered face
-  bool is_ending;        ///< a surface ends within the box, at one of the face's sides
-  bool is_all;           ///< it covers all of the box
+  std::uint32_t number;  ///< index of a gathered face
+  bool is_ending;        ///< a surface ends at a side of the face within the box
+  bool is_all;           ///< the face covers the whole box
 };
 
-/// Areas of a part of a face that is seen.
+/// The areas of a visible part of a face.
 struct SeenPart {
   std::uint32_t face;
   Areas areas;
 };
 
-/// What is needed to tell them.
+/// The faces of a view and the rules for their areas.
 struct FacesOfView {
   const Surfaces& surfaces;
   const ViewedFaces& screen;
   AreaRule rule;
-  std::uint64_t most_steps;  ///< of about ten nanoseconds each, before the work is given up
+  std::uint64_t most_steps;  ///< limit of steps, each about ten nanoseconds
 };
 
-/// The key of a face's plane, affine over the screen.
+/// The key of a face's plane, an affine function over the screen.
 struct AffineKey {
   double x, y, key, along_x, along_y;
 
@@ -53,10 +53,10 @@ struct AffineKey {
   [[nodiscard]] double at(const glm::dvec2& p) const { return key + ((p.x - x) * along_x + (p.y - y) * along_y); }
 };
 
-/// Cuts boxes, one after the other; keeps its memory.
+/// Cuts one box after another and keeps its memory.
 class PieceCutter {
  public:
-  /// `tell(steps)` is called when many steps were taken, of about ten nanoseconds each.
+  /// Calls `tell(steps)` after many steps of about ten nanoseconds each.
   PieceCutter(const FacesOfView& faces, std::function<void(std::uint64_t)> tell)
       : faces_(faces), tell_(std::move(tell)) {}
 
@@ -64,42 +64,43 @@ class PieceCutter {
     constexpr std::uint64_t kTold = 1 << 16;
     if ((steps_ += steps) >= kTold) tell_(std::exchange(steps_, 0));
   }
-  /// Tells what was not told yet.
+  /// Reports the remaining steps.
   void tell_rest() { tell_(std::exchange(steps_, 0)); }
 
-  /// Appends what is seen in `box` of `list`, which has all faces that may be seen there, in the order of their nearest
-  /// keys, the nearest first.
+  /// Appends the visible parts in `box`. `list` has all faces that may be seen there, ordered by their nearest keys,
+  /// the nearest first.
   void cut(const CellBox& box, std::span<const FaceInBox> list, std::span<const GatheredFace> gathered,
            std::vector<SeenPart>& seen);
-  /// Looks for the nearest of the faces that cover all of `box`, and brings those that lie behind it there, or in its
-  /// plane with a greater id, to the end of `list`. \returns how many are left.
+  /// Finds the nearest face that covers all of `box`. Moves faces that lie behind it there, or in its plane with a
+  /// greater id, to the end of `list`. \returns how many are left.
   [[nodiscard]] std::size_t leave_out_covered(const CellBox& box, std::span<FaceInBox> list,
                                               std::span<const GatheredFace> gathered);
-  /// Appends what of a face lies within `box`, all of it being seen there.
+  /// Appends the part of a face within `box`. Precondition: all of that part is seen.
   void clip(const CellBox& box, std::uint32_t face, std::vector<SeenPart>& seen);
 
  private:
   struct Candidate {
     std::uint32_t face;
     double farthest;
-    std::array<CutLine, 3> sides;  ///< positive within the face
+    std::array<CutLine, 3> sides;  ///< positive inside the face
     AffineKey plane;
     double least, most;  ///< keys of its corners
     Range x, y;
-    std::uint32_t plane_number;  ///< the same for candidates that are known to lie in one plane
+    std::uint32_t plane_number;  ///< equal for candidates that are known to lie in one plane
   };
-  /// What is asked of a candidate first.
+  /// The bounds of a candidate, checked first.
   struct Reach {
     Range x, y;
     double nearest;
   };
-  /// What `front` covers of what was looked at so far; the faces from `next` on are still to be asked.
+  /// A piece of the box. `front` is the nearest of the faces examined so far; faces from `next` on are still to be
+  /// examined.
   struct Piece {
     Piece(std::uint32_t in_front, std::uint32_t next_face) : front(in_front), next(next_face) {}
     explicit Piece(const CellBox& box) : polygon(box), around(box), front(no_index), next(0) {}
 
     ConvexPiece polygon;
-    CellBox around;  ///< it
+    CellBox around;  ///< bounding box of the polygon
     std::uint32_t front, next;
   };
 
@@ -116,11 +117,11 @@ class PieceCutter {
 
   const FacesOfView& faces_;
   std::function<void(std::uint64_t)> tell_;
-  std::uint64_t steps_ = 0;  ///< that were not told yet
+  std::uint64_t steps_ = 0;  ///< not yet reported
   std::vector<Candidate> candidates_;
   std::vector<Reach> reaches_;             ///< by candidate
-  std::vector<std::uint32_t> plane_ends_;  ///< by number of plane: behind its last candidate
-  std::vector<Piece> pieces_;              ///< still to be looked at
+  std::vector<std::uint32_t> plane_ends_;  ///< by plane number: end of its candidates
+  std::vector<Piece> pieces_;              ///< still to be examined
 };
 
 }  // namespace frontmost::faces_detail

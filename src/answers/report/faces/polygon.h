@@ -2,9 +2,8 @@
 // Convex polygons on the screen, and cutting them by lines.
 //
 //        +-----.
-//   left |    / .       A corner that is no farther than kNarrow from the line lies on it. So a line along a side that
-//   was
-//        |   /   .      cut before, and that rounding put beside it, cuts nothing more off.
+//   left |    / .       A corner at most kNarrow away from the line lies on the line. A line along a side that was
+//        |   /   .      cut before, and that rounding has moved slightly, therefore cuts nothing more off.
 //        |  /     | right
 //        '-/------'
 #pragma once
@@ -24,7 +23,7 @@ struct CutLine {
   [[nodiscard]] double at(const glm::dvec2& p) const { return a * p.x + b * p.y + c; }
 };
 
-/// Corners in order; those that cuts leave on one line are kept.
+/// The corners of a polygon in order. Corners that cuts leave on one line are kept.
 class ConvexPiece {
  public:
   static constexpr int most_corners = 28;
@@ -33,7 +32,7 @@ class ConvexPiece {
   ConvexPiece(const ConvexPiece& other) { *this = other; }
   ConvexPiece& operator=(const ConvexPiece& other) {
     count_ = other.count_;
-    std::copy_n(other.corners_.begin(), count_, corners_.begin());  // the others are not set
+    std::copy_n(other.corners_.begin(), count_, corners_.begin());  // other corners are not set
     return *this;
   }
   explicit ConvexPiece(const CellBox& box)
@@ -44,13 +43,13 @@ class ConvexPiece {
   [[nodiscard]] int size() const { return count_; }
   [[nodiscard]] const glm::dvec2* begin() const { return corners_.data(); }
   [[nodiscard]] const glm::dvec2* end() const { return corners_.data() + count_; }
-  /// Whether there may be no room for what four cuts add: one corner each.
+  /// Whether the polygon may lack room for four cuts, which add one corner each.
   [[nodiscard]] bool is_full() const { return count_ + 4 > most_corners; }
   void add(const glm::dvec2& corner) {
     if (count_ < most_corners) corners_[std::size_t(count_++)] = corner;
   }
   void clear() { count_ = 0; }
-  /// Takes every corner from the middle on away into another polygon, which meets this one along a diagonal.
+  /// Moves the corners from the middle on into another polygon, which meets this one along a diagonal.
   [[nodiscard]] ConvexPiece halve() {
     ConvexPiece other;
     for (int i = count_ / 2; i < count_; ++i) other.add(corners_[std::size_t(i)]);
@@ -64,7 +63,7 @@ class ConvexPiece {
   int count_ = 0;
 };
 
-/// Whether a polygon is nowhere wider than kNarrow, or hardly more.
+/// Whether a polygon is nowhere wider than kNarrow, or hardly.
 [[nodiscard]] inline bool is_narrow(const ConvexPiece& polygon) {
   if (polygon.size() < 3) return true;
   const glm::dvec2* const p = polygon.begin();
@@ -77,17 +76,17 @@ class ConvexPiece {
   return !(std::abs(doubled) > kNarrow * reach);
 }
 
-/// On which sides of a line a polygon reaches farther than kNarrow.
+/// The sides of a line on which a polygon extends farther than kNarrow.
 enum class LineSide { neither, left, right, both };
 
-/// How far a polygon's corners lie from a line, positive on its left. Less than `narrow` either way is on it.
+/// Distances of a polygon's corners from a line, positive on its left. A distance of less than `narrow` counts as 0.
 struct LineDistances {
   std::array<double, ConvexPiece::most_corners> at;  ///< by corner
   int size;
   double narrow;
   LineSide side;
 
-  /// Of the corners of a polygon by distance(corner).
+  /// Measures the corners of a polygon by distance(corner).
   template <class Distance>
   void measure(const ConvexPiece& polygon, const Distance& distance, double narrow_distance) {
     size = polygon.size();
@@ -108,7 +107,7 @@ struct LineDistances {
   }
 };
 
-/// Cuts a polygon of which there is something on both sides of a line.
+/// Cuts a polygon that extends to both sides of a line.
 inline void cut_polygon(const ConvexPiece& polygon, const LineDistances& line, ConvexPiece& left, ConvexPiece& right) {
   left.clear();
   right.clear();

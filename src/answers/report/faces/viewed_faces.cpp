@@ -12,13 +12,13 @@
 namespace frontmost::faces_detail {
 namespace {
 
-/// Triangles that reach farther beyond the picture than this, in pixels, are clipped, so that doubles tell places in
-/// it.
+/// Triangles that extend farther beyond the picture than this, in pixels, are clipped, so that doubles keep positions
+/// exact within the picture.
 constexpr double kBeyond = 65536;
-/// Where they are then cut: near the picture, but not in it.
+/// Distance of the cut from the picture, in pixels.
 constexpr double kRim = 64;
 
-/// Bits of what a vertex lies outside of.
+/// Bits for the regions in which a vertex lies.
 enum Outside : std::uint8_t {
   kLeft = 1,
   kRight = 2,
@@ -26,12 +26,12 @@ enum Outside : std::uint8_t {
   kBelow = 8,
   kNearer = 16,
   kFarther = 32,
-  kFarAway = 64,  ///< from the picture
+  kFarAway = 64,  ///< farther than kBeyond from the picture
   kNowhere = 128  ///< not finite
 };
 
-/// Right, down and ahead of the eye; the first two in pixels at unit distance, or at every one in parallel projection,
-/// from the picture's top left corner.
+/// Coordinates right, down and ahead of the eye. The first two are in pixels at unit distance (at any distance in
+/// parallel projection), from the picture's top left corner.
 using EyePoint = glm::dvec3;
 
 class Eye {
@@ -55,20 +55,20 @@ class Eye {
     const double ahead = glm::dot(forward_, p), unit = orthographic_ ? 1 : ahead;
     return {scale_x_ * glm::dot(right_, p) - left_ * unit, top_ * unit - scale_y_ * glm::dot(up_, p), ahead};
   }
-  /// Precondition: between near and far.
+  /// Precondition: the point lies between near and far.
   [[nodiscard]] ScreenPoint project(const EyePoint& p) const {
     if (orthographic_) return {p.x, p.y, -p.z};
     const double key = 1 / p.z;
     return {p.x * key, p.y * key, key};
   }
-  /// Bits of Outside.
+  /// The regions in which a point lies, as bits of Outside.
   [[nodiscard]] std::uint8_t outside(const EyePoint& p) const {
     if (!is_finite(p)) return kNowhere;
     const double unit = orthographic_ ? 1 : p.z;
     int bits = 0;
     if (p.z < clip_.near) bits |= kNearer;
     if (p.z > clip_.far) bits |= kFarther;
-    // Of what lies behind the eye the sides say nothing, but it is never looked at: kNearer cuts it off first.
+    // Behind the eye these bits mean nothing, but they are never used there: kNearer cuts such points off first.
     if (p.x < 0) bits |= kLeft;
     if (p.x > width_ * unit) bits |= kRight;
     if (p.y < 0) bits |= kAbove;
@@ -76,10 +76,10 @@ class Eye {
     if (std::max(std::abs(p.x), std::abs(p.y)) > kBeyond * std::abs(unit)) bits |= kFarAway;
     return std::uint8_t(bits);
   }
-  /// What of a triangle is between near and far and about the picture: a convex polygon.
+  /// The part of a triangle between near and far and around the picture: a convex polygon.
   [[nodiscard]] std::vector<EyePoint> clip(const std::array<EyePoint, 3>& triangle) const {
     std::vector<EyePoint> polygon(triangle.begin(), triangle.end());
-    const double p = orthographic_ ? 0 : 1, o = 1 - p;  // what multiplies the distance, and what stands alone
+    const double p = orthographic_ ? 0 : 1, o = 1 - p;  // factor of the distance, and constant part
     cut(polygon, {0, 0, 1}, -clip_.near);
     if (std::isfinite(clip_.far)) cut(polygon, {0, 0, -1}, clip_.far);
     cut(polygon, {1, 0, kRim * p}, kRim * o);
@@ -90,7 +90,7 @@ class Eye {
   }
 
  private:
-  /// Keeps where dot(normal, p) + offset >= 0.
+  /// Keeps the part where dot(normal, p) + offset >= 0.
   static void cut(std::vector<EyePoint>& polygon, const glm::dvec3& normal, double offset) {
     std::vector<EyePoint> kept;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -108,7 +108,7 @@ class Eye {
   bool orthographic_;
 };
 
-/// Which way a triangle turns on the screen: 1 to the right, -1 to the left; 0 where it is too narrow to be seen.
+/// The winding of a triangle on the screen: 1 to the right, -1 to the left, 0 if it is too narrow to be seen.
 int facing_of(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c) {
   const double turn = turn_of(a, b, c);
   const double longest = std::max({std::abs(b.x - a.x), std::abs(b.y - a.y), std::abs(c.x - b.x), std::abs(c.y - b.y),
@@ -116,7 +116,7 @@ int facing_of(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c) 
   return turn > kNarrow * longest ? 1 : turn < -kNarrow * longest ? -1 : 0;
 }
 
-/// Consecutive vertices of an instance, and where their points go.
+/// Consecutive vertices of an instance, and the index of their first point.
 struct VertexRange {
   static constexpr std::size_t most = 4096;
 
@@ -125,7 +125,7 @@ struct VertexRange {
   std::size_t first_point;
 };
 
-/// Where on the screen the vertices of all instances are that the view may show.
+/// Screen positions of the vertices of all instances that the view may show.
 class VerticesOfView {
  public:
   VerticesOfView(const PlacedScene& placed, const Eye& eye, const Execution& execution)
@@ -146,11 +146,11 @@ class VerticesOfView {
       for (std::size_t i = begin; i < end; ++i) see(placed, ranges[i]);
     });
   }
-  /// The point of an instance's vertex 0; none for instances that are outside.
+  /// Index of the point of an instance's vertex 0; `none` for instances outside the view.
   static constexpr std::size_t none = std::size_t(-1);
   [[nodiscard]] std::size_t first(std::uint32_t instance) const { return first_[instance]; }
 
-  Buffer<ScreenPoint> points;    ///< anything where they are nearer than near, farther than far or not finite
+  Buffer<ScreenPoint> points;    ///< undefined if nearer than near, farther than far or not finite
   Buffer<std::uint8_t> outside;  ///< bits of Outside, by point
 
  private:
@@ -179,16 +179,16 @@ class VerticesOfView {
   std::vector<std::size_t> first_;
 };
 
-/// Faces of some ranges; corners from the number of all vertices on are those of `clipped`.
+/// Faces of some ranges. Corner numbers from the number of all vertices on refer to `clipped`.
 struct FacePart {
   std::vector<ViewedFace> faces;
   std::vector<ScreenPoint> clipped;
 };
 
-/// The faces of consecutive triangles.
+/// Gathers the faces of consecutive triangles.
 class FaceGatherer {
  public:
-  /// `facing`: by primitive, 0 for those that are not there, or not whole.
+  /// `facing` is by primitive, 0 for triangles that are not seen, or not whole.
   FaceGatherer(const PlacedScene& placed, const Eye& eye, Culling culling, const VerticesOfView& vertices,
                std::vector<std::int8_t>& facing)
       : placed_(placed), eye_(eye), rule_(culling, placed.sides.get()), vertices_(vertices), facing_(facing) {}

@@ -13,12 +13,12 @@ namespace {
 using faces_detail::Areas;
 using faces_detail::SeenPart;
 
-/// Fifteen times what the most crowded of 237 models takes, and 64 more for each face.
+/// The limit of steps: fifteen times what the most crowded of 237 models takes, and 64 more for each face.
 std::uint64_t most_steps_of(const faces_detail::ViewedFaces& screen) {
   return (std::uint64_t(1) << 31) + 64 * std::uint64_t(screen.faces.size());
 }
 
-/// By id, ascending.
+/// The visible faces by id, ascending.
 std::vector<VisibleFace> find_faces(const Surfaces& surfaces, const View& view,
                                     const std::vector<EdgeNeighbours>& sides, const Execution& execution) {
   constexpr std::size_t kFacesAtOnce = 4096;
@@ -46,7 +46,7 @@ std::vector<VisibleFace> find_faces(const Surfaces& surfaces, const View& view,
   return seen;
 }
 
-/// In scene units squared.
+/// The area of a triangle, in scene units squared.
 double area_of_triangle(const std::array<glm::vec3, 3>& corners) {
   const glm::dvec3 a(corners[0]);
   return 0.5 * glm::length(glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a));

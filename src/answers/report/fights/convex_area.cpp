@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cutting after I. Sutherland, G. Hodgman. Reentrant Polygon Clipping. 1974.
+// Cutting follows I. Sutherland, G. Hodgman. Reentrant Polygon Clipping. 1974.
 #include "report/fights/convex_area.h"
 
 #include <algorithm>
@@ -10,11 +10,11 @@
 namespace frontmost {
 namespace {
 
-constexpr double kNoArea = 1e-12;  // pixels squared: what rounding leaves of a line
+constexpr double kNoArea = 1e-12;  // square pixels: area that rounding may give to a line
 
 constexpr double kRim = 1e-6;  // pixels: a sample on a side belongs to both areas beside it
 
-/// What an area has of a line along x.
+/// The part of a horizontal line within an area.
 struct Chord {
   std::int64_t line;
   double begin, end;
@@ -101,7 +101,7 @@ RowSpan span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, i
     if (slope < 0) high = std::min(high, -rest / slope - sample.x + kRim);
     if (slope == 0 && rest < -kRim * std::abs(f.gradient.y)) return {0, 0};
   }
-  // What lies far beside the row is no int.
+  // Bounds far beside the row would not fit an int.
   low = std::min(low, double(width));
   high = std::max(high, -1.0);
   const int first = std::max(int(std::ceil(low)), 0), end = std::min(int(std::floor(high)) + 1, width);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Convex areas on the screen: cut by straight lines, and how much of several is one and the same.
+// Convex areas on the screen: cutting by straight lines, and the area of unions.
 //
 //     +-------+
-//     |-------|-----        The union is measured along lines close to each other: what several areas have of a line
-//     |   +---+---+         counts once. The ratio to what they have of it one by one is that of the areas.
+//     |-------|-----        The union is measured along closely spaced lines. Parts of a line in several areas count
+//     |   +---+---+         once. The ratio of that length to the sum over all areas is the ratio of the areas.
 //     |---|---|---|-
 //     +---+---+   |
 //         +-------+
@@ -27,16 +27,16 @@ struct AffineOverScreen {
   [[nodiscard]] double at(const glm::dvec2& point) const { return constant + glm::dot(gradient, point); }
 };
 
-/// Corners in the order of a face on the screen: its inside lies to the left of its sides, were y to run up.
+/// Corners are ordered as in a face on the screen: the inside is on the left of each side, with y upwards.
 class ConvexArea {
  public:
   ConvexArea() = default;
   void assign(std::span<const glm::dvec2> corners) { corners_.assign(corners.begin(), corners.end()); }
-  /// Keeps where `f` is not negative.
+  /// Keeps the part where `f` is not negative.
   void cut(const AffineOverScreen& f);
   [[nodiscard]] std::span<const glm::dvec2> corners() const { return corners_; }
   [[nodiscard]] bool is_empty() const { return corners_.size() < 3; }
-  /// In pixels squared.
+  /// Area in square pixels.
   [[nodiscard]] double area() const;
   [[nodiscard]] glm::dvec2 centre() const;
 
@@ -44,20 +44,20 @@ class ConvexArea {
   std::vector<glm::dvec2> corners_, before_;
 };
 
-/// Not negative to the inner side of the line from one point to the next.
+/// A function that is not negative on the inner side of the line from one point to the next.
 [[nodiscard]] AffineOverScreen inside_of_side(const glm::dvec2& from, const glm::dvec2& to);
 
-/// The pixels [first, end) of a row.
+/// Pixels [first, end) of a row.
 struct RowSpan {
   int first, end;
 };
 
-/// The pixels of a row of samples at `sample.y` that lie in an area, those on its sides with them; samples are
-/// `sample.x` from the left sides of their pixels.
+/// The pixels of a row of samples at `sample.y` that lie in an area, sides included. Samples are `sample.x` to the
+/// right of the left sides of their pixels.
 [[nodiscard]] RowSpan span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, int width);
 
-/// Calls visit(number, x, y, offset) for the samples of a view in an area: numbers in the order of Visible, offsets
-/// from the corners of pixels. Only those of every `step`-th column and row.
+/// Calls visit(number, x, y, offset) for the samples of a view in an area, in every `step`-th column and row. Numbers
+/// are in the order of Visible; offsets are relative to the corners of pixels.
 template <class Visit>
 void visit_samples(std::span<const glm::dvec2> corners, const View& view, int step, const Visit& visit) {
   const auto from = [&](int first) { return (first + step - 1) / step * step; };
@@ -75,12 +75,12 @@ void visit_samples(std::span<const glm::dvec2> corners, const View& view, int st
   }
 }
 
-/// Measures how much of several areas is left when every place counts once.
+/// Measures the share of several areas that remains if every place counts once.
 class UnionShare {
  public:
   void add(std::span<const glm::dvec2> corners) { areas_.push_back(corners); }
-  /// The area of the union over the sum of the areas: 1 where none overlap, at least 1 over their number. Lines are
-  /// 1/16 pixel apart, or farther where there would be too many.
+  /// The area of the union divided by the sum of the areas: 1 if none overlap, at least 1 over their number. Lines are
+  /// 1/16 pixel apart, or farther apart if there would be too many.
   [[nodiscard]] double find() const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact tests for overlap: corners are integers, so that faces which share a side never overlap by rounding.
+// Tests for overlap are exact: corners are integers, so faces that share a side never overlap by rounding.
 #include "report/fights/face_pairs.h"
 
 #include <algorithm>
@@ -16,12 +16,12 @@ using namespace zbuffer_detail;
 constexpr const char* kPlace = "fighting faces";
 constexpr std::uint64_t kMostBoxLooks = std::uint64_t(1) << 28, kMostPairs = std::uint64_t(1) << 24;
 
-/// What is looked at and kept, by all threads together.
+/// Limits of the pairs examined and kept, by all threads together.
 struct PairLimits {
   WorkLimit looks, pairs;
 };
 
-/// What is looked at first of a face in a cell.
+/// The bounds of a face in a cell, examined first.
 struct CellFace {
   std::int32_t x0, x1, y0, y1;
   float low, high;
@@ -34,13 +34,13 @@ struct CellFace {
   }
 };
 
-/// The faces of one cell, and of those the numbers that are near one of them. Kept from cell to cell.
+/// The faces of one cell, and the indices of those near one of them. Reused from cell to cell.
 struct CellScratch {
   std::vector<CellFace> entries;
   std::vector<std::uint32_t> near;
 };
 
-/// True when a side of `a` has all of `b` on its outer side, or on it.
+/// Whether all of `b` lies on the outer side of a side of `a`, or on that side.
 bool is_parted_by_side(const TriangleRecord& a, const TriangleRecord& b) {
   for (int k = 0; k < 3; ++k) {
     const int n = k == 2 ? 0 : k + 1;
@@ -51,11 +51,11 @@ bool is_parted_by_side(const TriangleRecord& a, const TriangleRecord& b) {
   return false;
 }
 
-/// The cells of the screen, with the numbers of the faces in each.
+/// The cells of the screen, each with the numbers of its faces.
 class FaceCells {
  public:
   FaceCells(const std::vector<ScreenFace>& faces, const View& view) : faces_(faces), view_(view) {
-    // Few faces to a cell, and few cells to a face.
+    // Cells are so large that a face meets few of them, and so small that they hold few faces.
     constexpr std::size_t kCellsOfAFace = 4;
     constexpr int kFirstShift = 9;  // 2 pixels
     divide_screen(kFirstShift);
@@ -70,7 +70,7 @@ class FaceCells {
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
 
-  /// The text of an error, which says where most faces lie over one cell.
+  /// The text of an error, which names the cell with the most faces.
   [[nodiscard]] std::string too_many(const std::string& things) const {
     const std::size_t columns = std::size_t(columns_);
     std::size_t fullest = 0;
@@ -86,7 +86,7 @@ class FaceCells {
            at(x + 1, view_.width) + "," + at(y + 1, view_.height) + "; leave out what lies there many times";
   }
 
-  /// Appends the pairs that are met in this cell.
+  /// Appends the pairs that are found in this cell.
   void find_pairs(int column, int row, CellScratch& scratch, PairLimits& limits, std::vector<FacePair>& pairs) const {
     std::vector<CellFace>& entries = scratch.entries;
     entries.clear();
@@ -122,19 +122,19 @@ class FaceCells {
   struct NearFaces {
     std::size_t looks, count;
   };
-  /// Writes the numbers of the entries after the i-th whose rectangles and ranges of keys overlap its own.
+  /// Writes the indices of the entries after the i-th whose rectangles and key ranges overlap its own.
   static NearFaces collect_near(std::size_t i, const std::vector<CellFace>& entries, std::uint32_t* near) {
     const CellFace a = entries[i];
     std::size_t k = i + 1, count = 0;
     for (; k < entries.size() && entries[k].x0 < a.x1; ++k) {
       const CellFace& b = entries[k];
       near[count] = std::uint32_t(k);
-      // Without branches, which nothing would predict.
+      // Without branches, which could not be predicted.
       count += std::size_t(int(b.y0 < a.y1) & int(a.y0 < b.y1) & int(b.low <= a.high) & int(a.low <= b.high));
     }
     return {k - i, count};
   }
-  /// Into squares of 2^shift steps of corners.
+  /// Divides the screen into squares of 2^shift steps of 1/256 pixel.
   void divide_screen(int shift) {
     const int side = 1 << shift;
     shift_ = shift;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which faces overlap on the screen and come near each other in depth.
+// Pairs of faces that overlap on the screen and come close to each other in depth.
 //
-//    +----+----+----+     Faces are entered into the cells that their rectangles touch; within a cell they are sorted
-//    by |  /\|    |    |     their left ends, and only those whose rectangles and ranges of keys overlap are looked at.
-//    A | /__\ \  |    |     pair that shares several cells is met in one: that of the upper left corner of what their
-//    +----+----+----+     rectangles have in common.
+//    +----+----+----+     Faces are entered into the cells that their rectangles touch. Within a cell they are sorted
+//    |  /\|    |    |     by their left ends, and only faces whose rectangles and ranges of keys overlap are compared.
+//    | /__\ \  |    |     A pair that shares several cells is found in one: that of the upper left corner of the
+//    +----+----+----+     common part of their rectangles.
 #pragma once
 
 #include <string>
@@ -14,21 +14,21 @@
 
 namespace frontmost {
 
-/// Numbers of two faces, the first less.
+/// Numbers of two faces, the lower one first.
 struct FacePair {
   std::uint32_t first, second;
 
-  /// Of both, which orders them.
+  /// Both numbers as one, by which pairs are ordered.
   [[nodiscard]] std::uint64_t number() const { return std::uint64_t(first) << 32 | second; }
   friend bool operator<(const FacePair& a, const FacePair& b) { return a.number() < b.number(); }
 };
 
-/// All pairs of faces of different primitives that have an area in common and keys within reach of each other; in
+/// Finds all pairs of faces of different primitives that have an area in common and keys within reach of each other; in
 /// order. \throws Error limit_exceeded as find_fighting_faces() does.
 [[nodiscard]] std::vector<FacePair> find_face_pairs(const std::vector<ScreenFace>& faces, const View& view,
                                                     const Execution& execution);
 
-/// The text of an error: too many of these things, and where most faces lie.
+/// The text of an error: there are too many of these things, and where most faces lie.
 [[nodiscard]] std::string too_many_faces(const std::vector<ScreenFace>& faces, const View& view,
                                          const std::string& things);
 

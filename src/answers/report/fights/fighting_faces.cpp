@@ -17,7 +17,7 @@
 namespace frontmost {
 namespace {
 
-/// Whether all corners of both lie in one plane.
+/// Whether all vertices of both triangles lie in one plane.
 bool are_in_one_plane(const std::array<glm::vec3, 3>& a, const std::array<glm::vec3, 3>& b) {
   const glm::dvec3 origin(a[0]);
   return std::all_of(b.begin(), b.end(), [&](const glm::vec3& corner) {
@@ -37,13 +37,13 @@ FightKind kind_of(const Surfaces& surfaces, PrimitiveId first, PrimitiveId secon
   return share_corner(a, b) ? FightKind::fold : FightKind::close;
 }
 
-/// Areas as they are found, in order.
+/// Areas in the order in which they were found.
 struct FoundAreas {
   std::vector<FightingFaces> faces;
   std::vector<glm::dvec2> corners;
 };
 
-/// What all that looks for areas needs.
+/// The input of the search for areas.
 struct FightSearch {
   const Surfaces& surfaces;
   const Visible& visible;
@@ -51,7 +51,7 @@ struct FightSearch {
   const std::vector<ScreenFace>& faces;
   const KeyStep step{setup};
 
-  /// Appends the area of two faces, or with the same face twice that of the clear value.
+  /// Appends the area of two faces; with the same face twice, the area of the clear value.
   void find(RiskFinder& finder, VisibleShares& shares, const FacePair& pair, FoundAreas& found) const {
     const ScreenFace &a = faces[pair.first], &b = faces[pair.second];
     const bool is_alone = pair.first == pair.second;

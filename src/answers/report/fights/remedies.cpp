@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What ends fights: tried, by drawing.
+// Remedies for depth fights, tried out by drawing.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,7 +12,7 @@
 namespace frontmost {
 namespace {
 
-/// Draws ranges of primitives with an offset for one of them.
+/// Draws ranges of primitives, with an offset for one of them.
 Visible draw(const Surfaces& surfaces, const View& view, const DepthSetup& setup,
              const std::optional<OffsetRemedy>& remedy, const Execution& execution) {
   DepthBuffer buffer(view.width, view.height, view.samples, setup.format);
@@ -43,10 +43,10 @@ View with_clip(View view, const ClipDistances& clip) {
   return view;
 }
 
-/// Planes as close to each other as the faces in the picture allow.
+/// Near and far planes as close as the faces in the picture allow.
 ClipDistances tight_planes(const Surfaces& surfaces, const View& view, const DepthSetup& setup,
                            const Execution& execution) {
-  constexpr double kAir = 1e-3;  // of the distance, so that nothing is cut by rounding
+  constexpr double kAir = 1e-3;  // share of the distance, so that rounding cuts nothing off
   float least = 2, greatest = 0;
   for (const ScreenFace& face : screen_faces(surfaces, view, KeyStep(setup), {}, execution))
     for (const float key : face.record.key) {

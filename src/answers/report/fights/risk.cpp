@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strips of risk as two cuts of what both faces have in common.
+// The strip at risk: two cuts of the common area of both faces.
 #include "report/fights/risk.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ std::array<glm::dvec2, 3> corners_of(const ScreenFace& face) {
   return {face.corner(0), face.corner(1), face.corner(2)};
 }
 
-/// constant + relative * nearer - (nearer - other) is not negative: what is nearer is not surely shown.
+/// Not negative where `nearer` is not surely shown: constant + relative * nearer - (nearer - other).
 AffineOverScreen is_not_shown(const KeyOverScreen& nearer, const KeyOverScreen& other, const KeyStep& step,
                               double slack) {
   const double share = step.relative - 1;
@@ -82,7 +82,7 @@ double VisibleShares::of(const ConvexArea& area, const RiskKeys& keys) {
     });
     looks_ += all;
   };
-  // Some samples tell the share well enough; whether anything is seen, all of them must.
+  // Some samples suffice for the share. To tell whether anything is seen, all samples are needed.
   const int step = int(std::sqrt(area.area() * view.samples / asked_));
   if (step > 1) look(step);
   if (seen == 0) look(1);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where two faces are at risk, and how much of that is seen.
+// The area in which two faces are at risk, and how much of it is seen.
 //
-// Keys are affine over the screen, and so is their difference, and what the format and rounding need to tell them
-// apart. So where the difference is less than that is a strip between two straight lines:
+// Keys are affine over the screen; so are the difference of two keys, and the difference that format and rounding need
+// to tell them apart. The difference is too small in a strip between two straight lines:
 //
 //      \  first is surely shown  \//////\  second is surely shown
 //       \    where it is nearer   \/////\\    where it is nearer
@@ -16,16 +16,16 @@
 
 namespace frontmost {
 
-/// Finds areas one after another, in memory that is kept.
+/// Finds one area after another and reuses its memory.
 class RiskFinder {
  public:
   RiskFinder(const View& view, const DepthSetup& setup);
 
-  /// Where both faces are, and neither is surely shown; empty where there is no such place. Stays until the next call.
+  /// The area where both faces are and neither is surely shown; may be empty. Valid until the next call.
   [[nodiscard]] const ConvexArea& of_pair(const ScreenFace& a, const ScreenFace& b);
-  /// Where a face may be stored as what the buffer was cleared to.
+  /// The area where a face may be stored as the clear value.
   [[nodiscard]] const ConvexArea& of_clear_value(const ScreenFace& face);
-  /// False where that area is empty for certain.
+  /// False if that area is certainly empty.
   [[nodiscard]] bool may_be_clear_value(const ScreenFace& face) const { return double(face.low) <= farthest_key_; }
 
  private:
@@ -37,26 +37,26 @@ class RiskFinder {
   ConvexArea area_;
 };
 
-/// One of two faces that are at risk, or the only one.
+/// The keys of two faces that are at risk, or of one face alone.
 struct RiskKeys {
   KeyOverScreen first, second;
-  double reach;  ///< what is seen may be so much nearer, and they are still at risk
+  double reach;  ///< the seen surface may be nearer by this much while they are still at risk
 
   RiskKeys(const ScreenFace& a, const ScreenFace& b, const KeyStep& step);
   [[nodiscard]] double nearest_at(const glm::dvec2& point) const { return std::max(first.at(point), second.at(point)); }
 };
 
-/// Tells which share of one area after another is seen, by samples. One thread's.
+/// Estimates from samples the visible share of one area after another. For one thread.
 class VisibleShares {
  public:
-  /// For so many areas: of each it looks at about 4,096 samples, or at fewer, 64 at least, where that would be more
-  /// than 2^28 of all.
+  /// `areas` is the number of areas. About 4,096 samples of each are examined, or fewer (at least 64) if all areas
+  /// together would take more than 2^28.
   VisibleShares(const Visible& visible, std::size_t areas);
 
-  /// By the samples in the area; where there is none, by those of the pixel at its centre. 0 only where no sample is
-  /// seen, and then it looks at all of them.
+  /// The visible share, by the samples in the area, or, if there are none, by those of the pixel at its centre. 0 only
+  /// if no sample is seen, which takes all samples of the area.
   [[nodiscard]] double of(const ConvexArea& area, const RiskKeys& keys);
-  /// How many samples it has looked at since the last call.
+  /// Number of samples examined since the last call.
   [[nodiscard]] std::uint64_t take_looks() { return std::exchange(looks_, 0); }
 
  private:

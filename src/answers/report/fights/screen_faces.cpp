@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Placing the faces, and bounds of what places and floats add to their keys.
+// Placing the faces, and bounding the errors that positions and floats add to their keys.
 #include "report/fights/screen_faces.h"
 
 #include <algorithm>
@@ -16,9 +16,9 @@ namespace {
 using namespace zbuffer_detail;
 
 constexpr int kBlock = 8;          // pixels
-constexpr double kUnit = 0x1p-24;  // of the rounding of a float
+constexpr double kUnit = 0x1p-24;  // unit roundoff of a float
 
-/// What the view has to do with the errors of places.
+/// The errors of positions in a view.
 class PlaceErrors {
  public:
   PlaceErrors(const ScreenTransform& t, const View& view)
@@ -35,16 +35,16 @@ class PlaceErrors {
     reach_ = orthographic_ && std::isfinite(reach) ? 2 * std::max(reach, std::abs(view.projection.clip.near)) : 0;
   }
 
-  /// How far a face's corners may lie from where they are in the world, in 1/256 pixel along each axis.
+  /// Greatest distance of a face's corners from their true positions, in 1/256 pixel along each axis.
   [[nodiscard]] double of_place(const TriangleRecord& r) const {
     const glm::dvec2 off = farthest(r) + shift_;
     const double scale = std::max(scale_.x, scale_.y);
-    // A corner's differences to the eye are rounded, its products with the row, and their sums: 9 roundings in all, of
-    // x and of the distance that it is divided by.
+    // Rounded are a corner's differences to the eye, its products with the row, and their sums: 9 roundings in all, of
+    // x and of the distance by which x is divided.
     if (orthographic_) return 0.5 + 9 * kUnit * (scale * reach_ + off.x + off.y);
     return 0.5 + 9 * kUnit * slant(off) * (scale + std::max(off.x, off.y));
   }
-  /// By how much rounding changes the key of a corner.
+  /// Greatest change of a corner's key by rounding.
   [[nodiscard]] double of_key(const TriangleRecord& r) const {
     const double made = 2 * double(r.nearest());
     if (orthographic_) return kUnit * (9 * reach_ / range_ + made);
@@ -52,13 +52,13 @@ class PlaceErrors {
   }
 
  private:
-  /// From the middle of the picture, along each axis.
+  /// Greatest distance of a corner from the middle of the picture, along each axis.
   [[nodiscard]] glm::dvec2 farthest(const TriangleRecord& r) const {
     glm::ivec2 most(0);
     for (int k = 0; k < 3; ++k) most = glm::max(most, glm::abs(glm::ivec2(r.x[k], r.y[k]) - centre_));
     return glm::dvec2(most);
   }
-  /// The distance from the eye over the planar depth, at most.
+  /// Upper bound of the distance from the eye divided by the planar depth.
   [[nodiscard]] double slant(const glm::dvec2& off) const { return 1 + off.x / scale_.x + off.y / scale_.y; }
 
   bool orthographic_;
@@ -67,10 +67,10 @@ class PlaceErrors {
   double reach_, range_;
 };
 
-/// How keys change over a triangle, what it is large by, and what of it moved corners may take away.
+/// The slopes of a triangle's key, its size, and the effect of moved corners.
 struct KeySlopes {
   double range, area, around;
-  double x, y;  // times the area: by 1/256 pixel
+  double x, y;  // slopes times the area, per 1/256 pixel
 
   explicit KeySlopes(const TriangleRecord& r) : area(double(doubled_area(r))), around(0), x(0), y(0) {
     const auto [low, high] = std::minmax({r.key[0], r.key[1], r.key[2]});
@@ -82,29 +82,30 @@ struct KeySlopes {
       y += double(r.key[k]) * (double(r.x[p]) - r.x[n]);
     }
   }
-  /// What the plane of the face in the world and that on the screen may differ by, at any sample.
+  /// Greatest difference, at any sample, between the face's plane in the world and its plane on the screen.
   [[nodiscard]] double of_moved_corners(double moved) const {
     const double lost = 2 * moved * around;
-    // Where little of the area is left, the plane may be any through the corners' keys.
+    // If little of the area remains, the plane may be any through the corners' keys.
     if (lost > 0.5 * area) return range;
     return std::min(range, (std::abs(x) + std::abs(y)) * moved / (area - lost));
   }
-  /// What the roundings between the corners add (view/triangle_keys.h): at most sixteen, and none where keys are equal.
+  /// Greatest effect of roundings between the corners (view/triangle_keys.h): at most sixteen roundings, and none if
+  /// keys are equal.
   [[nodiscard]] double of_rounding(double nearest) const {
     if (range == 0) return 0;
-    // No side along x or y is longer than half of all around.
+    // No side is longer along x or y than half of the perimeter.
     const double across = 0.5 * around * (std::abs(x) + std::abs(y)) / area;
     return kUnit * std::min(16 * nearest, 2 * nearest + 4 * across);
   }
 };
 
-/// A float that is not less.
+/// A float that is not less than a value.
 float rounded_up(double value) { return std::nextafter(float(value), std::numeric_limits<float>::max()); }
 
 }  // namespace
 
 KeyStep::KeyStep(const DepthSetup& setup) {
-  // Between the planes keys run through this much; depths through 1.
+  // Range of the keys between the planes; depths range from 0 to 1.
   const double span = setup.orthographic ? 1 : 1 - setup.clip.near / setup.clip.far;
   const int bits = integer_bits(setup.format);
   if (bits > 0)

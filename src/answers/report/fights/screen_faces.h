@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles as a depth buffer places them, with what their keys may differ by from those of the faces in the world.
+// Triangles as a depth buffer places them, with the greatest difference of their keys from those of the faces in the
+// world.
 //
-//    exact     /\        A corner is snapped by up to 1/512 pixel along x and y, after floats have moved it by less.
-//    snapped  /_ \       So the key at a sample is off by what the face's plane changes over that way; and by the
-//               `-`      roundings of keys. Two faces whose keys differ by more than both together and a step of the
-//                        format are shown in their right order.
+//    exact     /\        Floats move a corner slightly; snapping moves it by up to 1/512 pixel along x and y. The
+//    snapped  /_ \       key at a sample is therefore wrong by the change of the face's plane over that distance,
+//               `-`      and by the roundings of keys. Two faces whose keys differ by more than the sum of both
+//                        errors, and a step of the format, are shown in the right order.
 #pragma once
 
 #include <vector>
@@ -15,7 +16,7 @@
 
 namespace frontmost {
 
-/// By how much two keys must differ to be stored as different values, and in their order: constant + relative * key.
+/// The difference that two keys need to be stored as different values, in their order: constant + relative * key.
 struct KeyStep {
   double constant = 0, relative = 0;
 
@@ -32,21 +33,21 @@ struct KeyOverScreen {
 
 /// A triangle on the screen.
 struct ScreenFace {
-  zbuffer_detail::TriangleRecord record;  ///< corners from the image's top left, its area positive
-  float slack;                            ///< what its keys may be off by
-  float low, high;                        ///< of its keys, farther apart by `slack` and half a step
+  zbuffer_detail::TriangleRecord record;  ///< corners relative to the image's top left; the area is positive
+  float slack;                            ///< greatest error of its keys
+  float low, high;                        ///< range of its keys, widened by `slack` and half a step
 
   [[nodiscard]] KeyOverScreen keys() const;
   [[nodiscard]] glm::dvec2 corner(int k) const { return glm::dvec2(record.x[k], record.y[k]) / double(kSubPixels); }
 };
 
-/// Of square blocks of pixels the farthest key that is seen at their samples.
+/// The farthest key seen at the samples of each square block of pixels.
 class FarthestSeen {
  public:
-  /// Nothing is hidden.
+  /// A value with which nothing is hidden.
   FarthestSeen() = default;
   explicit FarthestSeen(const Visible& visible);
-  /// Whether a key of `high` is behind all that is seen in these pixels and those beside them.
+  /// Whether a key of `high` is behind everything seen in these pixels and the adjacent ones.
   [[nodiscard]] bool hides(const zbuffer_detail::PixelRect& rect, float high) const;
 
  private:
@@ -54,7 +55,7 @@ class FarthestSeen {
   std::vector<float> keys_;
 };
 
-/// All that may cover a point of the picture and is not hidden, in the order of ids.
+/// All faces that may cover a point of the picture and are not hidden, in the order of ids.
 [[nodiscard]] std::vector<ScreenFace> screen_faces(const Surfaces& surfaces, const View& view, const KeyStep& step,
                                                    const FarthestSeen& seen, const Execution& execution);
 

@@ -17,7 +17,7 @@ using namespace why_detail;
 
 namespace {
 
-/// The last reason of any of its triangles.
+/// The last reason of any of the object's triangles.
 SightReason reason_of(const TrianglePlaces& triangles) {
   if (triangles.in_view > 0) return SightReason::no_sample;
   if (triangles.faces_away > 0) return SightReason::faces_away;
@@ -33,7 +33,7 @@ class Explainer {
   Explainer(const Surfaces& surfaces, const View& view, const Accounting& accounts, const Execution& execution)
       : surfaces_(surfaces), view_(view), accounts_(accounts), execution_(execution) {}
 
-  /// Precondition: ascending numbers.
+  /// Explains the objects. Precondition: their numbers ascend.
   [[nodiscard]] std::vector<Explanation> explain(std::span<const std::uint32_t> objects) const {
     constexpr std::size_t kObjectsAtOnce = 16;
     const std::vector<ObjectPlaces> places =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many triangles have no area, as many at a time as the vector holds: the products of PlaceFinder, in doubles, and
-// in its order, so that the answer is its own. What is not finite makes one of them infinite or no number.
+// Counts triangles without area, a vector of them at a time. The products are those of PlaceFinder, in doubles and in
+// the same order, so that both agree. A non-finite coordinate makes one of the products infinite or NaN.
 
 #include <cmath>
 
@@ -38,7 +38,7 @@ std::uint64_t CountFlat(const WorldTriangles& triangles) {
 using DD = hn::Repartition<double, DF>;
 using VD = hn::Vec<DD>;
 
-/// Half of a vector, or the other half, as doubles.
+/// The lower or upper half of a vector, as doubles.
 template <bool upper>
 HWY_INLINE VD HalfOf(VF v) {
   const hn::Half<DF> half;
@@ -52,7 +52,7 @@ struct CornerVectors {
   VF x, y, z;
 };
 
-/// Which triangles have an area, a bit each.
+/// The triangles that have an area, one bit each.
 template <bool upper>
 HWY_INLINE std::uint64_t WithArea(const CornerVectors (&p)[3]) {
   const DD d;
@@ -77,7 +77,7 @@ std::uint64_t CountFlat(const WorldTriangles& triangles) {
     glm::uvec3 filled[kMaxLanes];
     const glm::uvec3* corners = &triangles.corners[i];
     if (i + lanes > count) {
-      // The last triangle again and again: reading on would pass the end of the array.
+      // The last triangle is repeated, since reading on would pass the end of the array.
       for (std::size_t k = 0; k < lanes; ++k) filled[k] = triangles.corners[HWY_MIN(i + k, count - 1)];
       corners = filled;
     }

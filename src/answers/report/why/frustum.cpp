@@ -40,7 +40,7 @@ FrustumPoint Frustum::see(const glm::vec3& world) const {
   const PointAhead at(glm::dot(right_, p), glm::dot(up_, p), glm::dot(forward_, p));
   const Projection& f = projection_;
   const double unit = f.orthographic ? 1 : at.z;
-  // An infinite far plane has everything inside.
+  // Every point is inside an infinite far plane.
   const double before_far = std::isinf(f.clip.far) ? 1 : f.clip.far - at.z;
   return {at,
           {at.x - f.left * unit, f.right * unit - at.x, f.top * unit - at.y, at.y - f.bottom * unit, at.z - f.clip.near,
@@ -49,7 +49,7 @@ FrustumPoint Frustum::see(const glm::vec3& world) const {
 
 bool Frustum::surely_holds(const Box& box) const {
   if (box.is_empty()) return true;
-  // Distances are linear, so that corners decide; what see() rounds is far less than this share of what it adds up.
+  // Distances are linear, so the corners decide. The rounding of see() is far less than this share of its summands.
   constexpr double kRounding = 1e-12;
   for (int k = 0; k < 8; ++k) {
     const glm::vec3 corner(k & 1 ? box.high.x : box.low.x, k & 2 ? box.high.y : box.low.y,

@@ -23,7 +23,7 @@ Scene scene_of_one(const Scene& scene, std::uint32_t object) {
   return lone;
 }
 
-/// The pixels that a range of places touches, at least one, within the picture.
+/// The pixels that a range of positions touches, at least one, within the picture.
 struct PixelStretch {
   int first, count;
 
@@ -32,7 +32,8 @@ struct PixelStretch {
         count(std::clamp(int(std::ceil(extent.high)) - first, 1, size - first)) {}
 };
 
-/// Where a picture with `factor` times the pixels each way may show what is at these places, snapped corners included.
+/// The pixels in which a picture with `factor` times the width and height may show the object, including snapped
+/// corners.
 accounting_detail::PixelRect touched_pixels(const View& enlarged, const ObjectPlaces& places, int factor) {
   const auto stretch = [factor](const ValueRange& extent, int size) {
     return PixelStretch({extent.low * factor - 1, extent.high * factor + 1}, size);
@@ -41,7 +42,7 @@ accounting_detail::PixelRect touched_pixels(const View& enlarged, const ObjectPl
   return {columns.first, rows.first, columns.first + columns.count - 1, rows.first + rows.count - 1};
 }
 
-/// The part of a view that shows what is in these pixels, as large as there.
+/// The part of a view with these pixels, at the same scale.
 View cropped(const View& view, const PixelStretch& columns, const PixelStretch& rows) {
   const Projection& whole = view.projection;
   const double across = (whole.right - whole.left) / view.width, down = (whole.top - whole.bottom) / view.height;

@@ -6,15 +6,15 @@
 
 namespace frontmost::why_detail {
 
-/// A scene of its own, without materials, so that nothing of it has holes.
+/// A scene with a single object, without materials and therefore without holes.
 class LoneObject {
  public:
   LoneObject(const Scene& scene, std::uint32_t object);
 
-  /// Whether it would cover a sample of the picture, or of one with `factor` times the pixels each way, which is a
-  /// valid view. `places`: where it is in the picture.
+  /// Whether the object would cover a sample of the picture, or of one with `factor` times the width and height.
+  /// Precondition: the enlarged view is valid. `places` holds the object's position in the picture.
   [[nodiscard]] bool has_sample(const View& view, const ObjectPlaces& places, int factor = 1) const;
-  /// Its area in the picture, in square pixels. `places`: where it is.
+  /// The object's area in the picture, in square pixels. `places` holds the object's position.
   [[nodiscard]] double area(const View& view, const ObjectPlaces& places) const;
 
  private:

@@ -11,7 +11,7 @@
 namespace frontmost::why_detail {
 namespace {
 
-/// By material, and the default material last: whether nothing of it is opaque anywhere.
+/// By material, the default material last: 1 if no place of it is opaque.
 std::vector<std::uint8_t> find_clear_materials(const Scene& scene) {
   std::vector<std::uint8_t> clear(scene.materials.size() + 1, 0);
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
@@ -25,7 +25,7 @@ std::vector<std::uint8_t> find_clear_materials(const Scene& scene) {
   return clear;
 }
 
-/// The radius of a circle that surely fits into a convex polygon: area / perimeter, in a triangle twice as much.
+/// The radius of a circle that surely fits into a convex polygon: area / perimeter; in a triangle twice that.
 double inner_radius(std::span<const glm::dvec2> p) {
   double doubled = 0, perimeter = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -37,14 +37,14 @@ double inner_radius(std::span<const glm::dvec2> p) {
   return perimeter > 0 ? (p.size() == 3 ? 2 * radius : radius) : 0;
 }
 
-/// What finding places needs of memory, one a thread.
+/// Memory of one thread that finds places.
 struct FrustumScratch {
   WorldScratch world;
-  std::vector<FrustumPoint> seen;     // by vertex, once it was looked at
-  std::vector<std::uint8_t> outside;  // likewise, a bit for each plane, and more
+  std::vector<FrustumPoint> seen;     // by vertex, set when the vertex is first used
+  std::vector<std::uint8_t> outside;  // by vertex, a bit for each plane, and more
 };
 
-/// The places of one range of triangles.
+/// Finds the places of one range of triangles.
 class PlaceFinder {
  public:
   PlaceFinder(const PlacedScene& scene, const View& view, Isa isa)
@@ -56,7 +56,7 @@ class PlaceFinder {
     is_any_clear_ = std::find(clear_.begin(), clear_.end(), 1) != clear_.end();
   }
 
-  /// `needs_area`: whether it matters where on the screen the triangles are.
+  /// `needs_area`: whether the triangles' positions on the screen matter.
   [[nodiscard]] ObjectPlaces find(const MeshRange& range, bool needs_area, FrustumScratch& scratch) const {
     ObjectPlaces places;
     const WorldTriangles world = world_triangles(scene_, range, isa_, scratch.world);
@@ -82,21 +82,21 @@ class PlaceFinder {
   }
 
  private:
-  // Beside a bit for each plane.
+  // Further bits beside those of the planes.
   static constexpr std::uint8_t kBehindEye = 1 << kPlaneCount, kNowhere = 1 << (kPlaneCount + 1);
-  static constexpr std::uint8_t kNotSeen = 0xFF;  // which no vertex is: what is nowhere has no other bit
+  static constexpr std::uint8_t kNotSeen = 0xFF;  // no vertex has this value: kNowhere excludes other bits
 
   struct ViewedTriangle {
     const FrustumPoint* corners[3];
-    glm::dvec3 normal;                      ///< twice as long as its area
-    std::uint8_t any_outside, all_outside;  ///< of what a corner is outside, or all are
+    glm::dvec3 normal;                      ///< its length is twice the area
+    std::uint8_t any_outside, all_outside;  ///< planes that any corner is outside of, or all corners
     PrimitiveId id;
 
     [[nodiscard]] const PointAhead& at(int k) const { return corners[k]->at; }
     [[nodiscard]] FrustumPolygon polygon() const { return {{*corners[0], *corners[1], *corners[2]}, 3}; }
   };
 
-  /// Of all in a box but what is empty; what of it is clear need not be counted then.
+  /// Whether all non-empty triangles in a box are in view, and none needs to be counted as clear.
   [[nodiscard]] bool is_surely_in_view(const Box& box) const {
     return facing_.culling() == Culling::none && !is_any_clear_ && frustum_.surely_holds(box);
   }
@@ -178,8 +178,8 @@ class PlaceFinder {
     return true;
   }
 
-  /// Cuts the polygon by the volume. \returns the count of the side that all of it lies on; null where some of it is
-  /// left. What is outside on a side is only cut by near and far.
+  /// Clips the polygon by the viewing volume. \returns the count of the side on which all of it lies; null if a part is
+  /// in view. A polygon outside on one side is only clipped by near and far.
   [[nodiscard]] static std::uint64_t* side_of(FrustumPolygon& polygon, std::uint8_t any_outside,
                                               TrianglePlaces& counts) {
     const auto is_crossing = [&](Plane plane) { return (any_outside >> plane & 1) != 0; };
@@ -202,7 +202,7 @@ class PlaceFinder {
     return sum / double(polygon.count);
   }
 
-  /// What is seen edge on covers nothing, and faces away where anything does.
+  /// Whether culling leaves out a triangle. An edge-on triangle covers nothing and counts as turned away.
   [[nodiscard]] bool is_left_out(PrimitiveId id, double facing) const {
     return !(facing > 0 && facing_.keeps(id, true)) && !(facing < 0 && facing_.keeps(id, false));
   }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t kProbesOfObject = 4;
 
-/// Adds samples of what is marked, at even steps from the first to the last.
+/// Adds samples of a mask, at even steps from the first marked one to the last.
 void choose_marked(const ObjectMask& mask, std::uint32_t object, std::vector<SampleProbe>& probes) {
   const PixelRect& rect = mask.touched();
   constexpr int kWordBits = accounting_detail::kWordPixels;
@@ -43,7 +43,7 @@ void choose_marked(const ObjectMask& mask, std::uint32_t object, std::vector<Sam
   });
 }
 
-/// The probes in squares of pixels.
+/// The probes, by squares of pixels.
 class ProbeGrid {
  public:
   ProbeGrid(const std::vector<SampleProbe>& probes, const View& view)
@@ -56,7 +56,7 @@ class ProbeGrid {
     for (std::uint32_t i = 0; i < probes.size(); ++i) numbers_[next[square_of(probes[i])]++] = i;
   }
 
-  /// Calls visit(number) for the probes of all squares that a rectangle touches.
+  /// Calls visit(number) for the probes in all squares that a rectangle touches.
   template <class Visit>
   void visit(const PixelRect& rect, const Visit& visit) const {
     for (std::size_t row = std::size_t(rect.y0) / kSide; row <= std::size_t(rect.y1) / kSide; ++row) {
@@ -87,7 +87,7 @@ struct ProbeHit {
   }
 };
 
-/// Holds one range of triangles after another against the probes. For one thread.
+/// Tests one range of triangles after another at the probes. For one thread.
 class ProbeCaster {
  public:
   ProbeCaster(const PlacedScene& scene, const ObjectCanvas& canvas, const std::vector<SampleProbe>& probes,
@@ -178,7 +178,7 @@ std::vector<std::vector<std::uint32_t>> find_before(const PlacedScene& scene, co
     for (const ProbeHit& hit : part)
       if (hit.object == probes[hit.probe].object && hit.is_before(own[hit.probe])) own[hit.probe] = hit;
   std::vector<std::vector<std::uint32_t>> before(probes.size());
-  for (const std::vector<ProbeHit>& part : parts)  // in the order of objects
+  for (const std::vector<ProbeHit>& part : parts)  // in the order of objects, so the lists ascend
     for (const ProbeHit& hit : part) {
       std::vector<std::uint32_t>& objects = before[hit.probe];
       if (hit.object != probes[hit.probe].object && hit.is_before(own[hit.probe]) &&

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands before hidden objects: a few samples of each, at which all that is nearer is found.
+// The objects in front of hidden objects, found at a few samples of each hidden object.
 //
-//    eye  ------ A ------ B -----[hidden]----- C        at this sample A and B have to go, and C does not matter
+//    eye  ------ A ------ B -----[hidden]----- C        A and B have to be removed for this sample, C does not
 //
-// The front-most object is not enough: without A the same sample may see B. So all triangles are placed once more, as
-// the z-buffer places them, and held against these samples alone.
+// The front-most object is not enough: without A the same sample may see B. All triangles are therefore placed once
+// more, as in the z-buffer, and tested at these samples alone.
 #pragma once
 
 #include <span>
@@ -22,12 +22,12 @@ struct SampleProbe {
   int x, y, sample;
 };
 
-/// A few samples of each object, spread over what it covers of the picture. `canvas`: without a margin.
+/// Chooses a few samples of each object, spread over the part of the picture that it covers. `canvas` has no margin.
 [[nodiscard]] std::vector<SampleProbe> choose_probes(const PlacedScene& scene, const ObjectCanvas& canvas,
                                                      std::span<const std::uint32_t> objects,
                                                      const Execution& execution);
 
-/// By probe: the objects that are before its own there, ascending.
+/// The objects in front of each probe's own object, ascending, by probe.
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> find_before(const PlacedScene& scene, const ObjectCanvas& canvas,
                                                                   const std::vector<SampleProbe>& probes,
                                                                   const Execution& execution);

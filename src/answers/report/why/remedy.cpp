@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Remedies are worked out so that rounding leaves them right: a near plane is rounded towards the eye, a far plane away
-// from it, and turns to a tenth of what the picture shows, so that what they are about ends near its middle.
+// Remedies stay right when their numbers are rounded. A near plane is rounded towards the eye and a far plane away from
+// it. Turns are rounded to a tenth of what the picture shows, so the object ends near its middle.
 
 #include "report/why/remedy.h"
 
@@ -18,7 +18,7 @@ double power_of_ten(int exponent) {
   return exponent < 0 ? 1 / power : power;
 }
 
-/// The exponent of the greatest power of ten that is not above a positive number.
+/// The exponent of the greatest power of ten that does not exceed a positive number.
 int decimal_exponent(double value) {
   int exponent = int(std::floor(std::log10(value)));
   while (power_of_ten(exponent) > value) --exponent;
@@ -26,12 +26,12 @@ int decimal_exponent(double value) {
   return exponent;
 }
 
-/// A whole number of tens to that power, as a decimal number is read.
+/// `count` times ten to a power, rounded as if it were read from a decimal number.
 double tens(double count, int exponent) {
   return exponent < 0 ? count / power_of_ten(-exponent) : count * power_of_ten(exponent);
 }
 
-/// Two decimal digits of a number, rounded down, or up.
+/// A number rounded down, or up, to two decimal digits.
 double round_to_two(double value, bool down) {
   if (value == 0) return 0;
   const int exponent = decimal_exponent(std::abs(value)) - 1;
@@ -48,11 +48,11 @@ double round_to_tens(double value, int exponent) { return tens(std::round(value 
 double near_for(const ValueRange& nearer, const Projection& projection) {
   const double low = nearer.low, high = nearer.high;
   if (projection.orthographic) return round_to_two(low - 0.01 * (projection.clip.near - low), true);
-  // What reaches to the eye cannot be shown whole.
+  // An object that reaches to the eye cannot be shown whole.
   return round_to_two(low > 0.01 * high ? 0.99 * low : 0.5 * high, true);
 }
 
-/// Turning and moving the camera, so that a point comes into the picture: near to its middle where that is asked for.
+/// Turns or moves the camera so that a point comes into the picture, near its middle.
 class CameraAim {
  public:
   CameraAim(const View& view, const PointAhead& target)
@@ -61,7 +61,7 @@ class CameraAim {
         middle_((projection_.left + projection_.right) / 2, (projection_.bottom + projection_.top) / 2),
         size_(projection_.right - projection_.left, projection_.top - projection_.bottom) {}
 
-  /// To one side, if that is enough; else to both.
+  /// A move along one axis, if that suffices; otherwise along both.
   [[nodiscard]] Remedy move() const {
     const int step = decimal_exponent(std::min(size_.x, size_.y)) - 1;
     const auto offset = [&](int axis) {
@@ -85,7 +85,7 @@ class CameraAim {
   }
 
  private:
-  static constexpr double kInner = 0.4;  // of the size, on each side of the middle: where it is surely in the picture
+  static constexpr double kInner = 0.4;  // share of the size on each side of the middle, surely within the picture
 
   [[nodiscard]] double angle_right() const {
     const double across = std::hypot(target_.x, target_.z);
@@ -97,7 +97,7 @@ class CameraAim {
     return {target_.x * std::cos(angle) - target_.z * std::sin(angle), target_.y,
             target_.z * std::cos(angle) + target_.x * std::sin(angle)};
   }
-  /// After a turn to the right.
+  /// The angle upwards after a turn to the right.
   [[nodiscard]] double angle_up(double right) const {
     const PointAhead p = turned_right(right);
     return std::atan2(p.y, p.z) - std::atan2(middle_.y, 1);
@@ -115,10 +115,10 @@ class CameraAim {
   glm::dvec2 middle_, size_;
 };
 
-/// A circle of this radius, in pixels, has a sample in it wherever it lies, and also when corners are snapped.
+/// A circle of this radius, in pixels, contains a sample wherever it lies, even if corners are snapped.
 constexpr double kSampledRadius = 0.72;
 
-/// What of the picture is looked at has at most so many samples.
+/// Whether the examined part of the picture has few enough samples.
 bool is_small_enough(const ObjectPlaces& places, const View& view, int factor) {
   constexpr double kMostSamples = 1 << 22;
   const double across = (places.columns.high - places.columns.low) * factor + 3;

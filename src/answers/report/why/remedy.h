@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What to change in a view, in round numbers.
+// Remedies: changes of a view, in round numbers.
 #pragma once
 
 #include "report/why/lone_object.h"
@@ -7,10 +7,10 @@
 
 namespace frontmost::why_detail {
 
-/// For an object that `reason`, one of those before no_sample, keeps from being seen; nothing where nothing helps.
+/// The remedy for an object that `reason`, one of those before no_sample, keeps from being seen; none if nothing helps.
 [[nodiscard]] Remedy remedy_for(SightReason reason, const ObjectPlaces& places, const View& view);
-/// For an object that covers no sample: the first of some growing pictures in which it covers one; nothing where that
-/// is none of up to 16384 pixels each way.
+/// The remedy for an object that covers no sample: the first of some growing pictures in which it covers one. None if
+/// no picture of up to 16384 pixels each way suffices.
 [[nodiscard]] Remedy enlargement_for(const LoneObject& lone, const ObjectPlaces& places, const View& view);
 
 }  // namespace frontmost::why_detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Explanations in words. Numbers are written so that they stay true: a share that is not all or nothing is never
-// written as 100 % or 0 %.
+// Explanations in words. Rounding keeps numbers true: only a whole share is written as 100 %, and only an empty one as
+// 0 %.
 
 #include <cmath>
 #include <unordered_map>
@@ -36,7 +36,7 @@ std::string other_objects(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " other object" : " other objects");
 }
 
-/// `whole`: of what shares are told, as a multiple of what is in frame.
+/// The hiders with their shares. `whole`: the whole that shares refer to, as a multiple of the samples in frame.
 std::string hiders_text(const std::vector<HiderShare>& hiders, double whole, const ObjectNames& names) {
   std::vector<std::string> parts;
   double rest = 0;
@@ -56,7 +56,7 @@ struct TrianglePlace {
   const char* where;
 };
 
-/// Of those that are not in view.
+/// The places of the triangles that are not in view, without empty ones.
 std::vector<TrianglePlace> places_of(const TrianglePlaces& t) {
   std::vector<TrianglePlace> places;
   for (const TrianglePlace& place :
@@ -68,7 +68,7 @@ std::vector<TrianglePlace> places_of(const TrianglePlaces& t) {
   return places;
 }
 
-/// "4 behind the eye and 8 on the left", each but those at `but`.
+/// Counts by place, such as "4 behind the eye and 8 on the left"; leaves out the place `but`.
 std::string counts_text(const TrianglePlaces& triangles, std::string_view but) {
   std::vector<std::string> parts;
   for (const TrianglePlace& place : places_of(triangles))
@@ -76,7 +76,7 @@ std::string counts_text(const TrianglePlaces& triangles, std::string_view but) {
   return listed(parts);
 }
 
-/// Where some triangles are elsewhere than most: how many are where, of all that have an area.
+/// The counts of triangles that are not at the main place, out of all that have an area; empty if there are none.
 std::string mixture_text(const TrianglePlaces& triangles, std::string_view but = "") {
   const std::string counts = counts_text(triangles, but);
   if (counts.empty()) return "";
@@ -116,7 +116,7 @@ std::string degrees_text(double radians) {
   return text + (text == "1" ? " degree" : " degrees");
 }
 
-/// Of a turn, or of a move in scene units.
+/// The directions of a turn, or of a move in scene units.
 std::string directions_text(const Remedy& remedy) {
   const auto part = [&](double amount, const char* positive, const char* negative) {
     const std::string size = remedy.kind == RemedyKind::turn ? degrees_text(amount) : general_text(std::abs(amount), 6);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The farthest points of a model in directions all around, found without looking at all of them.
+// The farthest points of a model in directions all around, found without looking at all points.
 //
-// First the boxes of the model that reach farthest in each direction are looked into. What was found bounds a polygon
-// in each of two planes (Core): a point within both reaches nowhere as far as those that are kept. Most boxes lie in
-// the core as a whole and are passed over; of the others each vertex is asked, and the core is made anew when it has
-// become too small.
+// The search begins with the boxes that reach farthest in each direction. The points found bound a polygon in each of
+// two planes (Core): a point within both polygons reaches less far than the kept points. Most boxes lie wholly in the
+// core and are passed over. Each vertex of other boxes is tested, and the core is made anew once it has become too
+// small.
 //
 //     . - - - - - - *   --> direction k: the farthest point is kept
 //    /             /
@@ -12,8 +12,8 @@
 //    \           /
 //     . _ _ _ _ *
 //
-// A core only saves work. What is kept is decided by the one rounding of reach(), so that it does not depend on the
-// order in which points come, on boxes or on clusters.
+// A core only saves work. The one rounding of reach() decides which points are kept, so the result depends neither on
+// the order of points nor on boxes or clusters.
 
 #include "view/camera/extremes.h"
 
@@ -76,7 +76,7 @@ double Extremes::reach(int direction, const Projected& point) const {
   const int plane = direction >= in_plane, k = direction - plane * in_plane;
   const double across = point.across[plane], towards = point.towards;
   if (k < around) return across * cosine_[k] + towards * sine_[k];
-  // To the bit what the fitting of a frustum computes of the point.
+  // Equal to the bit to the value that the fitting of a frustum computes for the point.
   return (k == around ? across : -across) / spread_[plane] + towards;
 }
 
@@ -88,14 +88,14 @@ void Extremes::include(const glm::vec3& point) {
 
 void Extremes::offer(int direction, double reach, const glm::vec3& point) {
   Kept& kept = kept_[direction];
-  // Of points that reach equally far the first in a fixed order: what is kept must not depend on who came first.
+  // Points that reach equally far are kept by a fixed order, so that the result does not depend on who came first.
   if (reach < reach_[direction]) return;
   if (kept.is_set && reach == reach_[direction] && !comes_before(point, kept.point)) return;
   reach_[direction] = reach;
   kept = {point, true};
 }
 
-/// A box as sums need it, larger by more than all rounding, so that no point is passed over that would tie.
+/// A box as centre and half size, enlarged by more than all rounding, so that no point that would tie is passed over.
 struct Extremes::Extent {
   glm::dvec3 middle, half;
 
@@ -104,7 +104,7 @@ struct Extremes::Extent {
     middle = 0.5 * (low + high);
     half = 0.5 * (high - low);
     const glm::dvec3 size = glm::abs(middle) + half;
-    // Coordinates are floats, exact in double; a reach is three products and two sums of them, and errs by less than
+    // Coordinates are floats, exact in double. A reach is three products and two sums of them, and errs by less than
     // 1e-15 of this sum.
     half += 1e-12 * (size.x + size.y + size.z);
   }
@@ -118,7 +118,7 @@ double Extremes::reach(int i, const Extent& extent) const {
 
 bool Extremes::may_change_by(const Box& box) const {
   const Extent extent(box);
-  // A few directions at a time, without branches, so that the compiler can take several in one instruction.
+  // A few directions at a time, without branches, so that the compiler can use vectors.
   constexpr int at_once = 12;
   static_assert(direction_count % at_once == 0);
   const auto [x, y, z] = std::tie(extent.middle.x, extent.middle.y, extent.middle.z);
@@ -138,7 +138,7 @@ bool Extremes::may_change_by(const Projected& point) const {
   for (int plane = 0; plane < 2; ++plane) {
     const double across = point.across[plane], towards = point.towards;
     const double* const reached = reach_ + plane * in_plane;
-    // As above: without branches.
+    // Without branches, so that the compiler can use vectors.
     double beyond[around];
     for (int k = 0; k < around; ++k) beyond[k] = across * cosine_[k] + towards * sine_[k] - reached[k];
     bool may = false;
@@ -149,8 +149,8 @@ bool Extremes::may_change_by(const Projected& point) const {
   return false;
 }
 
-/// What lies within the lines that the points kept do not pass, in each of the two planes: a polygon around its middle,
-/// by the slopes of the rays from there. A point that is in both reaches nowhere as far as the points that are kept.
+/// In each of the two planes, the polygon within the lines through the kept points, stored by the slopes of rays from
+/// its middle. A point within both polygons reaches less far than the kept points.
 class Extremes::Core {
  public:
   explicit Core(const Extremes& extremes) {
@@ -175,7 +175,7 @@ class Extremes::Core {
   [[nodiscard]] bool holds(const Projected& point) const {
     return polygons_[0].holds({point.across[0], point.towards}) && polygons_[1].holds({point.across[1], point.towards});
   }
-  /// Of all points whose coordinates differ from those of `middle` by at most `half`.
+  /// Whether the core holds all points whose coordinates differ from those of `middle` by at most `half`.
   [[nodiscard]] bool holds_all(const Projected& middle, const Projected& half) const {
     for (const double x : {-1.0, 1.0})
       for (const double towards : {-1.0, 1.0})
@@ -190,13 +190,13 @@ class Extremes::Core {
     static constexpr int slopes = 64;  ///< on each side of the rectangle around the middle
 
     glm::dvec2 middle{0}, half{0};
-    glm::dvec2 inverse_half{0};  ///< 0 where it is flat, or nothing is kept yet
-    /// By side and slope: what lies nearer to the middle than the inverse of this, in units of `half`, is in the
-    /// polygon. Along a side it is the greatest of linear functions, one for each line, and so convex: between two
-    /// slopes it is no greater than what lies straight between theirs.
+    glm::dvec2 inverse_half{0};  ///< 0 if the polygon is flat, or nothing is kept yet
+    /// By side and slope: points nearer to the middle than the inverse of this value, in units of `half`, are in the
+    /// polygon. Along a side the value is the greatest of linear functions, one for each line, and so convex: between
+    /// two slopes it is at most the linear interpolation of theirs.
     std::array<double, 4 * (slopes + 1)> inverse_radius;
 
-    /// Away goes what is farther than `distance` along `normal`, in units of `half`.
+    /// Cuts off everything farther than `distance` along `normal`, in units of `half`.
     void cut(const glm::dvec2& normal, double distance) {
       for (int side = 0; side < 4; ++side)
         for (int slope = 0; slope <= slopes; ++slope) {
@@ -215,14 +215,14 @@ class Extremes::Core {
       const int slope = std::min(int(at), slopes - 1), side = (is_steep ? 2 : 0) + (major < 0 ? 1 : 0);
       const double* const inverse = inverse_radius.data() + side * (slopes + 1) + slope;
       const double between = inverse[0] + (inverse[1] - inverse[0]) * (at - slope);
-      return size * between < 1 - 1e-6;  // by far more than rounding; false where lines are at no distance
+      return size * between < 1 - 1e-6;  // by far more than rounding; false if lines are at no distance
     }
   };
   Polygon polygons_[2];
 };
 
-/// Looks into the boxes that reach farthest in each direction, and then into all that are not within the core of what
-/// was found.
+/// Visits the boxes that reach farthest in each direction, and then all boxes that are not within the core of the
+/// points found.
 template <class Parts>
 class Extremes::Search {
  public:
@@ -241,7 +241,7 @@ class Extremes::Search {
     std::array<double, direction_count> most;
     std::array<std::size_t, direction_count> farthest{};
     most.fill(-kInfinity);
-    // Some of them are as good a beginning as all.
+    // A sample of the parts is as good a beginning as all.
     const std::size_t step = parts_.count() / 4096 + 1;
     for (std::size_t part = 0; part < parts_.count(); part += step) {
       const Box box = parts_.box(part);
@@ -267,7 +267,7 @@ class Extremes::Search {
     parts_.visit(part, [&](const glm::vec3& vertex) { offer(vertex); });
     if (!is_changed_ || missed_ < missed_at_most_) return;
     core_ = Core(extremes_);
-    missed_at_most_ *= 2;  // where much lies at the rim no core holds it
+    missed_at_most_ *= 2;  // if many points lie at the rim, no core holds them
     missed_ = 0;
     is_changed_ = false;
   }
@@ -287,13 +287,13 @@ class Extremes::Search {
   Core core_;
   std::vector<bool> is_done_;  ///< by part
   int missed_at_most_ = 1024;  ///< so many full tests cost more than another core
-  int missed_ = 0;             ///< points that the core did not hold, since it was made
-  bool is_changed_ = false;    ///< what is kept, since then
+  int missed_ = 0;             ///< points outside the core since it was made
+  bool is_changed_ = false;    ///< whether a kept point has changed since then
 };
 
 namespace {
 
-/// Neighbours in the file.
+/// Parts that are neighbours in the file.
 struct PlacedParts {
   const PlacedScene& placed;
 
@@ -305,7 +305,7 @@ struct PlacedParts {
   }
 };
 
-/// The same, but what is left out has no box.
+/// PlacedParts, in which left-out objects have empty boxes.
 struct KeptParts {
   const PlacedScene& placed;
   std::vector<bool> is_left_out;  ///< by box
@@ -324,7 +324,7 @@ struct KeptParts {
   }
 };
 
-/// Neighbours in space.
+/// Parts that are neighbours in space.
 struct ClusterParts {
   const ClusterSet& set;
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The few points of a model that decide how a view frames it.
 //
-// A picture's side touches a model at a point beyond which no other reaches in the direction in which the side moves.
-// There are 132 such directions at most, so as many points stand for a million: what frame() finds for them it would
-// find for all.
+// A side of the frustum touches a model at the point that reaches farthest in the direction in which the side moves.
+// There are at most 132 such directions, so as many points stand for a million: frame() finds the same view for them as
+// for all points.
 //
 //         . * .
-//      *  . . .  *       * kept, because it is the farthest in some direction
+//      *  . . .  *       * kept: the farthest in some direction
 //     . . . . . . .      . passed over
 //       *  . . *
 //           *
@@ -22,40 +22,41 @@
 
 namespace frontmost {
 
-/// The part of a frustum that a model is to fill, in axes in which opposite sides have opposite slopes: where the image
+/// The part of a frustum that a model is to fill, in axes in which opposite sides have opposite slopes. If the image
 /// lies off the viewing axis, x and y are sheared along it, so that both are 0 in the middle of the image.
 struct FilledFrustum {
   glm::dmat4 axes;            ///< right and up, sheared, and back
   glm::dvec2 middle, spread;  ///< slopes
 
-  /// Of the sides of a perspective, less `margin` of the picture on each.
+  /// The sides of a perspective frustum, less `margin` of the picture on each.
   FilledFrustum(const glm::dmat4& world_from_eye, const Projection& sides, double margin);
 };
 
-/// Keeps, of any number of points, those that lie farthest in some fixed directions: those in which the sides of a
-/// frustum move, exactly, and 64 around each of the two planes in which its sides can be drawn. The points kept depend
-/// on the set of points alone, not on their order, so a model seen in pieces is framed to the bit as one seen whole.
+/// Keeps, of any number of points, those that lie farthest in some fixed directions: the directions in which the sides
+/// of a frustum move, exactly, and 64 around each of the two planes in which its sides can be drawn. The kept points
+/// depend on the set of points alone, not on their order. So a model in pieces is framed to the bit like the whole
+/// model.
 class Extremes {
  public:
   explicit Extremes(const FilledFrustum& frustum);
 
-  /// Precondition: finite.
+  /// Precondition: the point is finite.
   void include(const glm::vec3& point);
-  /// All vertices of finite triangles. 1 to 3 ms for a million triangles: most are passed over by boxes, and where
-  /// these say nothing, as in files whose order is random, by a polygon.
+  /// All vertices of finite triangles. 1 to 3 ms for a million triangles: boxes exclude most of them, and a polygon
+  /// does if boxes do not help, as in files whose order is random.
   void include(const PlacedScene& placed);
-  /// The same without some objects, whose numbers ascend.
+  /// All vertices of finite triangles, without some objects, whose numbers ascend.
   void include(const PlacedScene& placed, std::span<const std::uint32_t> left_out);
-  /// The same, sooner: clusters are neighbours in space, whatever the order of the file.
+  /// All vertices of clusters. Sooner, as clusters are neighbours in space, whatever the order of the file.
   void include(const ClusterSet& set);
-  /// False when no point within the box would be kept.
+  /// False if no point within the box would be kept.
   [[nodiscard]] bool may_change_by(const Box& box) const;
-  /// Without repetition, in an order of their own.
+  /// The kept points without repetition, in a fixed order.
   [[nodiscard]] std::vector<glm::vec3> points() const;
 
  private:
   static constexpr int around = 64;            ///< directions in each plane
-  static constexpr int in_plane = around + 2;  ///< and those of the two sides
+  static constexpr int in_plane = around + 2;  ///< and the directions of the two sides
   static constexpr int direction_count = 2 * in_plane;
   struct Extent;
   struct Projected;
@@ -64,12 +65,12 @@ class Extremes {
   class Search;
 
   [[nodiscard]] Projected projected(const glm::dvec3& point) const;
-  /// How far a point reaches in a direction, in the one rounding that decides.
+  /// The reach of a point in a direction, in the one rounding that decides.
   [[nodiscard]] double reach(int direction, const Projected& point) const;
-  /// Not less than that of any point within a box.
+  /// An upper bound of the reach of all points within a box.
   [[nodiscard]] double reach(int direction, const Extent& extent) const;
   void offer(int direction, double reach, const glm::vec3& point);
-  /// False when the point would not be kept.
+  /// False if the point would not be kept.
   [[nodiscard]] bool may_change_by(const Projected& point) const;
 
   struct Kept {
@@ -81,7 +82,7 @@ class Extremes {
   glm::dvec2 spread_;
   double cosine_[around], sine_[around];
   double x_[direction_count], y_[direction_count], z_[direction_count];              ///< directions in world axes
-  double abs_x_[direction_count], abs_y_[direction_count], abs_z_[direction_count];  ///< without signs
+  double abs_x_[direction_count], abs_y_[direction_count], abs_z_[direction_count];  ///< absolute values
   double reach_[direction_count];
   Kept kept_[direction_count];
 };

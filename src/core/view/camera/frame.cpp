@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views that show a whole model, or all of it that most of its interest lies in.
+// Views that show a whole model, or the part of it that holds most of its interest.
 //
-//           eye             A plane across the picture, seen from above: each side of the frustum is a line.
-//          / | \            Moved until it touches the model, the left and the right one meet where the eye must stand
-//         /  |  \           to see it exactly.
+//           eye             A plane across the picture, seen from above: each side of the frustum is a line. If the
+//          / | \            left and the right line are moved until they touch the model, they meet where the eye
+//         /  |  \           must stand to see it exactly.
 //        / . * . \    (the points are the model)
 //       *  . . .  *
 //
-// The upper and the lower side ask for another place. The eye takes the one that is farther back, and is then moved
+// The upper and the lower side give another place. The eye takes the place that is farther back, and is then moved
 // across until the model is in the middle of the looser direction, too.
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 namespace frontmost {
 namespace {
 
-/// The model's own axes: up as its format has it; front is what a `front` view looks at.
+/// The model's own axes: up as its format defines it; a `front` view looks at front.
 struct ModelAxes {
   glm::dvec3 right, up, front;  ///< right-handed; front points from the model to the viewer
 };
@@ -59,13 +59,13 @@ std::array<glm::dvec3, 8> corners_of(const Box& box) {
   return corners;
 }
 
-/// What is framed where a scene has nothing to show.
+/// The box that is framed if a scene has nothing to show.
 Box unit_box() { return {glm::vec3(-0.5f), glm::vec3(0.5f)}; }
 
-/// A frustum moved so that it just holds every point it is shown. With p = (x, y, towards) along its axes, a point is
-/// left of the right side when x <= spread * (eye_towards - towards) + eye_x, so each side asks for one sum of eye
-/// coordinates to be at least the greatest of the points'. Two opposite sides give the eye's place across and how far
-/// back it must stand; or only the latter, where a target in the middle of the picture gives the place across.
+/// A frustum moved so that it just holds all included points. With p = (x, y, towards) along its axes, a point is left
+/// of the right side if x <= spread * (eye_towards - towards) + eye_x. So each side requires one sum of eye coordinates
+/// to be at least the greatest of the points'. Two opposite sides give the eye's place across and how far back it must
+/// stand; only the latter, if a target in the middle of the picture gives the place across.
 class Fit {
  public:
   Fit(const FilledFrustum& frustum, const std::optional<glm::dvec3>& target)
@@ -83,23 +83,23 @@ class Fit {
     y_.include(at.y, at.z);
     nearest_ = std::max(nearest_, at.z);
   }
-  /// Where a perspective eye stands, at least `closest` before the nearest point.
+  /// The place of a perspective eye, at least `closest` before the nearest point.
   [[nodiscard]] glm::dvec3 eye(double closest) const {
     return in_world(x_.across(), y_.across(), std::max({x_.back(), y_.back(), nearest_ + closest}));
   }
-  /// Where the eye of a parallel projection stands, `before` the middle of `box` and the target.
+  /// The place of the eye of a parallel projection, `before` the middle of `box` and the target.
   [[nodiscard]] glm::dvec3 parallel_eye(const Box& box, double before) const {
     const double middle = along_axes(0.5 * (glm::dvec3(box.low) + glm::dvec3(box.high))).z;
     return in_world(x_.middle(), y_.middle(), (x_.centre ? std::max(middle, nearest_) : middle) + before);
   }
-  /// From the middle of its picture to the farthest points.
+  /// Distance from the middle of the picture to the farthest points.
   [[nodiscard]] glm::dvec2 half_extent() const { return {x_.half_extent(), y_.half_extent()}; }
 
  private:
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   struct Direction {
     double spread;
-    std::optional<double> centre = std::nullopt;   // of the picture, where it is given
+    std::optional<double> centre = std::nullopt;   // of the picture, if it is given
     double plus = -kInfinity, minus = -kInfinity;  // of +-x / spread + towards
     double low = kInfinity, high = -kInfinity;
 
@@ -123,7 +123,7 @@ class Fit {
     const glm::dmat4& axes = frustum_.axes;
     return {glm::dot(p, glm::dvec3(axes[0])), glm::dot(p, glm::dvec3(axes[1])), glm::dot(p, glm::dvec3(axes[2]))};
   }
-  /// The inverse: along axes that are not sheared.
+  /// The inverse of along_axes(): from sheared axes to the world.
   [[nodiscard]] glm::dvec3 in_world(double x, double y, double towards) const {
     const glm::dvec3 back(frustum_.axes[2]);
     const glm::dvec2& middle = frustum_.middle;
@@ -137,7 +137,7 @@ class Fit {
   double nearest_ = -kInfinity;
 };
 
-/// The extremes of a model in the picture of an eye, as slopes from the picture's middle, and how far away they are.
+/// The extremes of a model in the picture of an eye, as slopes from the picture's middle, and their distances.
 class Spread {
  public:
   Spread(const glm::dvec3& eye, const glm::dvec3& across, const glm::dvec3& back)
@@ -151,7 +151,8 @@ class Spread {
   }
   /// How far the eye must move for the two extremes to lie equally far from the picture's middle.
   [[nodiscard]] double to_centre() const {
-    // Moved by m, a point at distance w has slope s - m / w: the m for which the two new slopes add up to 0.
+    // After a move by m, a point at distance w has slope s - m / w: the result is the m for which the new slopes add up
+    // to 0.
     return (low_.slope + high_.slope) / (1 / low_.distance + 1 / high_.distance);
   }
 
@@ -163,10 +164,10 @@ class Spread {
   Extreme low_{std::numeric_limits<double>::infinity(), 1}, high_{-std::numeric_limits<double>::infinity(), 1};
 };
 
-/// Moves the eye across until the model is in the middle of the picture. Only the looser direction moves: the tight
+/// Moves the eye across until the model is in the middle of the picture. Only the looser direction moves, as the tight
 /// one is in the middle already.
 void centre(glm::dmat4& pose, const FilledFrustum& frustum, const std::vector<glm::vec3>& points) {
-  constexpr int kSteps = 3;  // each leaves the change of the extremes' distances, a small part
+  constexpr int kSteps = 3;  // each step leaves a small part: the change of the extremes' distances
   for (int step = 0; step < kSteps; ++step)
     for (int axis = 0; axis < 2; ++axis) {
       Spread spread(glm::dvec3(pose[3]), glm::dvec3(frustum.axes[axis]), glm::dvec3(frustum.axes[2]));
@@ -192,8 +193,8 @@ Subject subject_for(const Surfaces& surfaces, FramedObjects objects) {
   return subject;
 }
 
-/// Planes around everything. But the subject is not cut off by a near plane that what is left out has pushed away, nor
-/// hidden by what of that lies behind the eye of a parallel projection.
+/// Clip planes around everything. But left-out objects must not push the near plane into the subject, nor hide the
+/// subject from behind the eye of a parallel projection.
 ClipDistances clip_around(const Surfaces& surfaces, const Subject& subject, const glm::dmat4& pose, bool orthographic) {
   ClipDistances clip = fit_clip(surfaces.bounds(), pose, orthographic);
   if (subject.left_out.empty()) return clip;
@@ -226,13 +227,13 @@ ClipDistances fit_clip(const Box& bounds, const glm::dmat4& world_from_eye, bool
     farthest = std::max(farthest, distance);
     size = std::max(size, glm::length(corner - eye));
   }
-  // A flat box seen face on has no extent in depth: what is spared is then a part of its distance.
+  // A flat box seen face on has no depth, so the margin is then a part of its distance.
   const double spare = std::max({0.01 * (farthest - nearest), 1e-6 * size, 1e-30});
   ClipDistances clip{nearest - spare, farthest + spare};
   if (orthographic) return clip;
   if (!(clip.far > 0)) clip.far = std::max(size, 1e-30);  // all behind the eye: any valid planes will do
-  // An eye within the model would have a near plane at 0, and keys (near / distance) that are all 0. Four digits of
-  // reach cost floats nothing: keys near 0 are as finely spaced.
+  // An eye within the model would give a near plane at 0, and keys (near / distance) that are all 0. Four digits of
+  // range cost floats nothing: keys near 0 are as finely spaced.
   clip.near = std::max(clip.near, 1e-4 * clip.far);
   if (!(clip.near < clip.far)) clip.near = 0.5 * clip.far;
   return clip;
@@ -256,13 +257,13 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
   if (points.empty())
     for (const glm::dvec3& corner : corners_of(box)) fit.include(corner);
   const glm::dvec3 low(box.low), high(box.high);
-  // A single point far from the origin has to be stood back from by more than rounding.
+  // The distance to a single point far from the origin must exceed rounding.
   const double diagonal = std::max({glm::length(high - low), 1e-5 * glm::length(high), 1e-30});
   if (options.orthographic) {
-    // Among what is left out, as far before the subject as an eye in perspective stands, more or less.
+    // Among left-out objects, the eye stands about as far before the subject as an eye in perspective.
     pose[3] = glm::dvec4(fit.parallel_eye(box, (subject.left_out.empty() ? 1 : 2) * diagonal), 1.0);
   } else {
-    // Some distance from what is nearest, or a model seen along its own plane would have the eye in it.
+    // The eye keeps a distance from the nearest point, as it would lie in a model that is seen along its own plane.
     pose[3] = glm::dvec4(fit.eye(1e-3 * diagonal), 1.0);
     if (!points.empty() && !options.target) centre(pose, frustum, points);
   }
@@ -270,7 +271,7 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
   const ClipDistances clip = clip_around(surfaces, subject, pose, options.orthographic);
   if (options.orthographic) {
     const glm::dvec2 extent = fit.half_extent();
-    // A model of no extent across, a point or a line seen from its end, still needs a picture with sides.
+    // A model without extent across (a point, or a line seen from its end) still needs a picture with sides.
     const double half = std::max({extent.y, extent.x / aspect, 1e-3 * diagonal}) / (1 - 2 * options.margin);
     projection = make_orthographic(-half * aspect, half * aspect, -half, half, clip);
   } else {
@@ -289,7 +290,7 @@ View frame(const Box& bounds, Axis up, int width, int height, const FrameOptions
     for (const glm::dvec3& corner : corners_of(bounds)) {
       const auto number = std::uint32_t(corners.positions.size());
       corners.positions.emplace_back(corner);
-      corners.triangles.emplace_back(number);  // without area: nothing but its corner counts
+      corners.triangles.emplace_back(number);  // without area: only its vertex counts
     }
     add(scene, std::move(corners));
   }

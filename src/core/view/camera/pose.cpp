@@ -8,9 +8,9 @@
 //       /                           |
 //      z (backward)                 y
 //
-//    OpenGL, and this house         OpenCV
+//    OpenGL, and this library       OpenCV
 //
-// They differ by the signs of y and z, and each may be told from the camera to the world or the other way round.
+// They differ by the signs of y and z, and each may be given from camera to world or from world to camera.
 
 #include <cmath>
 
@@ -24,7 +24,7 @@ const glm::dmat4 kFlipYZ(1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1);
 // Eye space from a robot's axes: x is ahead (-z of the eye), y left (-x), z up (y).
 const glm::dmat4 kEyeFromRobot(0, 0, -1, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1);
 
-/// The transpose undoes a rotation exactly where a general inverse would round once more.
+/// The transpose inverts a rotation exactly; a general inverse would round once more.
 glm::dmat4 inverse_rigid(const glm::dmat4& pose) {
   const glm::dmat3 rotation = glm::transpose(glm::dmat3(pose));
   glm::dmat4 inverse(rotation);
@@ -69,8 +69,8 @@ glm::dmat4 look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::d
   const double up_length = glm::length(up);
   const glm::dvec3 wanted = is_finite(up) && up_length > 0 ? up / up_length : glm::dvec3(0, 1, 0);
   glm::dvec3 right = glm::cross(wanted, back);
-  // Looking along "up", the roll is undefined: take the axis farthest from the viewing direction instead.
-  // Sine of the angle between both. Below that the roll would be made of rounding errors.
+  // The roll is undefined along "up", so the axis farthest from the viewing direction replaces "up". The limit is the
+  // sine of the angle between both: below it the roll would consist of rounding errors.
   if (glm::length(right) < 1e-9) {
     const glm::dvec3 other = std::abs(back.z) < 0.9 ? glm::dvec3(0, 0, back.y > 0 ? -1 : 1) : glm::dvec3(0, 1, 0);
     right = glm::cross(other, back);
@@ -81,7 +81,7 @@ glm::dmat4 look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::d
 }
 
 glm::dmat4 world_from_eye(const glm::dmat4& pose, PoseConvention convention) {
-  // A scale in a pose would change what distances mean without anybody noticing; a mirror would turn every face round.
+  // A scale in a pose would silently change the meaning of distances; a mirror would reverse every face.
   check_rigid(pose);
   const glm::dmat4 world_from_camera = is_world_to_camera(convention) ? inverse_rigid(pose) : pose;
   if (is_robot(convention)) return world_from_camera * glm::transpose(kEyeFromRobot);

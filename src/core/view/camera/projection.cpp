@@ -41,10 +41,10 @@ void check_size(int width, int height) {
     throw Error(ErrorCode::bad_argument, "resolution", "width and height must be at least 1");
 }
 
-/// What is added to image coordinates to count them from the top left corner.
+/// The offset that makes image coordinates count from the top left corner.
 double pixel_shift(PixelRule rule) { return rule == PixelRule::centre_at_integer ? 0.5 : 0.0; }
 
-/// Coefficients of the depth row, see the head of the file.
+/// Coefficients of the depth row (see the head of the file).
 struct DepthRow {
   double a, b;
 };
@@ -144,7 +144,7 @@ double distance_of_depth(const Projection& projection, const DepthConvention& de
   const DepthRow row = depth_row(projection, depth);
   if (projection.orthographic) return (ndc_depth - row.b) / row.a;
   const double denominator = ndc_depth + row.a;
-  // What is infinitely far: the far plane's own depth where that is infinite, else one beyond it.
+  // The depth is infinitely far: the far plane's own depth if the far plane is infinite, else a depth beyond it.
   if (denominator == 0) return std::numeric_limits<double>::infinity();
   return row.b / denominator;
 }

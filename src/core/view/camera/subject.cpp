@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a picture of a scene is about, by objects.
+// The subject of a picture of a scene, by objects.
 //
-//   . .:. .   . . . . gap . . . .                         Objects by how far they reach from the middle. Those behind
-//   |subject|                    | ground |   | sky |       the first gap are left out, where little interest lies
-//   0       r                    at least 8 r     reach ->  beyond it.
+//   . .:. .   . . . . gap . . . .                         Objects by how far they reach from the middle. Objects behind
+//   |subject|                    | ground |   | sky |       the first gap are left out, if little interest lies beyond
+//   0       r                    at least 8 r     reach ->  it.
 //
 // Interest is the fourth root of the number of triangles: many plain objects outweigh one fine mesh, and a fine mesh a
-// few plain ones. By the number itself, a sphere around a village would be what the picture is about.
+// few plain ones. With the number itself, a sphere around a village would be the subject.
 //
-// What has more than half of the interest holds the weighted median on each axis. So the middle lies among the objects
-// that matter, however far away the others are, and distance from there tells these apart. Looking at the size of all
-// objects together, or at their mean, would ask first of all how far the lost ones are.
+// An object with more than half of the interest holds the weighted median on each axis. So the middle lies among the
+// objects that matter, however far away the others are, and distance from the middle separates them. The size of all
+// objects together, or their mean, would mostly depend on how far the lost objects are.
 
 #include <algorithm>
 #include <array>
@@ -33,7 +33,7 @@ struct Weighted {
   double place, weight;
 };
 
-/// The least place up to which lies at least half of the weight. What cannot hold it is halved away: O(places).
+/// The least place up to which at least half of the weight lies. Halves that cannot hold it are dropped: O(places).
 double median(std::vector<Weighted> places) {
   double half = 0, below = 0;
   for (const Weighted& one : places) half += one.weight / 2;
@@ -53,7 +53,7 @@ double median(std::vector<Weighted> places) {
   return begin->place;
 }
 
-/// Of many objects some say as well where the middle is.
+/// The middle of the objects; a sample stands for very many objects.
 glm::dvec3 middle_of(const Surfaces& surfaces) {
   constexpr std::size_t enough = 4096;
   const Scene& scene = surfaces.scene();
@@ -78,8 +78,8 @@ struct Octave {
   double nearest = std::numeric_limits<double>::infinity(), farthest = 0, interest = 0;
 };
 
-/// By the exponents of what distances of floats can be, in order. A gap lies between octaves, so nothing has to be
-/// sorted.
+/// Octaves by the exponents of all possible distances of floats, in order. A gap lies between octaves, so nothing needs
+/// to be sorted.
 class Octaves {
  public:
   void include(double reach, double interest) {
@@ -89,7 +89,7 @@ class Octaves {
     octave.interest += interest;
     whole_ += interest;
   }
-  /// How far the subject reaches; infinite where it is all.
+  /// How far the subject reaches; infinite if the subject is everything.
   [[nodiscard]] double reach_of_subject() const {
     double within = 0, reach = 0;
     for (const Octave& octave : octaves_) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a view may be: the patterns of its samples, and the limits within which every method can draw it.
+// The limits of a view: the patterns of its samples, and the ranges within which every method can draw it.
 //
-// Everything is checked here, so that methods have no error paths. The last check makes the transform that vertices
-// will go through and looks whether its floats are finite: a view may be right in doubles, and still be out of their
-// range.
+// Everything is checked here, so that methods have no error paths. The last check makes the transform of vertices and
+// tests whether its floats are finite: a view may be valid in doubles, and still exceed the range of floats.
 #include "frontmost/view.h"
 
 #include <algorithm>
@@ -44,7 +43,8 @@ constexpr std::array<glm::ivec2, count> in_fixed_point(const std::array<glm::ive
   return offsets;
 }
 
-/// Too large is a limit of the house, too small a mistake of the caller; messages say both ends.
+/// A value that is too large is a limit of the library, a value that is too small an error of the caller; messages name
+/// both ends.
 void check_range(double value, double low, double high, const char* what) {
   if (!(value >= low && value <= high))
     throw Error(value > high ? ErrorCode::limit_exceeded : ErrorCode::bad_argument, std::string(what),
@@ -56,7 +56,7 @@ bool all_finite(const std::array<float, count>& values) {
   return std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
 }
 
-/// Vertices are transformed in floats: what the view makes of itself must be within their range.
+/// Vertices are transformed in floats, so the view's transform must be within their range.
 void check_float_range(const View& view) {
   const ScreenTransform t(view);
   const auto refuse = [](const char* place, const char* reason) {
@@ -93,16 +93,17 @@ void validate(const View& view) {
   check_range(view.width, 1, kLargest, "width");
   check_range(view.height, 1, kLargest, "height");
   (void)sample_offsets(view.samples);
-  // 2^28 ids and keys are 2 GiB: what a picture of the greatest size takes at one sample.
+  // 2^28 ids and keys are 2 GiB: the size of the greatest picture at one sample.
   if (view.sample_count() > most_samples)
     throw Error(ErrorCode::limit_exceeded, "samples",
                 "at most " + std::to_string(most_samples) + " in all pixels together");
-  // Made anew by the functions that check their arguments.
+  // These checks are made by constructing the projection again.
   const Projection& p = view.projection;
   if (p.orthographic) {
     (void)make_orthographic(p.left, p.right, p.bottom, p.top, p.clip);
   } else {
-    // As they are, although it would take them at the near plane: multiplied by a wrong one, the sides would be blamed.
+    // make_frustum() takes sides at the near plane. These sides, at distance 1, are passed unscaled: scaled by a wrong
+    // near plane, they would be blamed for it.
     (void)make_frustum(p.left, p.right, p.bottom, p.top, p.clip);
   }
   (void)world_from_eye(view.world_from_eye, PoseConvention::opengl_camera_to_world);

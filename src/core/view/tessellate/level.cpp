@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bounds on how far triangles are from what they stand for, and the coarsest grids that keep within them.
+// Bounds on the distance of triangles from the curved surface, and the coarsest grids that keep within them.
 //
 // D. Filip, R. Magedson, R. Markot. Surface Algorithms Using Bounds on Derivatives. 1986 (patches).
 //
 //   how far a displacement shows:   pixels  ->  world units, by the distance from the eye (ScreenTolerance)
 //   how far a grid is off:          second derivatives of a patch, over 8 u^2, 4 u v and 8 v^2 (PatchBending);
-//                                   of a sphere the height of the cap over a cell of its globe (globe_error)
+//                                   for a sphere the height of the cap over a cell of its globe (globe_error)
 //
-// A level is the first at which the second is not above the first. Both are bounds from above, never estimates, because
-// a drawing may be asked to be right to so many pixels.
+// A level is the first at which the error of the grid does not exceed the tolerated displacement. Both are upper
+// bounds, never estimates, because a drawing may have to be right to so many pixels.
 
 #include "view/tessellate/level.h"
 
@@ -22,8 +22,8 @@ namespace {
 
 constexpr int kFewestRings = 4;
 
-/// The greatest factor by which a matrix can lengthen a vector, from above (Gershgorin's circles about M^T M); exact
-/// for rotations with a scale.
+/// An upper bound of the factor by which a matrix can lengthen a vector (Gershgorin's circles about M^T M); exact for
+/// rotations with a scale.
 double greatest_stretch(const glm::dmat3& m) {
   const glm::dmat3 squares = glm::transpose(m) * m;
   double most = 0;
@@ -32,11 +32,11 @@ double greatest_stretch(const glm::dmat3& m) {
   return std::sqrt(most);
 }
 
-/// By doubling, then by halves: globe_error() looks at all rings, and falls with their number.
+/// Doubles, then bisects: globe_error() reads all rings, and falls with their number.
 int rings_within(double tolerance) {
   int rings = kFewestRings;
   while (rings < finest_level && globe_error(rings) > tolerance) rings *= 2;
-  // Between half of that and it.
+  // Bisects between half of `rings` and `rings`.
   int few = rings / 2, many = rings;
   while (rings > kFewestRings && many - few > 1) {
     const int middle = (few + many) / 2;
@@ -54,8 +54,8 @@ double MeshLevel::triangle_count() const {
   return count;
 }
 
-// Moving a point at distance w by e moves its image, at tangents (x, y) from the axis, by at most
-// focal * e * sqrt(1 + x^2 + y^2) / w: image = focal * (X - x W) / w for a displacement (X, W).
+// Moving a point at distance w by e moves its image, at tangents (x, y) from the axis, by at most focal * e * sqrt(1 +
+// x^2 + y^2) / w: image = focal * (X - x W) / w for a displacement (X, W).
 ScreenTolerance::ScreenTolerance(const View& view, double pixels)
     : eye_(view.eye()), forward_(view.forward()), near_(view.projection.clip.near) {
   const Projection& p = view.projection;
@@ -106,13 +106,13 @@ double PatchBending::error(const PatchLevel& level) const {
 
 PatchLevel PatchBending::level_within(double tolerance) const {
   PatchLevel level;
-  // A control point that is infinite or no number: tessellate() leaves such patches out.
+  // A control point is infinite or NaN: tessellate() leaves such patches out.
   if (!std::isfinite(error(level))) return level;  // never seen
   while (error(level) > tolerance && (level.u < finest_level || level.v < finest_level)) {
-    // The direction whose share of the error is greater is halved: it quarters that share, the other keeps its
-    // triangles.
+    // The direction with the greater share of the error is halved. This quarters its share, and keeps the triangles of
+    // the other direction.
     const double by_u = uu_ / level.u / level.u, by_v = vv_ / level.v / level.v;
-    // Where only the twist is left, the longer cells are halved.
+    // If only the twist remains, the longer cells are halved.
     const bool is_u = by_u != by_v ? by_u > by_v : level.u <= level.v;
     int& steps = (is_u && level.u < finest_level) || level.v >= finest_level ? level.u : level.v;
     steps *= 2;
@@ -120,14 +120,14 @@ PatchLevel PatchBending::level_within(double tolerance) const {
   return level;
 }
 
-// The four corners of a cell lie on a circle, whose radius R is that about a triangle of a side, a diagonal and a
-// leg; the plane through them is sqrt(1 - R^2) from the centre, and no point of the cell is nearer to it.
+// The four corners of a cell lie on a circle, whose radius R is that about a triangle of a side, a diagonal and a leg.
+// The plane through them is sqrt(1 - R^2) from the centre, and no point of the cell is nearer to it.
 double globe_error(int rings) {
   const double half_step = turn(1, 4 * std::int64_t(rings)).y;
   const double leg = 2 * half_step;
   double most = 0;
   for (int i = 0; i < rings; ++i) {
-    // The two parallels of a ring: chords of a column's width, one of them a point at a pole.
+    // The two parallels of a ring are chords of a column's width; one of them is a point at a pole.
     const double a = 2 * turn(i, 2 * rings).y * half_step, b = 2 * turn(i + 1, 2 * rings).y * half_step;
     const double diagonal = std::sqrt(leg * leg + a * b), height = std::sqrt(leg * leg - (a - b) * (a - b) / 4);
     const double radius = leg * diagonal / (2 * height);

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// How finely curved primitives are to be cut, and the triangles of a mesh of patches, without gaps between patches of
-// different fineness.
+// The fineness of curved primitives, and the triangles of a mesh of patches, without gaps between patches of different
+// fineness.
 //
 //   a cell of a patch's grid beside a neighbour that is twice as fine: a fan about the cell's middle joins all points
 //
 //     +---------------+
-//     | \           / |         Every edge has the points of the finest patch that has it, at fractions of powers of
-//     |   \       /   |         two, so that both sides compute the same ones to the bit. Cells without finer
-//     |     \   /     |         neighbours are two triangles.
+//     | \           / |         Every edge has the points of its finest patch, at fractions of powers of two, so that
+//     |   \       /   |         both sides compute the same points to the bit. Cells without finer neighbours are two
+//     |     \   /     |         triangles.
 //     |       +       |
 //     |     / | \     |
 //     |   /   |   \   |
 //     | /     |     \ |
-//     +-------+-------+  here the neighbour has a point more
+//     +-------+-------+  here the neighbour has one more point
 #pragma once
 
 #include <compare>
@@ -25,8 +25,9 @@
 
 namespace frontmost {
 
-/// A close upper bound of how many triangles tessellate() would make for the curved meshes, without making any; may be
-/// beyond its limit, and infinite. O(size of the scene). \throws Error as tessellate() does, but for the limit.
+/// A close upper bound of the number of triangles that tessellate() would make for the curved meshes, without making
+/// any. May exceed its limit, and be infinite. O(size of the scene). \throws Error as tessellate() does, except for the
+/// limit.
 [[nodiscard]] double tessellated_count(const Scene& scene, const View& view, double pixels);
 
 /// Steps of a grid over a patch.
@@ -35,26 +36,26 @@ struct PatchLevel {
   friend auto operator<=>(const PatchLevel&, const PatchLevel&) = default;
 };
 
-/// Of one mesh at one place.
+/// The fineness of one mesh at one place.
 struct MeshLevel {
-  std::vector<int> rings;  ///< of each sphere, from pole to pole
+  std::vector<int> rings;  ///< by sphere, rings from pole to pole
   std::vector<PatchLevel> patches;
 
   friend bool operator<(const MeshLevel& a, const MeshLevel& b) {
     return std::tie(a.rings, a.patches) < std::tie(b.rings, b.patches);
   }
-  /// An estimate from above, without what finer neighbours add.
+  /// An upper estimate, without the triangles that finer neighbours add.
   [[nodiscard]] double triangle_count() const;
 };
 
-/// How far a point may be displaced in a view: in world units, by its distance along the viewing axis.
+/// The displacement of a point that a view tolerates: in world units, by distance along the viewing axis.
 class ScreenTolerance {
  public:
-  /// Precondition: a valid view, pixels > 0.
+  /// Precondition: the view is valid, and pixels > 0.
   ScreenTolerance(const View& view, double pixels);
 
-  /// What a displacement may be that moves no point of the hull of `points` (world space) by more. Infinity where all
-  /// lie before the near plane.
+  /// The greatest displacement that moves no point of the hull of `points` (world space) by more than the tolerance.
+  /// Infinity if all points lie before the near plane.
   [[nodiscard]] double of(std::span<const glm::dvec3> points) const;
   [[nodiscard]] double of_ball(const glm::dvec3& centre, double radius) const;
 
@@ -67,8 +68,8 @@ class ScreenTolerance {
   double per_distance_ = 0, anywhere_ = 0;  ///< tolerance = anywhere + distance * per_distance
 };
 
-/// The greatest distance between a patch and its grid of triangles, from above: Muu / 8 u^2 + Muv / 4 uv + Mvv / 8 v^2
-/// with the greatest second derivatives, for any triangles whose corners lie on a cell of the grid.
+/// An upper bound of the distance between a patch and its grid of triangles: Muu / 8 u^2 + Muv / 4 uv + Mvv / 8 v^2
+/// with the greatest second derivatives, for any triangles whose vertices lie on a cell of the grid.
 class PatchBending {
  public:
   explicit PatchBending(std::span<const glm::dvec3, 16> points);
@@ -82,19 +83,19 @@ class PatchBending {
 /// The greatest distance between the unit sphere and a globe of so many rings and twice as many columns.
 [[nodiscard]] double globe_error(int rings);
 
-/// Finest grids that are made; what would need finer ones gets these, and then has too many triangles as a whole.
+/// The finest grids that are made. A primitive that would need a finer grid gets this one, and then has too many
+/// triangles in total.
 inline constexpr int finest_level = 1 << 13;
 
 [[nodiscard]] MeshLevel level_of(const Mesh& mesh, const glm::dmat4& world_from_mesh, const ScreenTolerance& tolerance);
 
-/// Whether there is anything to cut.
+/// Whether the patch can be tessellated: all its points are finite.
 [[nodiscard]] bool is_finite(const BezierPatch& patch);
 
 /// Steps along the four edges of a patch, each at least those of its grid: u = 0, u = 1 (both along v), v = 0, v = 1.
 using EdgeLevels = std::array<int, 4>;
 
-/// Each edge is as fine as the finest patch that has it.
-/// Those of patches that are not finite are anything.
+/// Edge levels such that each edge is as fine as its finest patch. Levels of patches that are not finite are arbitrary.
 [[nodiscard]] std::vector<EdgeLevels> edge_levels(std::span<const BezierPatch> patches,
                                                   std::span<const PatchLevel> levels);
 

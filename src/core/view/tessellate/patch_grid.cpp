@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A grid over a patch whose rims are as fine as the neighbours need: rows of quads inside, fans of triangles along rims
-// that are finer.
+// A grid over a patch whose rims are as fine as the neighbours need: rows of quads inside, fans of triangles along
+// finer rims.
 
 #include <algorithm>
 #include <cmath>
@@ -20,14 +20,14 @@ bool comes_before(const glm::dvec3& a, const glm::dvec3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
-/// Edges are the same where all four control points are, to the bit; rounding differently is being apart.
+/// Edges are equal if all four control points are, to the bit; points that differ by a rounding are apart.
 struct EdgeOrder {
   bool operator()(const EdgePoints& a, const EdgePoints& b) const {
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), comes_before);
   }
 };
 
-/// The control points of an edge, from whichever end comes first.
+/// The control points of an edge, from the end that comes first in a fixed order.
 EdgePoints edge_of(const BezierPatch& patch, std::size_t edge) {
   constexpr std::size_t first[4] = {0, 12, 0, 3}, step[4] = {1, 1, 4, 4};
   EdgePoints points, reversed;
@@ -36,7 +36,7 @@ EdgePoints edge_of(const BezierPatch& patch, std::size_t edge) {
   return EdgeOrder()(reversed, points) ? reversed : points;
 }
 
-/// A place on a patch in steps of a lattice that has all points of the grid and of its edges, and the middles of cells.
+/// A place on a patch, in steps of a lattice that has all points of the grid and its edges, and the middles of cells.
 struct LatticePlace {
   int u, v;
   friend auto operator<=>(const LatticePlace&, const LatticePlace&) = default;
@@ -62,14 +62,14 @@ class GridBuilder {
     const int step_u = lattice_.u / level_.u, step_v = lattice_.v / level_.v;
     const int u0 = i * step_u, u1 = u0 + step_u, v0 = j * step_v, v1 = v0 + step_v;
     const bool last_u = i + 1 == level_.u, last_v = j + 1 == level_.v;
-    // All around, so that the outer side is counter-clockwise; each side without its end.
+    // All around, counter-clockwise seen from the outer side; each side without its end.
     around_.clear();
     walk({u0, v0}, {u0, v1}, i == 0 ? lattice_.v / edges_[0] : step_v);
     walk({u0, v1}, {u1, v1}, last_v ? lattice_.u / edges_[3] : step_u);
     walk({u1, v1}, {u1, v0}, last_u ? lattice_.v / edges_[1] : step_v);
     walk({u1, v0}, {u0, v0}, j == 0 ? lattice_.u / edges_[2] : step_u);
-    // Nothing finer beside it: two triangles. Otherwise a fan about the middle, which any number of rim points can
-    // join.
+    // Without finer neighbours a cell is two triangles. Otherwise it is a fan about the middle, which joins any number
+    // of rim points.
     if (around_.size() == 4) {
       add_triangle(around_[0], around_[1], around_[2]);
       add_triangle(around_[0], around_[2], around_[3]);
@@ -85,13 +85,13 @@ class GridBuilder {
     for (; from != to; from.u += by.u * step, from.v += by.v * step) around_.push_back(vertex(from));
   }
 
-  /// Fractions of powers of two: the same point from both sides of an edge, however fine their lattices are.
+  /// Fractions of powers of two: both sides of an edge get the same point, however fine their lattices are.
   std::uint32_t vertex(const LatticePlace& place) {
     const auto [entry, is_new] = numbers_.try_emplace(place, std::uint32_t(mesh_.positions.size()));
     if (!is_new) return entry->second;
     const PatchParameter u = fraction(place.u, lattice_.u), v = fraction(place.v, lattice_.v);
     const PatchPoint point = evaluate(patch_, u, v);
-    mesh_.positions.push_back(glm::vec3(point.position) + 0.0f);  // no negative zeros
+    mesh_.positions.push_back(glm::vec3(point.position) + 0.0f);  // + 0.0f avoids negative zeros
     mesh_.normals.values.emplace_back(point.normal);
     mesh_.texcoords.values.emplace_back(patch_.texture_low + patch_.texture_size * glm::dvec2(v.value, u.value));
     return entry->second;
@@ -124,7 +124,7 @@ std::vector<EdgeLevels> edge_levels(std::span<const BezierPatch> patches, std::s
   std::map<EdgePoints, int, EdgeOrder> finest;
   const auto own = [&](std::size_t patch, std::size_t edge) { return edge < 2 ? levels[patch].v : levels[patch].u; };
   for (std::size_t p = 0; p < patches.size(); ++p)
-    for (std::size_t e = 0; e < 4 && is_finite(patches[p]); ++e) {  // what is no number has no order
+    for (std::size_t e = 0; e < 4 && is_finite(patches[p]); ++e) {  // NaN has no order
       int& level = finest[edge_of(patches[p], e)];
       level = std::max(level, own(p, e));
     }

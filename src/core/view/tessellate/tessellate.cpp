@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Curved meshes as triangles fine enough for one view: first how fine, so that limits are known, then the triangles.
+// Curved meshes as triangles that are fine enough for one view: first the levels, so that limits are known, then
+// triangles.
 //
 //   scene, view --Plan--> a level for every instance of a curved mesh --> one mesh for every pair of mesh and level
-//                         count of triangles, or an error                 instances point to theirs
+//                         count of triangles, or an error                 instances refer to theirs
 //
-// A model may place a sphere a thousand times at the same size; instances that need the same fineness share their mesh.
+// A model may place a sphere a thousand times at the same size; instances that need the same fineness share a mesh.
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +22,7 @@
 namespace frontmost {
 namespace {
 
-/// Some 3 GiB of mesh. A double, as what is asked for may be beyond all integers.
+/// Some 3 GiB of mesh. A double, as the requested number may exceed all integers.
 constexpr double kMostTriangles = 1 << 26;
 
 void append_globe(const Sphere& sphere, int rings, std::uint32_t face, Mesh& mesh) {
@@ -36,7 +37,7 @@ void append_globe(const Sphere& sphere, int rings, std::uint32_t face, Mesh& mes
   mesh.face_ids.resize(mesh.triangles.size(), face);
 }
 
-/// What is never seen has no triangles.
+/// The triangles of a mesh at one level. Primitives that are never seen have no triangles.
 Mesh make_triangles(const Mesh& curved, const MeshLevel& level) {
   Mesh mesh;
   mesh.name = curved.name;
@@ -50,7 +51,7 @@ Mesh make_triangles(const Mesh& curved, const MeshLevel& level) {
     if (!is_finite(curved.patches[i])) continue;
     const std::size_t before = mesh.triangles.size();
     append_grid(curved.patches[i], level.patches[i], edges[i], std::uint32_t(curved.spheres.size() + i), mesh);
-    // A grid numbers its texture coordinates as its positions; behind spheres they are elsewhere.
+    // A grid numbers its texture coordinates like its positions; behind spheres their numbers differ.
     const auto shift = std::uint32_t(mesh.texcoords.values.size() - mesh.positions.size());
     for (std::size_t t = before; t < mesh.triangles.size(); ++t)
       mesh.texcoords.triangles.push_back(mesh.triangles[t] + shift);
@@ -58,10 +59,11 @@ Mesh make_triangles(const Mesh& curved, const MeshLevel& level) {
   return mesh;
 }
 
-/// How fine each curved mesh has to be where, known before anything is made; instances that are alike share.
+/// The fineness of each instance of a curved mesh, known before anything is made; instances that are alike share
+/// meshes.
 class Plan {
  public:
-  using Key = std::pair<std::uint32_t, MeshLevel>;  ///< a mesh, and how fine
+  using Key = std::pair<std::uint32_t, MeshLevel>;  ///< a mesh, and its level
 
   Plan(const Scene& scene, const View& view, double pixels) {
     if (!(pixels > 0))
@@ -79,7 +81,7 @@ class Plan {
       counts_.back() = triangles_;
     }
   }
-  /// None where the instance is not of a curved mesh.
+  /// None if the instance's mesh is not curved.
   [[nodiscard]] const std::optional<Key>& key(std::size_t instance) const { return keys_[instance]; }
   [[nodiscard]] double triangle_count() const { return triangles_; }
 
@@ -95,7 +97,7 @@ class Plan {
 
  private:
   std::vector<std::optional<Key>> keys_;  ///< by instance
-  std::vector<double> counts_;            ///< triangles made for it and those before
+  std::vector<double> counts_;            ///< triangles made for it and the instances before
   std::set<Key> seen_;
   double triangles_ = 0;
 };
@@ -113,7 +115,7 @@ class Tessellator {
   [[nodiscard]] Scene take() { return std::move(out_); }
 
  private:
-  /// The first takes the place of the mesh itself.
+  /// The first level takes the place of the mesh itself.
   std::uint32_t make(const Plan::Key& key) {
     const auto& [mesh, level] = key;
     Mesh triangles = make_triangles(out_.meshes[mesh], level);
@@ -128,7 +130,7 @@ class Tessellator {
 
   Scene out_;
   std::vector<bool> is_made_;                ///< of the scene's meshes
-  std::map<Plan::Key, std::uint32_t> made_;  ///< which mesh it became
+  std::map<Plan::Key, std::uint32_t> made_;  ///< number of the mesh made for a key
 };
 
 }  // namespace

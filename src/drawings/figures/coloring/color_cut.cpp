@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A cut is looked for in this order, and the first that is found is taken:
+// The kinds of cut are tried in this order, and the first that applies is taken:
 //
 //    colours change evenly (a plane through them leaves a tenth)    the border of the middle band
-//    texels are 4 pixels wide and more                              their border nearest to the middle
+//    texels are at least 4 pixels wide                              their border nearest to the middle
 //    else: texture coordinates, eight directions, and the           the line that leaves the least sum of
 //    direction in which the colours of the best cut differ          squared differences on both sides
 //
-// For the last, samples are sorted by their distance from a line of that direction; running sums then give what every
-// place of the line would gain, so a direction costs one sort. Equal gains go to the line that was tried first,
-// whatever rounding says, because files must not depend on the machine.
+// For the last kind, samples are sorted by their distance from a line of that direction. Running sums then give the
+// gain of every place of the line, so a direction costs one sort. Among equal gains the line that was tried first wins,
+// regardless of rounding, because files must not depend on the machine.
 #include "figures/coloring/color_cut.h"
 
 #include <algorithm>
@@ -20,17 +20,17 @@ namespace {
 
 constexpr std::size_t kMostSamples = 256;
 constexpr int kDirections = 8;
-/// The direction across which the colour changes is found from a cut, and a better cut from that: so often.
+/// Rounds in which the direction of change is derived from a cut, and a better cut from that direction.
 constexpr int kRounds = 2;
-/// The part of squared differences that a plane through the colours leaves, where they change evenly.
+/// Colours change evenly if a plane through them leaves at most this share of the squared differences.
 constexpr double kEven = 0.1;
 constexpr std::size_t kFewestOfChange = 4;
-/// Texels: a cut that near to the border of two texels is that border.
+/// In texels: a cut this near to the border of two texels is moved to the border.
 constexpr double kTexelReach = 0.25;
-/// Pixels: texels of that size are parted one by one.
+/// In pixels: texels of that size are separated one by one.
 constexpr double kLargeTexel = 4;
 
-/// Of the longest axis of the ellipse that a symmetric matrix stands for.
+/// The direction of the longest axis of the ellipse of a symmetric matrix.
 glm::dvec2 main_axis(double xx, double xy, double yy) {
   const double half = (xx - yy) * 0.5, root = std::sqrt(half * half + xy * xy);
   const glm::dvec2 axis = half > 0 ? glm::dvec2(half + root, xy) : glm::dvec2(xy, root - half);
@@ -41,14 +41,14 @@ glm::dvec2 main_axis(double xx, double xy, double yy) {
 /// Colours as an affine function of the place.
 struct EvenChange {
   glm::dvec4 by_x{0}, by_y{0};  ///< steps per pixel
-  glm::dvec2 direction{1, 0};   ///< in which they change most
+  glm::dvec2 direction{1, 0};   ///< direction of the greatest change
   [[nodiscard]] double steps_per_pixel(const glm::dvec2& way) const {
     const glm::dvec4 change = glm::abs(by_x * way.x + by_y * way.y);
     return std::max({change.x, change.y, change.z, change.w});
   }
 };
 
-/// By least squares; none where much is left.
+/// Fits the function by least squares; none if much remains.
 std::optional<EvenChange> find_even_change(std::span<const ColorSample> samples) {
   const double count = double(samples.size());
   glm::dvec2 place(0);
@@ -83,8 +83,8 @@ std::optional<EvenChange> find_even_change(std::span<const ColorSample> samples)
 
 /// A cut of samples in two, by the values of a function.
 struct Split {
-  double gain = 0;               ///< by how much the sum of squared differences gets smaller
-  double threshold = 0;          ///< of the function
+  double gain = 0;               ///< decrease of the sum of squared differences
+  double threshold = 0;          ///< value of the function at the cut
   glm::vec4 below{0}, above{0};  ///< mean colours
 };
 
@@ -113,7 +113,7 @@ class CutFinder {
   struct Range {
     double least, greatest;
   };
-  /// The middle one where colours change evenly, across the way in which the piece goes through most of them.
+  /// The border of the middle band where colours change evenly, across the direction with the most steps in the piece.
   [[nodiscard]] std::optional<ScreenLine> border_of_bands() const {
     if (samples_.size() < kFewestOfChange) return std::nullopt;
     const std::optional<EvenChange> change = find_even_change(samples_);
@@ -131,8 +131,8 @@ class CutFinder {
     return line;
   }
 
-  /// Where texels are large, their border that is nearest to the middle of the piece: of a chessboard no single cut
-  /// parts the colours, and pieces of other shapes have ragged rims.
+  /// If texels are large, their border nearest to the middle of the piece. No single cut separates the colours of a
+  /// chessboard, and pieces of other shapes have ragged edges.
   [[nodiscard]] std::optional<ScreenLine> border_of_texels() const {
     std::optional<ScreenLine> line;
     double widest = 0;
@@ -155,7 +155,7 @@ class CutFinder {
     return line;
   }
 
-  /// How far the piece reaches on either side of a line.
+  /// The extent of the piece on either side of a line.
   [[nodiscard]] Range reach(const ScreenLine& line) const {
     Range range{line.distance(piece_.corners[0]), line.distance(piece_.corners[0])};
     for (const glm::dvec2& corner : piece_.corners) {
@@ -182,7 +182,7 @@ class CutFinder {
       const double n = double(i + 1);
       const glm::dvec4 above = total - below;
       const double gain = glm::dot(below, below) / n + glm::dot(above, above) / (count - n) - whole;
-      if (gain <= best.gain * (1 + 1e-9)) continue;  // equal ones: the first, whatever rounding says
+      if (gain <= best.gain * (1 + 1e-9)) continue;  // of equal ones the first, regardless of rounding
       best = {gain, threshold, glm::vec4(below / n), glm::vec4(above / (count - n))};
     }
     return best;
@@ -213,7 +213,7 @@ class CutFinder {
     if (sides.least <= -piece_.least_width && sides.greatest >= piece_.least_width) take(split, *line);
   }
 
-  /// That in which samples lie apart that are more like one or more like the other side of the best split.
+  /// The direction that best separates samples like one side of the best split from samples like the other.
   [[nodiscard]] std::optional<glm::dvec2> direction_of_change() const {
     const glm::vec4 way = best_.above - best_.below, middle = (best_.above + best_.below) * 0.5f;
     const double length = double(glm::dot(way, way));

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cells are a little wider than the reach, so a colour that is near enough lies in the same cell or in one beside it:
-// 81 cells of four channels. That many look-ups cost more than going through a few colours, so the cells are asked only
-// from 64 colours on. Whichever way is taken, the first colour that is near enough is the answer; so the result depends
-// on the order in which colours come, and not on how they are found.
+// Cells are slightly wider than the reach, so a near enough colour is in the same cell or in a neighbour: 81 cells of
+// four channels. That costs more than testing a few colours, so cells are used only from 64 colours on. Both ways find
+// the first colour that is near enough, so the result depends only on the order of colours.
 #include "figures/coloring/color_groups.h"
 
 #include <algorithm>
@@ -13,9 +12,9 @@
 namespace frontmost::shading {
 namespace {
 
-/// So few are gone through one by one.
+/// Up to so many colours are tested one by one.
 constexpr std::size_t kFewColors = 64;
-/// Steps of 8 bits: cells are no smaller.
+/// Least size of a cell, in steps of 8 bits.
 constexpr double kLeastCell = 1.0 / 64;
 
 std::uint64_t key_of(const glm::ivec4& cell) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours that are nearly the same as one.
+// Groups of nearly equal colours.
 //
-// Pieces of a polygon that differ by less than can be seen become one colour, so that they can be one shape of the
-// file. A colour joins the first group whose first colour is near enough: groups never drift, however many join them.
+// Pieces of a polygon with an invisible difference get one colour, so that they can be one shape of the file. A colour
+// joins the first group whose first colour is near enough, so groups never drift.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@ namespace frontmost::shading {
 /// The greatest difference of any channel.
 [[nodiscard]] float difference(const glm::vec4& a, const glm::vec4& b);
 
-/// Known by their numbers, in the order in which they came. A photograph has as many colours as pieces: they are found
-/// by cells of a grid over all colours.
+/// Groups are numbered in the order in which they were added. A photograph has as many colours as pieces, so groups are
+/// found by cells of a grid over all colours.
 class ColorGroups {
  public:
-  /// Channels from 0 to 255 may differ by `reach`.
+  /// Channels, 0 to 255, may differ by `reach`.
   explicit ColorGroups(double reach);
 
-  /// The first that is within reach of a colour, or the colour itself as a new one.
+  /// The number of the first group within reach of `color`; adds a new group if there is none.
   std::uint32_t find_or_add(const glm::vec4& color);
   [[nodiscard]] const std::vector<glm::vec4>& colors() const { return colors_; }
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polygons are coloured in parts of 256, each part by one thread and into a list of its own, and the lists are put
-// together in order. The shader works in batches, and a batch never holds samples of two parts: so colours do not
-// depend on threads.
+// Polygons are coloured in parts of 256. One thread colours a part into a list of its own, and the lists are joined in
+// order. A batch of the shader never holds samples of two parts, so colours do not depend on threads.
 //
-// A smooth normal is worth its time only where a triangle is seen on three square pixels and more. The areas that are
-// seen of each triangle are added up before anything is coloured, because a triangle may be seen in many parts.
+// A smooth normal only pays if a triangle is visible on at least three square pixels. The visible areas of each
+// triangle are summed before anything is coloured, because a triangle may be visible in many parts.
 #include <atomic>
 
 #include "base/parallel.h"
@@ -18,7 +17,7 @@ namespace {
 using namespace shading;
 
 constexpr std::size_t kPolygonsPerPart = 256;
-/// Square pixels in which a triangle is seen: on smaller ones a smooth normal could hardly be told from a flat one.
+/// Visible area in square pixels; on smaller triangles a smooth normal hardly differs from a flat one.
 constexpr float kLarge = 3;
 
 float area_of(const VisibleParts& parts, const PaintPolygon& polygon) {
@@ -42,7 +41,7 @@ FigureTriangles triangles_of(const Surfaces& surfaces, const VisibleParts& parts
   return triangles;
 }
 
-/// Appends what became of consecutive polygons.
+/// Appends the coloured shapes of consecutive polygons.
 void append(const ColoredOrder& part, ColoredOrder& into) {
   const std::size_t polygons = into.polygons.size(), corners = into.corners.size();
   for (const ColoredShape& shape : part.shapes) {

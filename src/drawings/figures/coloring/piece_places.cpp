@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that were chosen by looking: how many samples a piece is worth by its area and its length, and below which
-// size it has the colour of its middle. Two samples a pixel find the details that a picture of the same size shows;
-// large pieces take fewer, because their cuts look again where colours differ.
+// These numbers were chosen by eye: the number of samples for the area and length of a piece, and the size below which
+// its middle gives its colour. Two samples per pixel find the details of a picture of the same size. Large pieces take
+// fewer, because their cuts sample again where colours differ.
 #include "figures/coloring/piece_places.h"
 
 #include <algorithm>
@@ -12,7 +12,8 @@ namespace {
 
 /// Square pixels, and pixels from end to end: smaller pieces have the colour of their middle.
 constexpr double kLeastArea = 1.5, kLeastLength = 2;
-/// Square pixels a sample, of pieces of some size and of large ones; pixels, of slivers; and the fewest.
+/// Square pixels per sample, for usual and for large pieces; pixels per sample, for slivers; then the fewest samples,
+/// and the number from which a piece counts as large.
 constexpr double kAreaPerSample = 2, kMostAreaPerSample = 9, kLengthPerSample = 1;
 constexpr double kFewSamples = 4, kManySamples = 64;
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a piece of a polygon is looked at, and how pieces are cut.
+// The sample places of a piece of a polygon, and cuts of pieces.
 //
-// Places are a lattice of rank 1 over each triangle of the piece's fan: evenly spread for any number, so that more can
-// be added later without moving those that were asked. A piece that was cut keeps the samples of the whole that lie in
-// it, and asks only for those that are missing.
+// Places form a rank-1 lattice over each triangle of the piece's fan. They are evenly spread for any number, so more
+// can be added later without moving earlier ones. A piece from a cut keeps the samples of the whole that lie in it, and
+// adds only missing ones.
 #pragma once
 
 #include <span>
@@ -18,28 +18,28 @@ struct PieceSize {
   explicit PieceSize(std::span<const glm::dvec2> corners);
   glm::dvec2 middle{0};
   double area = 0;    ///< square pixels
-  double length = 0;  ///< pixels, at least half of the distance between the two corners farthest from each other
-  /// Has the colour of its middle.
+  double length = 0;  ///< pixels, at least half of the greatest distance between two corners
+  /// Whether its middle gives its colour.
   [[nodiscard]] bool is_small() const;
-  /// How many samples it is worth.
+  /// The number of samples that it should have.
   [[nodiscard]] double sample_count() const;
 };
 
-/// The middle of what an outline has of the line through a place across a direction.
+/// The middle of the outline's chord through `at`, perpendicular to `along`.
 [[nodiscard]] glm::dvec2 middle_across(std::span<const glm::dvec2> corners, const glm::dvec2& at,
                                        const glm::dvec2& along);
 
-/// Calls add(place) beside every corner of an outline, where colours go furthest.
+/// Calls add(place) beside every corner of an outline, where colours are extreme.
 template <class Add>
 void for_each_corner_place(std::span<const glm::dvec2> corners, const glm::dvec2& middle, const Add& add) {
-  constexpr double kInset = 0.25;  // pixels by which they lie within
+  constexpr double kInset = 0.25;  // pixels from the corner inwards
   for (const glm::dvec2& corner : corners) {
     const glm::dvec2 way = middle - corner;
     add(corner + way * std::min(0.25, kInset / std::max(glm::length(way), 1e-9)));
   }
 }
 
-/// Calls add(place) for places along the middle of an outline that is long and narrow.
+/// Calls add(place) for places along the middle of a long and narrow outline.
 template <class Add>
 void for_each_place_along(std::span<const glm::dvec2> corners, const PieceSize& size, const Add& add) {
   const auto count = std::size_t(std::ceil(size.length / 1.5));
@@ -52,11 +52,11 @@ void for_each_place_along(std::span<const glm::dvec2> corners, const PieceSize& 
 }
 
 /// Calls add(place) for places from number `first` on until `count`, evenly spread over an outline of some area: a
-/// rank-1 lattice over each triangle of its fan, as many as its part of the area asks for.
-/// (M. Roberts. The Unreasonable Effectiveness of Quasirandom Sequences. 2018.)
+/// rank-1 lattice over each triangle of its fan, with a number of places in proportion to its area. (M. Roberts. The
+/// Unreasonable Effectiveness of Quasirandom Sequences. 2018.)
 template <class Add>
 void for_each_place(std::span<const glm::dvec2> corners, double area, double count, const Add& add) {
-  if (!(area > 0)) return;  // no direction, though it may be long
+  if (!(area > 0)) return;  // no area has no direction, though it may be long
   double before = 0;
   std::size_t number = 0;
   const glm::dvec2 from = corners[0];
@@ -77,7 +77,7 @@ void for_each_place(std::span<const glm::dvec2> corners, double area, double cou
   }
 }
 
-/// The two sides of a line: what lies below it, and what lies above.
+/// The parts of an outline below and above a line.
 struct CutOutline {
   std::vector<glm::dvec2> below, above;
 };

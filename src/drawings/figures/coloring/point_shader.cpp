@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of a picture's shading without its pixels. Shadows are asked for at points that lie anywhere in a pixel, in
-// groups, as samples of a picture are; colours of depth need the range of depths in the picture, which the input holds.
+// The shading of a picture without its pixels. Shadows are computed at points anywhere in a pixel, in groups, like
+// samples of a picture. Depth colours need the range of depths in the picture, which the input holds.
 #include "figures/coloring/point_shader.h"
 
 namespace frontmost::shading {
 namespace {
 
-/// Points have one sample, where they are.
+/// A point has one sample, at its own place.
 constexpr glm::ivec2 kAtPoint[] = {{0, 0}};
 
-/// The scene's triangles, with smooth normals of those that are large.
+/// The scene's triangles, with smooth normals of the large ones.
 const TriangleStore& smoothed(PreparedScene& scene, const BitSet& large, const Execution& execution) {
   scene.triangles.smooth(large, execution);
   return scene.triangles;
 }
 
-/// That of lit figures; none of others.
+/// The lighting of lit figures; empty for others.
 Lighting lighting_of(PreparedScene& scene, const ShadeInput& input, const ShadeOptions& options,
                      const Execution& execution) {
   check_light(options.light);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything that the colours of single points are made from.
+// The shared data for the colours of single points.
 //
-// A picture is shaded where samples are, a figure where its pieces are looked at: at any place, of polygons that a
-// picture may not show. Both use the same triangles, materials, lights and shadows, so that a figure has the colours of
-// the picture of the same view. What all threads share is here; each thread has a FragmentShader for its batches.
+// A picture is shaded at its samples; a figure at the sample places of its pieces, also on polygons that the picture
+// does not show. Both use the same triangles, materials, lights and shadows, so a figure has the colours of the picture
+// of the same view. Data that all threads share is here; each thread has a FragmentShader for its batches.
 #pragma once
 
 #include "shade/colorists.h"
@@ -13,16 +13,16 @@
 
 namespace frontmost::shading {
 
-/// Triangles, of a figure.
+/// The triangles of a figure.
 struct FigureTriangles {
-  BitSet seen;   ///< all that the figure holds
-  BitSet large;  ///< those worth a smooth normal where the model has none
+  BitSet seen;   ///< all triangles of the figure
+  BitSet large;  ///< triangles that need a smooth normal if the model has none
 };
 
-/// For several threads at once: each has a FragmentShader of its own.
+/// Safe for several threads at once; each has its own FragmentShader.
 class PointShader {
  public:
-  /// Borrows all but the options; makes ready what the scene does not have yet. \throws Error as check_opacity().
+  /// Borrows all but the options; prepares whatever the scene lacks. \throws Error as check_opacity() does.
   PointShader(PreparedScene& scene, const ShadeInput& input, const FigureTriangles& triangles,
               const ShadeOptions& options, const Execution& execution);
 

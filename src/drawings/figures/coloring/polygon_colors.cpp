@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The life of a piece:
 //
-//    polygon --start--> looked at --judge--> of one colour ----------------> kept
+//    polygon --start--> sampled --judge--> of one colour --------------------> kept
 //                          ^                    | not
 //                          |                 best_cut --> two halves ---> waiting
 //                          +------------------------------------------------+
 //
-// Pieces are taken from the waiting ones first, the last first, so that few wait at a time. Samples of many pieces are
-// shaded together, about 2,048 at a time: the shader has whole batches, and they stay in the cache. Which half comes
-// first is kept in a tree of cuts, so that pieces are written in the same order however they were taken.
+// Waiting pieces are taken first, the last one first, so that few wait at a time. Samples of many pieces are shaded
+// together, about 2,048 at a time, which gives whole batches that stay in the cache. A tree of cuts keeps the order of
+// the halves, so the order of writing does not depend on the order of shading.
 //
-// Holes are a colour far from all others, and so are parted from the surface by the same cuts.
+// A hole has a colour far from all others, so the same cuts separate it from the surface.
 #include "figures/coloring/polygon_colors.h"
 
 #include <algorithm>
@@ -24,16 +24,16 @@
 namespace frontmost::shading {
 namespace {
 
-/// Pixels: narrower pieces are not cut off, and what lies nearer to a cut is not asked for its colour again. Textures
-/// and shadows are smoothed over about as much, so there a colour is neither that of one side nor that of the other.
+/// In pixels: the least width of a cut piece, and the distance from a cut below which no samples are taken. Textures
+/// and shadows are filtered over about as much, so colours there belong to neither side.
 constexpr double kLeastWidth = 0.25, kBesideCut = 0.35;
-/// Of the tolerance: by how much pieces may differ within where colours that differ by no more than the rest become
-/// one.
+/// The share of the tolerance for differences within a piece, where pieces are grouped; the rest is for differences
+/// between pieces of a group.
 constexpr double kWithin = 2.0 / 3;
-/// What is narrower than a pixel may differ by so much more: it is hardly seen, and there is much of it beside
+/// The factor of the tolerance for pieces narrower than a pixel: they are hardly visible, and there are many beside
 /// textures.
 constexpr double kOfSlivers = 8;
-/// Samples that are asked for together: some batches of the shader, and few enough to stay near at hand.
+/// Samples that are shaded together: some batches of the shader, and few enough to stay in the cache.
 constexpr std::size_t kSamplesAtOnce = 2048;
 
 bool is_hole(const glm::vec4& color) { return color.w < 0; }
@@ -76,7 +76,7 @@ void PolygonColors::color(const VisibleParts& parts, std::span<const PaintPolygo
 }
 
 void PolygonColors::begin(std::span<const PaintPolygon> polygons) {
-  // A triangle is set up about its first sample: that must be one of these polygons.
+  // A triangle is set up about its first sample, which must be on one of these polygons.
   shader_.clear();
   polygons_.clear();
   nodes_.clear();
@@ -103,7 +103,7 @@ void PolygonColors::start(const VisibleParts& parts, std::uint32_t number) {
   piece.node = polygon.node;
 }
 
-/// As many as have some batches of samples, those that were cut first.
+/// Takes pieces with samples for some batches; first the ones that were cut last.
 void PolygonColors::take_pieces(const VisibleParts& parts) {
   looked_at_.clear();
   std::size_t samples = 0;
@@ -120,8 +120,8 @@ void PolygonColors::take_pieces(const VisibleParts& parts) {
   }
 }
 
-/// Whole polygons are asked at their corners, too; of others those are known, or lie beside a cut. What was asked
-/// before counts: so fewer samples are added than a piece is worth, mostly none.
+/// Whole polygons are also sampled at their corners; corners of other pieces are known or lie beside a cut. Known
+/// samples count, so a piece gets fewer new ones than its size suggests, often none.
 void PolygonColors::place_samples(Piece& piece) {
   const PieceSize size(piece.corners);
   const auto add = [&](const glm::dvec2& at) {
@@ -144,7 +144,7 @@ void PolygonColors::shade_samples() {
   const auto hand_out = [&] {
     shader_.hand_out([&](const FragmentShader::Shaded& shaded) {
       const glm::vec3& light = shaded.light;
-      // Paper shows nothing brighter than white: what glass mirrors beyond that hides what is behind instead.
+      // Paper shows nothing brighter than white: brighter reflections hide what is behind instead.
       const float brightest = std::max(1.0f, std::max(light.x, std::max(light.y, light.z)));
       const glm::vec3 shown = light / brightest;
       const float opacity = std::clamp(shaded.alpha * brightest * shading_.opacity(), 0.0f, 1.0f);
@@ -179,7 +179,7 @@ void PolygonColors::divide(Piece& piece) {
   keep(piece, found.color);
 }
 
-/// Steps by which samples may differ from the colour of their piece.
+/// The greatest difference, in steps, between a sample and the colour of its piece.
 float PolygonColors::within(const Piece& piece) const {
   return float(options_.tolerance * (polygons_[piece.polygon].is_grouped ? kWithin : 1) *
                (piece.is_sliver ? kOfSlivers : 1));
@@ -191,8 +191,8 @@ bool PolygonColors::is_beside_a_cut(const Piece& piece, const glm::dvec2& at) co
   return false;
 }
 
-/// What most of the samples are, surface or hole; of these the mean, where it is near enough to all: the middle between
-/// the farthest ones would tint a wide field for the sake of its rim.
+/// Decides by the majority of the samples between surface and hole. The colour is the mean of the surface samples, if
+/// all are near enough to it: the middle between extremes would tint a wide field for the sake of its edge.
 PolygonColors::Judgement PolygonColors::judge(const Piece& piece) const {
   std::size_t holes = 0;
   for (const ColorSample& sample : piece.samples) holes += is_hole(sample.color);
@@ -211,7 +211,7 @@ PolygonColors::Judgement PolygonColors::judge(const Piece& piece) const {
   return {holes == 0 && is_near, mean};
 }
 
-/// Puts both sides of a line where they wait.
+/// Cuts a piece along a line and puts both halves into the waiting list.
 void PolygonColors::cut(Piece& piece, const ScreenLine& line) {
   const auto number = std::uint32_t(cuts_.size()), node = std::uint32_t(nodes_.size());
   cuts_.push_back({line, piece.cut});
@@ -242,7 +242,7 @@ void PolygonColors::keep(Piece& piece, const glm::vec4& color) {
   kept_.push_back({color, std::move(piece.corners)});
 }
 
-/// In the order in which they are painted: below a cut before above it.
+/// Lists the kept pieces in painting order: below a cut before above it.
 void PolygonColors::list_kept(const Polygon& polygon) {
   listed_.clear();
   path_.assign(1, polygon.node);
@@ -254,7 +254,7 @@ void PolygonColors::list_kept(const Polygon& polygon) {
   }
 }
 
-/// Colours that are nearly the same become the first of them, so that pieces can be joined to larger ones.
+/// Replaces nearly equal colours by the first of them, so that pieces can be merged.
 void PolygonColors::group_kept() {
   ColorGroups groups(options_.tolerance * (1 - kWithin));
   for (Kept* const piece : listed_) piece->group = groups.find_or_add(piece->color);
@@ -273,7 +273,7 @@ void PolygonColors::emit(const Polygon& polygon, ColoredOrder& into) {
   }
 }
 
-/// Along the coordinates of what the picture mostly shows, the base colour's texture.
+/// Lines along the coordinates of the base colour's texture, which the picture mostly shows.
 std::span<const TexcoordLines> PolygonColors::texture_lines(const Piece& piece) {
   Polygon& polygon = polygons_[piece.polygon];
   if (polygon.texture_lines) return *polygon.texture_lines;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Consecutive polygons in pieces of one colour each.
+// Cuts consecutive polygons into pieces of one colour each.
 //
-// Pieces are of one polygon, and never cross into another: a figure keeps every visible polygon, whole or in pieces, in
-// its place of the order of painting.
+// A piece belongs to one polygon. A figure keeps every visible polygon, whole or in pieces, in its place in the
+// painting order.
 #pragma once
 
 #include <optional>
@@ -17,35 +17,34 @@ namespace frontmost::shading {
 /// \throws Error limit_exceeded.
 [[noreturn]] void refuse_more_than(std::size_t most);
 
-/// Many pieces are looked at before the next ones are, so that the shader has whole batches. Not for several threads at
-/// once.
+/// Samples many pieces before it judges them, so that the shader has whole batches. Not for several threads at once.
 class PolygonColors {
  public:
   /// Borrows all but the view.
   PolygonColors(const Surfaces& surfaces, const View& view, const PointShader& shader, const FigureOptions& options,
                 const Execution& execution);
 
-  /// Appends some of these parts in pieces, without holes and what is wholly clear. The result depends on these
-  /// polygons alone. Precondition: three corners or more each. \throws Error cancelled, and as refuse_more_than().
+  /// Appends some of these parts in pieces, without holes and clear pieces. The result depends only on these polygons.
+  /// Precondition: each has at least three corners. \throws Error cancelled, and as refuse_more_than() does.
   void color(const VisibleParts& parts, std::span<const PaintPolygon> polygons, ColoredOrder& into);
 
  private:
-  /// A piece that is still to be looked at.
+  /// A piece that is still to be judged.
   struct Piece {
     std::vector<glm::dvec2> corners;
-    std::vector<ColorSample> samples;  ///< those of the piece that it was cut from are known already
+    std::vector<ColorSample> samples;  ///< includes samples of the piece from which it was cut
     std::size_t known_samples = 0;
-    bool is_sliver = false;        ///< lies beside cuts everywhere
-    std::uint32_t polygon = 0;     ///< of those that are coloured
-    std::uint32_t node = 0;        ///< of the tree of cuts
-    std::uint32_t cut = no_index;  ///< the last that it was made by
+    bool is_sliver = false;        ///< all of it lies beside cuts
+    std::uint32_t polygon = 0;     ///< index of its polygon
+    std::uint32_t node = 0;        ///< node in the tree of cuts
+    std::uint32_t cut = no_index;  ///< the last cut that made it
   };
-  /// Cuts, each with the one before it: a piece lies on one side of all of them.
+  /// A cut, linked to the one before it: a piece lies on one side of all of its cuts.
   struct Cut {
     ScreenLine line;
     std::uint32_t before = no_index;
   };
-  /// A piece that was cut, or one that is kept. Pieces are painted as they come in the tree.
+  /// A cut piece or a kept one. The order of the tree is the painting order.
   struct Node {
     std::uint32_t below = no_index, above = no_index;  ///< nodes
     std::uint32_t kept = no_index;
@@ -60,9 +59,9 @@ class PolygonColors {
     bool is_grouped = false;  ///< pieces of one colour become one shape
     std::uint32_t node = 0;
     std::optional<ScreenCutout> holes{};
-    std::optional<std::vector<TexcoordLines>> texture_lines{};  ///< made when they are asked for
+    std::optional<std::vector<TexcoordLines>> texture_lines{};  ///< made when first needed
   };
-  /// What a piece's samples say.
+  /// The result of a piece's samples.
   struct Judgement {
     bool is_one_color = true;
     glm::vec4 color{0};
@@ -94,8 +93,8 @@ class PolygonColors {
 
   std::vector<Polygon> polygons_;
   std::size_t started_ = 0;       ///< polygons
-  std::vector<Piece> waiting_;    ///< those that come first are last
-  std::vector<Piece> looked_at_;  ///< now
+  std::vector<Piece> waiting_;    ///< a stack: the next piece is last
+  std::vector<Piece> looked_at_;  ///< the pieces of the current round
   std::vector<ColorSample*> asked_;
   std::vector<Node> nodes_;
   std::vector<Cut> cuts_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A shape may be drawn at the place of its last polygon if nothing that comes between its polygons covers any of them.
-// So only polygons that no later one covers are united, by the sides that they share; the sharing is found for each
-// colour by itself, in one net.
+// A shape may be painted at the place of its last polygon if nothing between its polygons in the order covers any of
+// them. So only polygons that no later one covers are united, by shared sides, which are found for each colour
+// separately in one net.
 //
 //    order    1  2  3  4  5        2 and 5 share a side and have one colour. If neither 3 nor 4 covers
 //    colour   a  b  a  c  b        a part of 2, both can be painted together where 5 is.
@@ -20,7 +20,7 @@ namespace {
 
 using namespace shading;
 
-/// For every polygon, whether none that is painted later covers a part of it.
+/// By polygon, whether no later polygon covers a part of it.
 std::vector<bool> find_uncovered(const ColoredOrder& order, const Execution& execution) {
   const Overlaps overlaps(order);
   painter_detail::PaintEffort effort(execution, order.polygons.size());
@@ -38,7 +38,7 @@ std::uint32_t code_of(const glm::u8vec4& c) {
   return std::uint32_t(c.r) << 24 | std::uint32_t(c.g) << 16 | std::uint32_t(c.b) << 8 | c.a;
 }
 
-/// The shape of every polygon of a figure, and whether later ones cover none of it.
+/// By polygon, its shape and whether no later polygon covers a part of it.
 struct Polygons {
   std::vector<std::uint32_t> shapes;
   std::vector<bool> uncovered;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two convex polygons overlap unless a side of one of them has all of the other on its outer side. Sides that lie
-// beside each other, as those of neighbours do, count as apart when they overlap by less than 1/512 pixel: that is what
-// the rounding of cuts leaves.
+// Two convex polygons overlap unless a side of one has all of the other on its outer side. Polygons that overlap by
+// less than 1/512 pixel, as neighbours do by the rounding of cuts, count as apart.
 #include "figures/grouping/overlaps.h"
 
 #include <algorithm>
@@ -11,13 +10,12 @@ namespace {
 
 using painter_detail::PolygonExtent;
 
-/// Pixels by which polygons must overlap to cover each other: those that were cut at each other's sides do so by a
-/// rounding.
+/// Least overlap in pixels; polygons cut at each other's sides overlap by rounding.
 constexpr double kThin = 1.0 / 512;
 
 using PolygonCorners = std::span<const glm::dvec2>;
 
-/// Whether a side of `a` has all of `b` on its outside. Both are counter-clockwise as they are seen, y is down.
+/// Whether a side of `a` has all of `b` outside. Both are counter-clockwise as seen; y is down.
 bool has_side_between(PolygonCorners a, PolygonCorners b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     const glm::dvec2 from = a[i], way = a[i + 1 == a.size() ? 0 : i + 1] - from;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which polygons of a figure lie over each other on the screen.
+// Overlaps of a figure's polygons on the screen.
 //
-// Each polygon is listed in the cells of a grid that its box touches, in the order of painting. So those after a
-// polygon are found from the end of a cell's list, those before it from the beginning, and a search ends where the
-// polygon itself comes.
+// Each polygon is listed in the grid cells that its box touches, in painting order. Later polygons are found from the
+// end of a cell's list, earlier ones from the beginning; a search ends at the polygon itself.
 #pragma once
 
 #include <span>
@@ -14,15 +13,15 @@
 
 namespace frontmost::shading {
 
-/// The polygons of an order on the screen. Borrows it.
+/// The polygons of an order on the screen. Borrows the order.
 class Overlaps {
  public:
   explicit Overlaps(const ColoredOrder& order);
 
-  /// Whether two polygons overlap by more than a rounding.
+  /// Whether two polygons overlap by more than rounding.
   [[nodiscard]] bool overlap(std::size_t a, std::size_t b) const;
-  /// Calls meet(other) for polygons that lie near one, before it or after it in the order, until one returns true; for
-  /// some it does so more than once. \returns whether one did.
+  /// Call meet(other) for polygons near polygon i that are later or earlier in the order, until a call returns true;
+  /// some polygons occur more than once. \returns whether a call did.
   template <class Meet>
   bool any_later(std::size_t i, const Meet& meet) const {
     return any_cell(i, [&](std::span<const std::uint32_t> cell) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Translucent shapes in sheets: an order of painting in which translucent neighbours follow each other.
+// Gathers translucent shapes in blend groups (sheets): a painting order in which translucent neighbours are
+// consecutive.
 //
-// Of nodes that may all be painted next none is over another, whatever order they had: one would have to wait. So any
-// of them make a sheet. Those of one surface are kept together, as patches of neighbours that grow until nothing beside
+// Nodes that may all be painted next do not overlap, because one would have to wait for the other. So any of them can
+// form a blend group. Those of one surface are kept together, as patches of neighbours that grow until no node beside
 // them has to wait.
 #include <algorithm>
 #include <array>
@@ -27,22 +28,22 @@ using namespace shading;
 
 using NodePair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// What is painted at once, numbered as it has been painted so far.
+/// Nodes are painted as a whole and numbered in the original order.
 struct SheetNodes {
-  std::vector<std::uint8_t> opacities;  ///< one for each
-  std::vector<NodePair> over;           ///< the second is painted after the first; sorted, each once
-  std::vector<NodePair> beside;         ///< translucent ones of one opacity, both ways; sorted, each once
+  std::vector<std::uint8_t> opacities;  ///< by node
+  std::vector<NodePair> over;           ///< the second is painted after the first; sorted, unique
+  std::vector<NodePair> beside;         ///< translucent pairs of one opacity, in both directions; sorted, unique
 };
 
-/// Nodes in the order of painting, and the number of the sheet of each, rising. Translucent nodes of one sheet have the
-/// same opacity, and none is over another; opaque ones have sheets without a translucent one.
+/// Nodes in painting order, and the blend group of each, ascending. Translucent nodes of a group have the same opacity,
+/// and none is over another; opaque nodes have groups without translucent ones.
 struct SheetOrder {
   std::vector<std::uint32_t> nodes, sheets;
 };
 
-/// 128 MB. With more, everything stays as it is.
+/// Memory of 128 MB. With more pairs, the order stays unchanged.
 constexpr std::size_t kMostPairs = std::size_t(1) << 24;
-/// As many questions, and some for each polygon, are too many likewise.
+/// Limits on overlap tests; with more, the order stays unchanged.
 constexpr std::size_t kMostAsked = std::size_t(1) << 28, kMostAskedOfPolygon = 1 << 10, kAskedPerPoll = 1 << 12;
 
 void sort_out(std::vector<NodePair>& pairs) {
@@ -50,8 +51,8 @@ void sort_out(std::vector<NodePair>& pairs) {
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
-/// Which shapes are over which, where that matters: not for opaque ones that are over nothing translucent, nor over
-/// anything that is. They go first, in the order that they had. None: there are too many.
+/// The pairs in which one shape is over another, except opaque shapes that are over no translucent one, directly or
+/// indirectly. These go first, in their order. None if there are too many pairs.
 std::optional<std::vector<NodePair>> find_over(const ColoredOrder& colored, const Execution& execution) {
   const std::vector<std::uint32_t> shape_of = colored.shapes_of_polygons();
   const Overlaps overlaps(colored);
@@ -79,7 +80,7 @@ std::optional<std::vector<NodePair>> find_over(const ColoredOrder& colored, cons
   return over;
 }
 
-/// Translucent neighbours of one opacity.
+/// Pairs of translucent neighbours of one opacity.
 std::vector<NodePair> find_beside(const ColoredOrder& colored, const Execution& execution) {
   std::vector<NodePair> beside;
   std::array<std::vector<std::uint32_t>, 255> by_opacity;
@@ -102,7 +103,7 @@ std::vector<NodePair> find_beside(const ColoredOrder& colored, const Execution& 
   return beside;
 }
 
-/// For each number, the second ones of its pairs.
+/// For each number, the second numbers of its pairs.
 class NodeLists {
  public:
   NodeLists(const std::vector<NodePair>& pairs, std::size_t count) : first_(count + 1, 0) {
@@ -122,9 +123,8 @@ class NodeLists {
   std::vector<std::uint32_t> seconds_;
 };
 
-/// Of all that may be painted next, what is opaque goes first, in the order that it had; then what lies beside nothing
-/// that still has to wait; where there is nothing of the kind, what lies beside least of it. O(n log n) in the number
-/// of nodes and pairs.
+/// Opaque nodes that may be painted next go first, in their order; then patches that have no waiting node
+/// beside them; if there are none, the patch with the fewest. O(n log n) in the number of nodes and pairs.
 class SheetSorter {
  public:
   explicit SheetSorter(const SheetNodes& nodes)
@@ -159,7 +159,7 @@ class SheetSorter {
   void make_ready(std::uint32_t node) {
     states_[node] = State::ready;
     if (opacities_[node] == 255) return opaque_.push(node);
-    // The patch that it makes together with those beside it that are ready: they have waited for it.
+    // The patch of the node and the ready nodes beside it, which have waited for it.
     std::size_t open = 0;
     std::uint32_t patch = node;
     for (const std::uint32_t other : beside_[node]) {
@@ -188,7 +188,7 @@ class SheetSorter {
     }
   }
 
-  /// All patches without open sides, or that with the fewest.
+  /// Paints all patches without open sides or, if there are none, the one with the fewest.
   void paint_patches() {
     std::vector<std::uint32_t> taken;
     do {
@@ -222,12 +222,12 @@ class SheetSorter {
 
   const std::vector<std::uint8_t>& opacities_;
   const NodeLists over_, beside_;
-  std::vector<std::uint32_t> below_;  ///< how many that are not painted yet are below a node
+  std::vector<std::uint32_t> below_;  ///< number of unpainted nodes below a node
   std::vector<State> states_;
   std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> opaque_;
   Sets patches_;                              ///< of translucent nodes that are ready
-  std::vector<std::size_t> open_sides_;       ///< of a patch: pairs of one of its own with one that waits
-  std::vector<std::uint32_t> next_in_patch_;  ///< a ring
+  std::vector<std::size_t> open_sides_;       ///< by patch: pairs of one of its nodes with a waiting one
+  std::vector<std::uint32_t> next_in_patch_;  ///< rings of nodes
   std::set<std::pair<std::size_t, std::uint32_t>> by_open_sides_;
   SheetOrder order_;
   std::uint32_t sheet_ = 0;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Folds are judged one by one, by the surfaces beside them (fold.cpp), and then together, as a graph of edges that
+// Folds are judged one by one, by the surfaces beside them (fold.cpp), and then together, in a graph of edges that
 // share vertices:
 //
-//    judged      strong ---- weak ---- weak      smooth      follow_strong: weak ones on which a strong one goes on
+//    judged      strong ---- weak ---- weak      smooth      follow_strong: weak folds that continue strong ones
 //    followed    strong --- strong --- strong                thin: the faintest of a triangle's three creases goes
-//    thinned, and what ends in the air after one or two edges is cut off, unless it is long
+//    cut_short_ends: lines of one or two edges that end in the air go, unless they are long
 //
-// Grades only ever change from weak to strong, and from strong to smooth, so every pass comes to an end.
+// Grades only change from weak to strong, and from strong to smooth, so every pass comes to an end.
 #include "lines/creases/creases.h"
 
 #include <algorithm>
@@ -19,11 +19,12 @@ namespace frontmost::lines_detail {
 namespace {
 
 constexpr std::size_t kEdgesPerPart = 256, kEdgesPerPoll = 1 << 16;
-constexpr double kGoesOn = 0.5;          // the cosine of the angle between a crease and what it goes on with
-constexpr double kBend = 0.25;           // the same between two edges that count as one line's
-constexpr double kFaintest = 0.75;       // of the greatest jump of a triangle's creases
-constexpr std::size_t kFewestEdges = 3;  // of a line that ends in the air
-constexpr double kLong = 0.05;           // of the mesh's diagonal
+constexpr double kGoesOn = 0.5;          // the least cosine of the angle between a crease and its continuation
+constexpr double kBend = 0.25;           // the least cosine between two edges that count as one line
+constexpr double kFaintest = 0.75;       // a fainter crease goes: share of the greatest jump of a triangle's creases
+constexpr std::size_t kFewestEdges = 3;  // the edges of a line that may end in the air
+constexpr double kLong = 0.05;           // the length of a line that may end in the air, as a share of the mesh's
+                                         // diagonal
 
 bool is_fold(const FeatureEdge& edge) { return edge.kind == EdgeKind::crease || edge.kind == EdgeKind::silhouette; }
 
@@ -39,7 +40,7 @@ std::vector<JudgedFold> judge_folds(const SeenMesh& seen, const CornerTable& tab
   return folds;
 }
 
-/// The edges that may be drawn, by their ends.
+/// The edges that may be drawn, by their end vertices.
 class CreaseGraph {
  public:
   CreaseGraph(const WeldedMesh& mesh, const std::vector<FeatureEdge>& edges, std::vector<JudgedFold> folds,
@@ -57,11 +58,11 @@ class CreaseGraph {
   [[nodiscard]] std::uint32_t other_end(std::uint32_t edge, std::uint32_t vertex) const {
     return edges_[edge].from == vertex ? edges_[edge].to : edges_[edge].from;
   }
-  /// Of unit length, away from one of its ends.
+  /// The unit direction of the edge, away from one of its ends.
   [[nodiscard]] glm::dvec3 direction_from(std::uint32_t edge, std::uint32_t vertex) const {
     return glm::normalize(mesh_.positions[other_end(edge, vertex)] - mesh_.positions[vertex]);
   }
-  /// The cosine of the angle by which a line bends that comes along one edge and goes on along the other.
+  /// The cosine of the angle between the end of one edge and the beginning of the next.
   [[nodiscard]] double bend(std::uint32_t edge, std::uint32_t next, std::uint32_t vertex) const {
     return -glm::dot(direction_from(edge, vertex), direction_from(next, vertex));
   }
@@ -94,14 +95,14 @@ CreaseGraph::CreaseGraph(const WeldedMesh& mesh, const std::vector<FeatureEdge>&
       visit(edges_[i].to, std::uint32_t(i));
     }
   };
-  // Counted two places further on, so that filling leaves the beginnings where they belong.
+  // Counts go two places further on, so that filling moves each beginning to its place.
   for_each_end([&](std::uint32_t vertex, std::uint32_t) { ++first_[vertex + 2]; });
   for (std::size_t v = 2; v < first_.size(); ++v) first_[v] += first_[v - 1];
   at_.resize(first_[first_.size() - 1]);
   for_each_end([&](std::uint32_t vertex, std::uint32_t edge) { at_[first_[vertex + 1]++] = edge; });
 }
 
-/// Makes the weak folds strong on which strong ones go on.
+/// Makes weak folds strong that continue strong ones.
 void CreaseGraph::follow_strong() {
   std::vector<std::uint32_t> open;
   for (std::size_t i = 0; i < edges_.size(); ++i)
@@ -118,7 +119,8 @@ void CreaseGraph::follow_strong() {
   }
 }
 
-/// Where a crease runs to and fro across a row of triangles, each of them has three.
+/// Removes the faintest crease of triangles with three. A crease that zigzags across a row of triangles gives them
+/// three.
 void CreaseGraph::thin() {
   const auto for_each_side = [&](const auto& visit) {
     for (std::size_t i = 0; i < edges_.size(); ++i)
@@ -143,7 +145,7 @@ void CreaseGraph::thin() {
   for (const std::uint32_t edge : faint) folds_[edge].grade = FoldGrade::smooth;
 }
 
-/// From a vertex with one edge, until where others meet it, or the line bends sharply, or it is long enough.
+/// The line from a vertex with one edge to where others meet it, or it bends sharply, or it is long enough.
 std::vector<std::uint32_t> CreaseGraph::line_from(std::uint32_t tip) const {
   std::vector<std::uint32_t> line;
   for (std::uint32_t vertex = tip; line.size() < kFewestEdges;) {
@@ -177,7 +179,7 @@ void CreaseGraph::cut_short_ends() {
       length += glm::distance(mesh_.positions[edges_[edge].from], mesh_.positions[edges_[edge].to]);
     if (line.empty() || line.size() >= kFewestEdges || length > least) continue;
     for (const std::uint32_t edge : line) folds_[edge].grade = FoldGrade::smooth;
-    // What they met may end in the air now.
+    // An edge that met the removed line may end in the air now.
     for (const std::uint32_t vertex : {edges_[line.back()].from, edges_[line.back()].to})
       if (drawn_at(vertex) == 1) tips.push_back(vertex);
   }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fold is looked at in the plane across its edge:
+// A fold is judged in the plane across its edge:
 //
-//     left normal   right normal        The angle between both normals is what the surface turns by at the fold.
-//             \      /                  Beyond each triangle it goes on to turn by some angle, which is found by
-//       _______\____/                   walking around the triangle's tip. Half of that on each side is taken off:
-//      /        edge \                  what is left is the jump, 0 on a cylinder however few sides it has.
+//     left normal   right normal        The angle between both normals is how far the surface turns at the fold.
+//             \      /                  Beyond each triangle the surface turns on by some angle, which is found by
+//       _______\____/                   walking around the triangle's tip. Half of that angle is subtracted for each
+//      /        edge \                  side: the rest is the jump, 0 on a cylinder however few sides it has.
 //     /               .
 //
-// All angles are told by tangents of half angles and sums of arctangents that use nothing but what every machine rounds
-// alike: drawings have to be the same on all of them.
+// Angles are computed from tangents of half angles, and by sums of arctangents, without functions of the C library.
+// Every machine rounds these operations alike, so drawings are the same on all machines.
 #include <algorithm>
 #include <cmath>
 
@@ -19,27 +19,25 @@ namespace {
 
 constexpr double kDegree = 0.017453292519943295;
 constexpr double kStrong = 18 * kDegree, kWeak = 9 * kDegree;
-/// Beside surfaces that turn evenly, and by less than this share of it.
+/// The limit beside surfaces that turn evenly, and by less than kEven times the jump.
 constexpr double kStrongBesideEven = 12 * kDegree, kEven = 0.5;
-constexpr double kOneWay = 0.25;  // of what a side turns one way it may turn the other
+constexpr double kOneWay = 0.25;  // the most that a side turns the other way, as a share, to count as turning one way
 /// A side that turns back by more is not rough: it has a crease of its own.
 constexpr double kRoughest = 10 * kDegree;
-/// A regular polygon of ten sides keeps its corners, and one of eleven is round: the cosine of 34 degrees.
+/// The cosine of 34 degrees: a regular polygon of ten sides keeps its corners, and one of eleven is round.
 constexpr double kSharpCosine = 0.82903757255504162;
-constexpr double kAhead = 0.05;      // the sine of the angle to the edge: sides of rims run along it
+constexpr double kAhead = 0.05;      // the least sine of the angle to the edge: sides of rims run along it
 constexpr double kOtherSide = 0.37;  // the cosine of 68 degrees
 constexpr double kFar = 3;           // times the width of the triangle on the other side
-constexpr int kMostTriangles = 16;   // that are looked at around a corner
+constexpr int kMostTriangles = 16;   // the most that are visited around a corner
 
-// Angles are told by what every machine rounds alike, for drawings are the same on all: no function of the C library.
-
-/// Of half the angle whose sine and cosine are these, times any length: grows with the angle, from -pi to pi.
+/// The tangent of half the angle with this sine and cosine, times any length. Grows with the angle, from -pi to pi.
 double half_tangent(double sine, double cosine) {
   const double sum = std::sqrt(sine * sine + cosine * cosine) + cosine;
   return sum > 0 ? sine / sum : 0;
 }
 
-/// The angle with the tangent of its half, which is not less than 0. To 1e-7 for angles up to 90 degrees.
+/// The angle for the tangent of its half, which is not less than 0. Correct to 1e-7 up to 90 degrees.
 double angle_of(double half) {
   const double t = half / (1 + std::sqrt(1 + half * half)), square = t * t;
   double sum = 0;
@@ -47,14 +45,14 @@ double angle_of(double half) {
   return 4 * t * sum;
 }
 
-/// Of more than a right angle: a right one.
+/// The angle between two vectors; pi / 2 for all that are wider.
 double angle_between(const glm::dvec3& n, const glm::dvec3& m) {
   const double cosine = glm::dot(n, m);
   return angle_of(cosine > 0 ? half_tangent(glm::length(glm::cross(n, m)), cosine) : 1);
 }
 
-/// The plane across an edge. A direction in it is one of the surface there as a complex number, whose argument is the
-/// angle from the left side's normal, around the edge.
+/// The plane across an edge. A surface normal in that plane is a complex number. Its argument is the angle from the
+/// left side's normal, around the edge.
 class CrossSection {
  public:
   CrossSection(const glm::dvec3& along, const glm::dvec3& left)
@@ -74,13 +72,13 @@ double turn_between(const glm::dvec2& from, const glm::dvec2& to) {
   return half_tangent(from.x * to.y - from.y * to.x, glm::dot(from, to));
 }
 
-/// How the surface on one side of a fold turns beyond its triangle: on as the fold does, and back. Tangents of half the
-/// angles, not less than 0.
+/// How far the surface on one side of a fold turns beyond its triangle: in the sense of the fold (`on`), and against it
+/// (`back`). Tangents of half the angles, not less than 0.
 struct Turn {
   double on = 0, back = 0;
 
   [[nodiscard]] double most() const { return std::max(on, back); }
-  /// As a cylinder does, or a plane: what is rough turns both ways.
+  /// True for a cylinder or a plane; a rough surface turns both ways.
   [[nodiscard]] bool is_one_way() const { return std::min(on, back) <= kOneWay * most(); }
   [[nodiscard]] bool is_beyond(double half) const { return half > on || -half > back; }
   void add(double half) {
@@ -89,12 +87,12 @@ struct Turn {
   }
 };
 
-/// What is left of a fold's angle.
+/// The fold's angle, less what the sides take off.
 class Jump {
  public:
   explicit Jump(double half) : half_(half), angle_(angle_of(half)) {}
 
-  /// A side counts by `share`, 0 to 1.
+  /// Subtracts half the turn of a side, weighted by `share`, 0 to 1.
   void take_off(const Turn& turn, double share) {
     angle_ -= 0.5 * share * angle_of(std::min(turn.on, half_));
     rough_ = std::max(rough_, share * std::min(angle_of(turn.back), kRoughest));
@@ -115,7 +113,7 @@ class Jump {
   bool is_even_ = true;
 };
 
-/// One side of a fold: its triangle, of which `tip` is not on the edge.
+/// One side of a fold: its triangle, whose vertex `tip` is not on the edge.
 struct FoldSide {
   TurnedTriangle triangle;
   std::uint32_t tip;
@@ -124,7 +122,7 @@ struct FoldSide {
   double width;
 };
 
-/// `sense` is 1 where the greater angles go on as the fold does, and -1 else. What counts lies ahead of the tip.
+/// `sense` is 1 where larger angles turn in the sense of the fold, and -1 else. Only surface ahead of the tip counts.
 Turn turn_beyond(const Neighbours& near, const FoldSide& side, const CrossSection& section, double sense) {
   const auto is_ahead = [&](std::uint32_t rim) {
     const glm::dvec3 step = near.place(rim) - near.place(side.tip);
@@ -136,7 +134,7 @@ Turn turn_beyond(const Neighbours& near, const FoldSide& side, const CrossSectio
   const glm::uvec3& t = near.corners(side.triangle.number);
   for (int k = 0; k < 3; ++k) {
     if (t[k] == side.tip) continue;
-    // Around the tip, as long as nothing is sharp.
+    // Walks around the tip, as long as nothing is sharp.
     Fan::Side at = fan.side(side.triangle, t[k]);
     glm::dvec3 last = side.normal;
     bool was_ahead = is_ahead(at.rim);
@@ -152,7 +150,7 @@ Turn turn_beyond(const Neighbours& near, const FoldSide& side, const CrossSectio
         break;
       }
       last = normal;
-      // Beyond a cone's tip is another side of it.
+      // Beyond a cone's tip lies the other side of the cone.
       if (!ahead || glm::dot(normal, side.normal) < kOtherSide) continue;
       const double half = sense * turn_between(side.direction, section.direction(normal));
       if (turn.is_beyond(half) && !near.is_sliver(at.triangle.number)) turn.add(half);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A neighbour across a side is the only other triangle there, copies aside. Walking around a vertex over a table of all
-// its triangles takes a few comparisons a step, so a fan of up to 32 triangles is copied out of the table once. Of
-// vertices with more triangles nothing is told: the tip of a cone has no normal that means anything.
+// A neighbour across a side is the only other triangle there, copies aside. A walk around a vertex over a table of all
+// its triangles takes a few comparisons a step, so a fan of up to 32 triangles is copied out of the table once.
+// Vertices with more triangles have no fan: the tip of a cone has no meaningful normal.
 #include "lines/creases/neighbours.h"
 
 #include <algorithm>
@@ -54,7 +54,7 @@ Fan::Side Fan::side(const TurnedTriangle& triangle, std::uint32_t rim) const {
   return {triangle, rim, entry};
 }
 
-/// On to an entry that has the rim of `from`, and out on its other side.
+/// Crosses to an entry that has the rim of `from`, and gives that entry's other side.
 Fan::Side Fan::to(std::size_t entry, const Side& from) const {
   const Entry& own = entries_[from.entry];
   const Entry& other = entries_[entry];
@@ -107,7 +107,7 @@ bool Neighbours::find_sliver(std::uint32_t triangle) const {
   for (int k = 0; k < 3; ++k) {
     const glm::dvec3 &u = sides[k], &v = sides[k == 2 ? 0 : k + 1];
     const double dot = glm::dot(u, v);
-    // No other corner is wider than a right angle.
+    // A triangle has at most one corner wider than a right angle.
     if (dot > 0) return dot * dot > kWidestCorner * kWidestCorner * glm::dot(u, u) * glm::dot(v, v);
   }
   return false;

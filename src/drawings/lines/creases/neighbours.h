@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles beside triangles, and the normals of the surfaces that they are cut from.
 //
-// Files wind neighbours against each other, and hold copies of triangles. So a triangle is known together with whether
-// it is turned: as its neighbour sees it, both are wound alike. Slivers, whose corners lie almost on one line, have
-// normals that mean nothing; they take that of a neighbour.
+// Files wind neighbours against each other and hold copies of triangles. So a TurnedTriangle says whether a triangle is
+// reversed: then it is wound like the neighbour from which it was reached. Slivers, whose corners lie almost on one
+// line, have meaningless normals; they take the normal of a neighbour.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace frontmost::lines_detail {
 
-/// A triangle as its neighbours have it: turned around where the two are wound against each other.
+/// A triangle seen from a neighbour: reversed where the two are wound against each other.
 struct TurnedTriangle {
   std::uint32_t number = no_index;
   bool is_turned = false;
@@ -21,7 +21,7 @@ struct TurnedTriangle {
   [[nodiscard]] bool is_there() const { return number != no_index; }
 };
 
-/// Whether the triangle runs from vertex a to vertex b, and not from b to a.
+/// Whether the triangle's winding runs from vertex a to vertex b, and not from b to a.
 [[nodiscard]] inline bool runs(const glm::uvec3& triangle, std::uint32_t a, std::uint32_t b) {
   return (triangle.x == a && triangle.y == b) || (triangle.y == a && triangle.z == b) ||
          (triangle.z == a && triangle.x == b);
@@ -32,20 +32,20 @@ struct TurnedTriangle {
   return triangle.y != a && triangle.y != b ? triangle.y : triangle.z;
 }
 
-/// The triangles around a vertex, to be walked around.
+/// The triangles around a vertex, for walking around it.
 class Fan {
  public:
-  static constexpr std::size_t most = 32;  ///< triangles; of more none are kept
+  static constexpr std::size_t most = 32;  ///< triangles; a vertex with more has an empty fan
 
   struct Side {
     TurnedTriangle triangle;
-    std::uint32_t rim;  ///< the side's other vertex
-    std::size_t entry;  ///< of the triangle
+    std::uint32_t rim;  ///< the vertex at the other end of this side
+    std::size_t entry;  ///< the triangle's index in the fan
   };
-  /// Of a triangle at the vertex that fan() kept.
+  /// The side from the fan's vertex to `rim`, of a triangle in the fan.
   [[nodiscard]] Side side(const TurnedTriangle& triangle, std::uint32_t rim) const;
-  /// The triangle beyond a side of one, and its other side at the vertex. Copies of a triangle count once; none where
-  /// there are several others.
+  /// The triangle beyond a side, with its other side at the vertex. Copies of a triangle count once. Returns none where
+  /// several different triangles lie beyond.
   [[nodiscard]] Side beyond(const Side& side) const;
 
  private:
@@ -68,14 +68,14 @@ class Neighbours {
   [[nodiscard]] const glm::uvec3& corners(std::uint32_t triangle) const { return seen_.mesh.triangles[triangle]; }
   [[nodiscard]] glm::dvec3 place(std::uint32_t vertex) const { return seen_.mesh.positions[vertex]; }
 
-  /// Beyond the side from vertex a to vertex b. Copies of a triangle count once; none where there are several others.
-  /// O(triangles at a).
+  /// The triangle beyond the side from vertex a to vertex b. Copies of a triangle count once. Returns none where
+  /// several different triangles lie beyond. O(triangles at a).
   [[nodiscard]] TurnedTriangle beyond(const TurnedTriangle& triangle, std::uint32_t a, std::uint32_t b) const;
 
   /// O(triangles at the vertex).
   [[nodiscard]] Fan fan(std::uint32_t vertex) const;
 
-  /// The triangle's own, of unit length or zero.
+  /// The triangle's own normal, of unit length or zero.
   [[nodiscard]] glm::dvec3 normal(const TurnedTriangle& triangle) const {
     const glm::vec3& kept = seen_.triangles[triangle.number].normal;
     const glm::dvec3 normal = kept == glm::vec3(0) ? rounded_normal(triangle.number) : glm::dvec3(kept);
@@ -84,8 +84,8 @@ class Neighbours {
   /// Whether the corners lie almost on a line, one between the others. On a curved surface such a triangle may have any
   /// normal: on a chord of a cylinder's rim it lies in the rim's plane.
   [[nodiscard]] bool is_sliver(std::uint32_t triangle) const { return is_sliver_[triangle] != 0; }
-  /// Of the surface that the triangle is cut from. Slivers that are not part of something wider take the normal of one
-  /// of their neighbours, the one that their own is nearest to.
+  /// The normal of the surface that the triangle is cut from. A sliver that is not part of something wider takes the
+  /// normal of one of its neighbours: the one nearest to its own.
   [[nodiscard]] glm::dvec3 surface_normal(const TurnedTriangle& triangle) const;
 
  private:

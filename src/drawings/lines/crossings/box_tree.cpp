@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles are sorted once by (class of size, place on D. Hilbert's curve), and the tree is then nothing but groups of
-// sixteen of them, groups of sixteen groups, and so on: nothing has to be decided while it is built.
+// Triangles are sorted once by (class of size, place on D. Hilbert's curve). The tree consists of groups of sixteen of
+// them, groups of sixteen groups, and so on: nothing has to be decided while it is built.
 //
 //    key    | size: 3 bits | place on the curve: 27 bits |
 //
-// Nine tenths of the triangles are one class. The few larger ones have classes of their own, by factors of 4, because
-// one large triangle in a group would make the group's box as large as itself. Corners are scaled by a power of two, so
-// that products of many lengths stay within the range of floats; nothing is rounded by that.
+// Nine tenths of the triangles are one class. The few larger ones have classes by factors of 4, because one large
+// triangle in a group would make the group's box as large as itself. Vertices are scaled by a power of two, which
+// rounds nothing, so that products of many lengths stay within the range of floats.
 #include "lines/crossings/box_tree.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ constexpr std::size_t kPerPart = 4096, kBoxGroupsPerPart = 256;
 constexpr int kBitsAnAxis = 9, kKeyBits = 3 + 3 * kBitsAnAxis;
 constexpr int kExponents = 160;  // more than floats have
 
-/// The low 9 bits, two apart.
+/// Spreads the low 9 bits, with two zeros between neighbours.
 std::uint32_t spread(std::uint32_t bits) {
   std::uint32_t out = 0;
   for (int i = 0; i < kBitsAnAxis; ++i) out |= (bits >> i & 1u) << 3 * i;
@@ -38,7 +38,7 @@ Box box_of(const WeldedMesh& mesh, std::size_t triangle) {
   return box;
 }
 
-/// As std::frexp() has it, which is many times slower, of the box's longest side. Triangles have one that is not 0.
+/// The exponent that std::frexp() gives for the box's longest side, but many times faster. That side is not 0.
 int exponent_of(const Box& box) {
   const glm::dvec3 size = glm::dvec3(box.high) - glm::dvec3(box.low);
   const double longest = std::max({size.x, size.y, size.z});
@@ -47,14 +47,14 @@ int exponent_of(const Box& box) {
   return std::clamp(int(bits >> 52) - 1022, -kExponents, kExponents - 1);
 }
 
-/// Sizes of triangles by exponent.
+/// Classes of triangles by size.
 struct SizeClasses {
-  /// 0 for nine tenths of all triangles, and for what is larger the steps of a factor of 4 from there.
+  /// By exponent: 0 for nine tenths of all triangles; each class beyond spans a factor of 4.
   std::array<std::uint32_t, 2 * kExponents> of{};
-  int usual = 0;  ///< the exponent from which on they are larger
+  int usual = 0;  ///< the largest exponent of those nine tenths
 };
 
-/// Asks every sixteenth triangle.
+/// Determined from every sixteenth triangle.
 SizeClasses size_classes(const WeldedMesh& mesh, const Execution& execution) {
   const std::size_t asked = (mesh.triangles.size() + 15) / 16;
   Buffer<std::int16_t> exponents(asked);
@@ -87,7 +87,7 @@ Box bounds_of(const Buffer<glm::vec3>& places, const Execution& execution) {
   return all;
 }
 
-/// D. Hilbert's curve: the class of size, then the place of the box's middle, as 30 bits.
+/// Keys on D. Hilbert's curve, 30 bits: the class of size, then the place of the box's middle.
 class Curve {
  public:
   Curve(const WeldedMesh& mesh, const Execution& execution) : classes_(size_classes(mesh, execution)) {
@@ -103,8 +103,8 @@ class Curve {
     const std::uint32_t size = classes_.of[std::size_t(exponent_of(box) + kExponents)];
     return size << 3 * kBitsAnAxis | hilbert_place(step(at.x) | step(at.y) << 1 | step(at.z) << 2, kBitsAnAxis);
   }
-  /// Makes most triangles as large as 1: the kernels take products of many lengths, and what is less than floats can
-  /// hold costs hundreds of cycles. A power of two rounds nothing; what it makes infinite is left open.
+  /// A power of two that makes most triangles about 1 in size. The kernels take products of many lengths, and denormal
+  /// floats cost hundreds of cycles. The scaling rounds nothing; what becomes infinite is left open by the kernels.
   [[nodiscard]] float scale() const { return std::ldexp(1.0f, std::clamp(-classes_.usual, 0, kMostScale)); }
 
  private:
@@ -125,7 +125,7 @@ BoxTree::BoxTree(const WeldedMesh& mesh, const Features& features, const Executi
   const Curve curve(mesh, execution);
   Buffer<std::uint64_t> keys(count);
   parallel_for(execution, count, kPerPart, [&](std::size_t begin, std::size_t end) {
-    // The i-th that is not left out is i, and as many more as are left out before it.
+    // Index i counts triangles that are not left out; `t` is the triangle's number with those before it added.
     std::size_t t = begin;
     auto next = left_out.begin();
     for (; next != left_out.end() && *next <= t; ++next) ++t;

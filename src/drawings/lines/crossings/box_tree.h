@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles in the order of a curve through space, under a tree of boxes sixteen wide.
+// Triangles in the order of a space-filling curve, under a tree of boxes sixteen wide.
 //
-// Each group of sixteen triangles is held against all groups whose boxes touch its own, from itself on, so that every
-// pair of groups is met once. Both the walk through the tree and the comparison of two groups take sixteen boxes or
-// triangles at a time.
+// Each group of sixteen triangles is compared with itself and with all later groups whose boxes touch its own, so every
+// pair of groups meets once. The walk through the tree and the comparison of two groups take sixteen boxes or triangles
+// at a time.
 //
 //            level 2        [ 16 boxes ]
 //                           /     |    .
@@ -23,15 +23,15 @@ namespace frontmost::lines_detail {
 
 class BoxTree {
  public:
-  /// O(triangles). Triangles of a like size are together, so that large ones do not widen the boxes of small ones.
-  /// Without twins.
+  /// O(triangles). Triangles of similar size are grouped, so that large ones do not widen the boxes of small ones.
+  /// Twins (Features::twins) are left out.
   BoxTree(const WeldedMesh& mesh, const Features& features, const Execution& execution);
 
-  /// Groups of up to sixteen triangles.
+  /// The number of groups of up to sixteen triangles.
   [[nodiscard]] std::size_t group_count() const { return triangles_.numbers.size() / kSpaceLanes; }
 
-  /// Calls visit(a, b) for every two triangles that SpaceKernels::crossing leaves and of which one at least is of the
-  /// group; of two that both are, and of two groups, once.
+  /// Calls visit(a, b) for every pair that SpaceKernels::crossing leaves open, with one triangle of this group and the
+  /// other of this group or a later one. Each pair is visited once.
   template <class Visitor>
   void visit_pairs(std::size_t group, const Visitor& visit) const {
     const std::size_t begin = group * kSpaceLanes;
@@ -81,7 +81,8 @@ class BoxTree {
   static constexpr std::size_t kMostLevels = 9;  ///< 16^8 is more than there are numbers for triangles
   SpaceKernels kernels_;
   SpaceTriangles triangles_;
-  std::vector<SpaceBoxes> levels_;  ///< of groups of sixteen triangles, of groups of those; the last of one group
+  std::vector<SpaceBoxes> levels_;  ///< boxes of groups of sixteen triangles, then of groups of such groups; the last
+                                    ///< level is one group
 };
 
 }  // namespace frontmost::lines_detail

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two triangles whose planes both cut the other meet the planes' common line in an interval each. The ends of what the
-// intervals share are those of their four ends that lie within the other triangle: signs of tetrahedra decide that, and
-// nothing is constructed before.
+// Two triangles that straddle each other's planes meet the planes' common line in an interval each. The common part of
+// the intervals ends at those of their four ends that lie within the other triangle. Signs of tetrahedra decide that
+// before any point is constructed.
 //
 // O. Devillers, P. Guigue. Faster Triangle-Triangle Intersection Tests. 2002.
 #include "lines/crossings/crossings.h"
@@ -22,10 +22,11 @@ namespace frontmost::lines_detail {
 namespace {
 
 constexpr std::size_t kGroupsPerPart = 16, kPairsPerPoll = 16384;
-/// A pair takes as long as so many steps of ten nanoseconds, and all may take so many. A city has 42 thousand segments.
+/// A pair counts as kStepsOfPair steps of ten nanoseconds; the other two bound all steps. A city has 42 thousand
+/// segments.
 constexpr std::uint64_t kStepsOfPair = 8, kMostSteps = std::uint64_t(1) << 30, kMostStepsOfTriangle = 256;
 
-/// A triangle with its vertices in ascending order, so that whoever asks its plane gets the same bits.
+/// A triangle with its vertices in ascending order, so that every computation with its plane gives the same bits.
 class CrossedFace {
  public:
   CrossedFace(const WeldedMesh& mesh, std::uint32_t number)
@@ -57,7 +58,7 @@ struct Heights {
     const auto any = [&](int sign) { return of[0].sign == sign || of[1].sign == sign || of[2].sign == sign; };
     return any(1) && any(-1);
   }
-  /// The corner that alone is not in the plane; -1 where there is no such.
+  /// The only corner that is not in the plane; -1 if there is none or several.
   [[nodiscard]] int beside() const {
     int corner = -1;
     for (int k = 0; k < 3; ++k) {
@@ -76,13 +77,13 @@ Heights heights(const WeldedMesh& mesh, const CrossedFace& face, const CrossedFa
   return heights;
 }
 
-/// Where a face's outline meets the plane of another: one end of its interval.
+/// The point in which a face's outline meets the plane of another: one end of its interval.
 struct EdgeMeeting {
   CrossingEnd end;
   std::uint32_t p, q;  ///< the edge that passes through the plane, or ends in it
 };
 
-/// The two meetings of a face that straddles. An edge that ends in the plane stands for its end.
+/// The two meetings of a face that straddles the plane. A vertex in the plane is represented by one of its edges.
 std::array<EdgeMeeting, 2> meetings(const WeldedMesh& mesh, const CrossedFace& face, const Heights& heights) {
   std::array<EdgeMeeting, 2> found;
   std::size_t count = 0;
@@ -104,14 +105,14 @@ std::array<EdgeMeeting, 2> meetings(const WeldedMesh& mesh, const CrossedFace& f
   return found;
 }
 
-/// Which way the tetrahedron of two edges turns; 0 where they meet.
+/// The orientation of the tetrahedron spanned by two edges; 0 where they meet.
 int turn(const WeldedMesh& mesh, std::uint32_t p, std::uint32_t q, std::uint32_t r, std::uint32_t s) {
   if (p == r || p == s || q == r || q == s) return 0;
   const auto& at = mesh.positions;
   return FacePlane(at[p], at[q], at[r]).height(at[s]).sign;
 }
 
-/// Whether the line through the meeting's edge, which is not in the face's plane, passes through the face.
+/// Whether the line through the meeting's edge passes through the face. The edge does not lie in the face's plane.
 bool is_within(const WeldedMesh& mesh, const EdgeMeeting& meeting, const CrossedFace& face) {
   const glm::uvec3& v = face.vertices;
   const int a = turn(mesh, meeting.p, meeting.q, v.x, v.y), b = turn(mesh, meeting.p, meeting.q, v.y, v.z);
@@ -126,21 +127,22 @@ std::optional<std::uint32_t> shared_vertex(const CrossedFace& a, const CrossedFa
   return std::nullopt;
 }
 
-/// Of two that share a vertex and straddle each other's planes, whether they lie on different sides of it along the
-/// planes' common line, as most neighbours do. That line meets the first's opposite edge; seen along that edge, the
-/// second is then turned the wrong way. `heights` are the first's over the second.
+/// For two faces that share a vertex and straddle each other's planes: whether they lie on different sides of that
+/// vertex along the planes' common line, as most neighbours do. The line meets the first face's opposite edge; seen
+/// along that edge, the second face is then turned the wrong way. `heights` are those of the first face over the
+/// second.
 bool lie_apart(const WeldedMesh& mesh, const std::array<const CrossedFace*, 2>& faces, const Heights& heights,
                std::uint32_t shared) {
   const glm::uvec3 &a = faces[0]->vertices, &b = faces[1]->vertices;
   const int from = a.x == shared ? 1 : 0, to = a.z == shared ? 1 : 2;
-  // The second's other corners; with the shared one before them they turn as all three in order do, unless that is the
-  // middle one.
+  // The second face's other corners. The shared corner followed by these has the same order as all three, unless it is
+  // the middle one.
   const std::uint32_t next = b.x == shared ? b.y : b.x;
   const int order = b.y == shared ? -1 : 1;
   return turn(mesh, a[from], a[to], shared, next) * heights.of[from].sign * order > 0;
 }
 
-/// What was found so far, and edges that lie in planes.
+/// The segments found so far, and edges that lie in planes.
 struct Found {
   std::vector<Crossing> crossings;
   std::vector<EdgeContact> contacts;
@@ -152,7 +154,7 @@ struct Found {
   }
 };
 
-/// The segment of two triangles that share one vertex or none.
+/// The segment of two triangles that share at most one vertex.
 std::optional<Crossing> crossing(const WeldedMesh& mesh, const std::array<const CrossedFace*, 2>& faces, Found& found) {
   const Heights first = heights(mesh, *faces[0], *faces[1]);
   const int first_beside = first.beside();
@@ -171,7 +173,7 @@ std::optional<Crossing> crossing(const WeldedMesh& mesh, const std::array<const 
   for (std::size_t k = 0; k < 2; ++k)
     for (const EdgeMeeting& end : ends[k])
       if (is_within(mesh, end, *faces[1 - k])) within[k][count[k]++] = &end;
-  // Where edges meet, both have an end there: both of one triangle say all.
+  // Where edges meet, both triangles have an end there; two ends of one triangle are then enough.
   for (std::size_t k = 0; k < 2; ++k)
     if (count[k] == 2) return Crossing{within[k][0]->end, within[k][1]->end, 0, 0};
   if (count[0] == 0 || count[1] == 0) return std::nullopt;
@@ -189,7 +191,7 @@ bool is_same_line(const Crossing& a, const Crossing& b) {
   return a.from.place == b.from.place && a.to.place == b.to.place;
 }
 
-/// Segments of all threads, so that their number is known before their memory is asked for.
+/// Counts the segments of all threads, so that a limit is checked before memory is requested.
 class Tally {
  public:
   explicit Tally(std::size_t triangles) : most_(kMost + kMostOfTriangle * triangles) {}
@@ -216,7 +218,7 @@ void add_crossing(const WeldedMesh& mesh, std::uint32_t left, std::uint32_t righ
   found.crossings.push_back(*segment);
 }
 
-/// Makes the lesser end the first, and drops those that rounding left without a length.
+/// Puts the lesser end first, and drops segments whose ends were rounded to one place.
 void order_ends(std::vector<Crossing>& crossings) {
   for (Crossing& c : crossings) {
     const glm::dvec3 &p = c.from.place, &q = c.to.place;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// All of it happens in planes and along lines that the vertices hold exactly: signs of tetrahedra tell what lies where
-// in a plane, with a corner beside it as their fourth, and the order of coordinates what comes first along a line.
+// All decisions are exact. Signs of tetrahedra tell where points lie in a plane, with a vertex beside the plane as
+// their fourth point. The order of coordinates tells which point comes first along a line.
 //
 // find_crossings() finds where a triangle has corners on both sides of another's plane. Where a surface passes through
 // a plane exactly along an edge, neither of the edge's two triangles does, and yet the surfaces cross there:
 //
 //        \     |               The edge (o) lies in the plane of a third triangle, and its own two lie on different
-//    -----o----- plane         sides of it. Such edges are listed on the way, with the triangles in whose planes they
-//         |                    lie, and decided here, all together, because their neighbours have to be known.
+//    -----o----- plane         sides of it. find_crossings() lists such edges with the triangles in whose planes they
+//         |                    lie. They are decided here, all together, because their neighbours have to be known.
 #include <algorithm>
 #include <optional>
 #include <tuple>
@@ -24,7 +24,7 @@ struct Edge {
   bool operator==(const Edge& other) const { return from == other.from && to == other.to; }
 };
 
-/// Triangles at an edge by their third corners.
+/// The triangles at an edge, by their third vertices.
 struct Wedge {
   std::uint32_t triangles[2] = {no_index, no_index}, apexes[2] = {no_index, no_index};
   int count = 0;
@@ -48,7 +48,7 @@ void visit_edges(const glm::uvec3& t, const Visitor& visit) {
   }
 }
 
-/// The wedges of the edges of contacts and of their triangles.
+/// The wedges of the contacts' edges and of the edges of their triangles.
 class Wedges {
  public:
   Wedges(const WeldedMesh& mesh, const std::vector<EdgeContact>& contacts) {
@@ -89,7 +89,7 @@ class Contacts {
     const glm::uvec3& t = mesh_.triangles[contact.triangle];
     const int above = turn(t.x, t.y, t.z, wedge.apexes[0]), below = turn(t.x, t.y, t.z, wedge.apexes[1]);
     if (above == 0 && below == 0) return std::nullopt;
-    // An apex in the triangle's plane has all of its corners in one plane with the edge.
+    // An apex in the triangle's plane puts all corners of its own triangle in one plane with the edge.
     const std::uint32_t beside = wedge.apexes[above != 0 ? 0 : 1];
     int sides[3];  // of the triangle's corners beside the edge
     for (int k = 0; k < 3; ++k) sides[k] = turn(edge.from, edge.to, beside, t[k]);
@@ -122,14 +122,14 @@ class Contacts {
   [[nodiscard]] int turn(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t x) const {
     return height(a, b, c, x).sign;
   }
-  /// Of points of one line.
+  /// Order along a line. Precondition: both points are on that line.
   [[nodiscard]] bool is_before(std::uint32_t a, std::uint32_t b) const {
     const glm::dvec3 p = mesh_.positions[a], q = mesh_.positions[b];
     return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
   }
   [[nodiscard]] CrossingEnd end_at(std::uint32_t vertex) const { return {mesh_.positions[vertex], {vertex, vertex}}; }
 
-  /// What of the edge lies in a triangle that has corners on both sides of it.
+  /// The part of the edge that lies in a triangle with corners on both sides of it.
   [[nodiscard]] std::optional<Crossing> within(const Edge& edge, const Wedge& wedge, std::uint32_t triangle,
                                                const int (&sides)[3]) const {
     const glm::uvec3& t = mesh_.triangles[triangle];
@@ -159,7 +159,7 @@ class Contacts {
     return {t <= 0.5 ? a + (b - a) * t : b + (a - b) * (1 - t), {edge.from, edge.to}};
   }
 
-  /// What two edges of one line have in common, if their triangles follow each other in turn around it.
+  /// The common part of two edges of one line, if their triangles alternate around it.
   [[nodiscard]] std::optional<Crossing> along(const EdgeOfTwo& one, std::uint32_t p, std::uint32_t q) const {
     const Edge other{std::min(p, q), std::max(p, q)};
     const Wedge& wedge = wedges_.of(other);
@@ -173,12 +173,12 @@ class Contacts {
                     std::max(one.wedge.triangles[0], wedge.triangles[0])};
   }
 
-  /// Whether a triangle of `other` lies between those of an edge, going round it one way (1), or the other way (-1); 0
-  /// where it lies on one of them.
+  /// Where a triangle of `other` lies around edge `e`: 1 between its two triangles in one sense of rotation, -1 between
+  /// them in the other sense, 0 on one of them.
   [[nodiscard]] int place_in(const EdgeOfTwo& e, const Wedge& other, int which) const {
     const std::uint32_t first = e.wedge.apexes[0], second = e.wedge.apexes[1], x = other.apexes[which];
     const auto around = [&](std::uint32_t a, std::uint32_t b) { return turn(e.edge.from, e.edge.to, a, b); };
-    // Something beside the first triangle's plane tells its own half from the other.
+    // A point beside the first triangle's plane distinguishes that triangle's half plane from the opposite one.
     std::uint32_t beside = no_index;
     for (const std::uint32_t apex : {second, other.apexes[0], other.apexes[1]})
       if (around(first, apex) != 0) beside = apex;

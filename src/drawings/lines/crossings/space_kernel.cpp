@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// In floats: what they leave open is decided exactly afterwards.
+// The kernel computes in floats; pairs that it leaves open are decided exactly afterwards.
 //
-//    sixteen triangles against sixteen probes
-//      boxes touch, and no vertex in common around which all lies side by side      MayMeet
+//    sixteen triangles (lanes) against sixteen probes
+//      boxes touch, and no spread vertex is shared                                 MayMeet
 //      the lanes may have corners on both sides of the probe's plane               Straddles
 //      the probe may have corners on both sides of the lanes' planes               IsStraddled
-//      neighbours lie on one side of the shared vertex along the common line        LiesApart
+//      neighbours lie on one side of the shared vertex along the common line       LiesApart
 //      both meet the planes' common line in overlapping stretches                  MeetsLineApart
-//    what is left is asked exactly, one pair at a time                              crossings.cpp
+//    pairs that are left are decided exactly, one at a time                        crossings.cpp
 //
-// Each step answers "certainly not" or "perhaps", with a bound on all roundings, so nothing is lost. The steps are in
-// the order of what they cost for what they leave out.
+// Each step answers "certainly not" or "perhaps", with a bound on all rounding errors, so no crossing is lost. The
+// steps are in the order of their cost per pair that they exclude.
 
 #include "lines/crossings/space_lanes.h"
 
@@ -32,10 +32,10 @@ using DU = hn::RebindToUnsigned<D>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 
-/// What the roundings of the normal, the difference and the product may amount to, as a share of the sum of the terms'
-/// absolute values; and where floats underflow.
+/// kShare bounds the rounding errors of the normal, the difference and the product, as a share of the sum of the terms'
+/// absolute values. kLeast bounds errors by underflow.
 constexpr float kShare = 32.0f / 16777216.0f, kLeast = 1e-36f;
-/// The same where most sizes are about 1 and products of it must not underflow in turn.
+/// kLeast for heights, whose products must not underflow in turn; most sizes are about 1.
 constexpr float kLeastHeight = 1e-20f;
 
 HWY_INLINE M Overlaps(V low, V high, float box_low, float box_high) {
@@ -77,7 +77,7 @@ HWY_INLINE LanePlane PlaneThrough(const Vector3& corner, const Vector3& one, con
           {bound(c.y, d.z, c.z, d.y), bound(c.z, d.x, c.x, d.z), bound(c.x, d.y, c.y, d.x)}};
 }
 
-/// Whether a point is above a plane, or below, whatever rounding did; neither for what is no number.
+/// Whether a point is certainly above a plane, or below it; neither for NaN.
 struct Height {
   M is_above, is_below;
 
@@ -91,7 +91,7 @@ struct Height {
   }
 };
 
-/// Which corners rounding does not rule out to be above a plane, and below; its own vertices are neither.
+/// Whether some corners may be above a plane, or below; vertices shared with the plane's triangle are neither.
 struct LaneSides {
   M above, below;
 
@@ -107,8 +107,8 @@ HWY_INLINE Vector3 Choose(M mask, const Vector3& yes, const Vector3& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-/// A triangle that a plane cuts: the corner that is alone on its side of it, and the other two. Of use where it
-/// `is_known` on which side each of them is.
+/// A triangle that a plane cuts: the corner that is alone on its side, and the other two. Valid where `is_known`: each
+/// corner is certainly on one side.
 struct Cut {
   Vector3 alone, one, other;
   M is_known;
@@ -124,11 +124,11 @@ struct Cut {
   }
 };
 
-/// From a corner that lies in a plane to where the opposite side passes through it, of any length.
+/// A vector of any length from a corner in a plane to the point where the opposite edge passes through the plane.
 struct LaneReach {
   Vector3 to, error;
 
-  /// The other two corners from that one. Only of use where they are not on one side of the plane.
+  /// `a` and `b` lead from that corner to the other two. Valid only where these are not on one side of the plane.
   HWY_INLINE LaneReach(const Vector3& a, const Vector3& b, const LanePlane& plane) {
     const D d;
     const Vector3 far_a = Abs(a), far_b = Abs(b);
@@ -138,7 +138,7 @@ struct LaneReach {
                      hn::Add(hn::Mul(p.z, t), hn::Mul(q.z, u))};
     };
     to = mix(a, high_b, b, high_a);
-    // A height is at most its own terms' sum: that much bounds what rounds on the way from it, too.
+    // A height is at most the sum of its own terms, so that sum bounds later roundings, too.
     const V share = hn::Set(d, 2 * kShare), least = hn::Set(d, kLeastHeight);
     const V error_a = hn::Add(hn::Mul(Dot(far_a, plane.size), share), least);
     const V error_b = hn::Add(hn::Mul(Dot(far_b, plane.size), share), least);
@@ -191,7 +191,7 @@ struct Lanes {
     return hn::RebindMask(
         D(), hn::Or(hn::Or(hn::Eq(vertex[0], wanted), hn::Eq(vertex[1], wanted)), hn::Eq(vertex[2], wanted)));
   }
-  /// Which touch the probe's box, and have no vertex in common with it around which all is known to lie side by side.
+  /// Lanes that touch the probe's box and share no vertex with it around which all triangles lie side by side.
   HWY_INLINE M MayMeet(const Probe& probe) const {
     const DU d;
     const auto overlaps = [&](V from, V to, int axis) HWY_ATTR {
@@ -205,7 +205,7 @@ struct Lanes {
     };
     return hn::AndNot(hn::RebindMask(D(), hn::Or(hn::Or(has(0), has(1)), has(2))), touches);
   }
-  /// Which may have corners on both sides of the probe's plane.
+  /// Lanes that may have corners on both sides of the probe's plane.
   HWY_INLINE M Straddles(const Probe& probe, float least, float most) const {
     const D d;
     M above = hn::FirstN(d, 0), below = above;
@@ -213,13 +213,13 @@ struct Lanes {
       const auto is = [&](int v) HWY_ATTR { return hn::Eq(vertex[k], probe.Vertex(v)); };
       const M shared = hn::RebindMask(d, hn::Or(hn::Or(is(0), is(1)), is(2)));
       const V value = Dot(from_middle[k], probe.Splat3(probe.all.normal));
-      // In this way round, so that what is no number counts as both.
+      // The comparison is negated so that NaN counts as both.
       above = hn::Or(above, hn::Not(hn::Or(shared, hn::Lt(value, hn::Set(d, least)))));
       below = hn::Or(below, hn::Not(hn::Or(shared, hn::Gt(value, hn::Set(d, most)))));
     }
     return hn::And(above, below);
   }
-  /// Of whose planes the probe may have corners on both sides; none that share two vertices with it.
+  /// Lanes for whose planes the probe may have corners on both sides; none that share two vertices with it.
   HWY_INLINE M IsStraddled(const Probe& probe, const M (&has)[3]) const {
     const D d;
     LaneSides sides{hn::FirstN(d, 0), hn::FirstN(d, 0)};
@@ -227,14 +227,14 @@ struct Lanes {
     const M two = hn::Or(hn::Or(hn::And(has[0], has[1]), hn::And(has[1], has[2])), hn::And(has[2], has[0]));
     return hn::AndNot(two, sides.Both());
   }
-  /// Which of the lanes in `asked` certainly meet the line that their plane and the probe's have in common wholly
-  /// before the probe does, or behind: each of the two sides of one that cross the other's plane then turns the same
-  /// way to each of the other's.
+  /// Lanes in `asked` that certainly meet the line common to both planes wholly before the probe or wholly behind it.
+  /// Each of the two edges of one triangle that cross the other's plane then has the same orientation to each of the
+  /// other's.
   HWY_INLINE std::uint64_t MeetsLineApart(const Probe& probe, std::uint64_t asked) const {
     const Vector3 p[3] = {probe.Corner(0), probe.Corner(1), probe.Corner(2)};
     const Cut own(corner, {p[0], probe.Splat3(probe.all.normal), probe.Splat3(probe.all.size)}), other(p, plane);
     const std::uint64_t known = frontmost::HWY_NAMESPACE::BitsOf(D(), hn::And(own.is_known, other.is_known)) & asked;
-    if (known == 0) return 0;  // as where triangles touch
+    if (known == 0) return 0;  // for example, where triangles touch
     const LanePlane one = PlaneThrough(other.alone, own.alone, own.one),
                     two = PlaneThrough(other.alone, own.alone, own.other);
     const Height a(other.one, one), b(other.other, one), c(other.one, two), d(other.other, two);
@@ -242,8 +242,8 @@ struct Lanes {
     const M below = hn::And(hn::And(a.is_below, b.is_below), hn::And(c.is_below, d.is_below));
     return frontmost::HWY_NAMESPACE::BitsOf(D(), hn::Or(above, below)) & known;
   }
-  /// Of those that share a vertex with the probe, which lie on another side of it along the planes' common line than
-  /// the probe does, whatever rounding did: as most neighbours do.
+  /// Lanes that share a vertex with the probe and certainly lie on the other side of it along the planes' common line,
+  /// as most neighbours do.
   HWY_INLINE M LiesApart(const Probe& probe, const M (&has)[3]) const {
     const D d;
     const Vector3 p[3] = {probe.Corner(0), probe.Corner(1), probe.Corner(2)};
@@ -264,8 +264,9 @@ struct Lanes {
   }
 };
 
-/// By probe, the heights over its plane, from the middle of a box on, between which rounding leaves open on which side
-/// a point of the box is. The error is that of the farthest point, so that it costs nothing by point.
+/// For each probe: the range of heights over its plane in which rounding leaves the side of a point in a box open.
+/// Heights are relative to the middle of the box. The error of the farthest point is used for all, so that it costs
+/// nothing per point.
 struct Thresholds {
   HWY_ALIGN float least[kSpaceLanes], most[kSpaceLanes];
 
@@ -322,7 +323,7 @@ std::uint32_t CrossingGroups(const SpaceTriangles& triangles, std::size_t first,
   std::uint32_t found = 0;
   for (std::size_t i = 0; i < kSpaceLanes; i += hn::Lanes(d)) {
     const Lanes lanes(triangles, first + i, middle);
-    // Without a branch a probe: whether any lane is left is anybody's guess.
+    // No branch per probe: whether any lane is left is unpredictable.
     std::uint16_t left[kSpaceLanes];
     std::uint32_t near = 0, some_left = 0;
     frontmost::HWY_NAMESPACE::ForEachBit(touching, [&](std::size_t p) HWY_ATTR {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boxes and triangles in space, sixteen side by side: the plain data that the kernel of crossings works on, without any
-// vector type, so that everybody may include it.
+// Boxes and triangles in space, sixteen side by side: plain data for the kernel of crossings, without any vector type,
+// so that every file may include it.
 //
-// Arrays are padded to whole groups of sixteen. Boxes are padded by such that nothing touches, triangles by repeating
-// the last one, whose pairs are left out by their number.
+// Arrays are padded to whole groups of sixteen: boxes with boxes that touch nothing, triangles with copies of the last
+// one. Callers drop the pairs of padding triangles by their index.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ struct SpaceBoxes {
       low[axis] = Buffer<float>(padded_to_lanes(count));
       high[axis] = Buffer<float>(padded_to_lanes(count));
     }
-    // Touched by nothing, not even by a box without end, as an empty one would be.
+    // A padding box touches nothing; an empty box would still touch an infinite one.
     constexpr float none = std::numeric_limits<float>::quiet_NaN();
     for (std::size_t i = count; i < low[0].size(); ++i) set(i, {glm::vec3(none), glm::vec3(none)});
   }
@@ -43,14 +43,14 @@ struct SpaceBoxes {
   }
 };
 
-/// In a vertex' number: its triangles are not known to lie side by side around it.
+/// Flag in a vertex number: the triangles of this vertex are not known to lie side by side around it.
 inline constexpr std::uint32_t kNotSpread = 0x80000000u;
 
-/// Padded by repeating the last.
+/// Padded by copies of the last triangle.
 struct SpaceTriangles {
   std::size_t count = 0;
-  Buffer<float> corners[9];           ///< of any scale
-  Buffer<std::uint32_t> vertices[3];  ///< with kNotSpread
+  Buffer<float> corners[9];           ///< at any scale
+  Buffer<std::uint32_t> vertices[3];  ///< vertex numbers with kNotSpread
   Buffer<std::uint32_t> numbers;
 
   explicit SpaceTriangles(std::size_t size) : count(size), numbers(padded_to_lanes(size)) {
@@ -67,28 +67,28 @@ struct SpaceTriangles {
   }
 };
 
-/// Where products of floats underflow, this much more of a normal's size makes up for it.
+/// Added to the size of a normal, in place of what products of floats lose by underflow.
 inline constexpr float kLeastSize = 1e-32f;
-/// Sixteen triangles that others are held against, from `first` on.
+/// Sixteen triangles, from `first` on, with which others are compared.
 struct SpaceProbes {
   std::size_t first;
-  alignas(64) std::uint32_t spread[3][kSpaceLanes];             ///< their vertices; no_index for those with kNotSpread
-  alignas(64) float low[3][kSpaceLanes], high[3][kSpaceLanes];  ///< their boxes
+  alignas(64) std::uint32_t spread[3][kSpaceLanes];             ///< the vertices; no_index for those with kNotSpread
+  alignas(64) float low[3][kSpaceLanes], high[3][kSpaceLanes];  ///< the boxes
   alignas(64) float normal[3][kSpaceLanes];                     ///< of any length, each component to 2^-22 of `size`
-  alignas(64) float size[3][kSpaceLanes];  ///< at least the absolute values that it is a difference of
+  alignas(64) float size[3][kSpaceLanes];  ///< at least the sum of absolute values of the terms of `normal`
 };
 
-/// By probe: triangle i of sixteen in bit i.
+/// For each probe, bit i stands for triangle i of sixteen.
 using SpaceMasks = std::array<std::uint16_t, kSpaceLanes>;
 
-/// The functions of one instruction set, for sixteen from `first`, a multiple of 16, on.
+/// The functions of one instruction set. Each works on sixteen items from `first` on, a multiple of 16.
 struct SpaceKernels {
   /// Bit i: box first + i has a point in common with `box`.
   std::uint32_t (*touching)(const SpaceBoxes& boxes, std::size_t first, const Box& box);
   void (*set_probes)(const SpaceTriangles& triangles, std::size_t first, SpaceProbes& probes);
-  /// Triangles whose box touches a probe's, that share no vertex with it but one with kNotSpread, and of which rounding
-  /// does not rule out that each has corners on both sides of the other's plane, and meets the planes' common line
-  /// where the other does. `box` holds the sixteen triangles. Returns which probes have any, and sets their masks.
+  /// Finds triangles that may cross a probe: their boxes touch, they share no vertex unless it has kNotSpread, and
+  /// rounding leaves open that each has corners on both sides of the other's plane and that they overlap along the
+  /// planes' common line. `box` encloses the sixteen triangles. Sets `masks` and returns which probes have any.
   std::uint32_t (*crossing)(const SpaceTriangles& triangles, std::size_t first, const Box& box,
                             const SpaceProbes& probes, SpaceMasks& masks);
 };

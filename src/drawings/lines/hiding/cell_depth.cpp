@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle's plane and sides are linear functions over the cells. A function's least and greatest value over a square
-// is at one of two corners, which the signs of its slopes tell, so every question costs a few multiplications.
+// A triangle's plane and sides are linear functions over the cells. Such a function has its extremes over a square at
+// two corners, which the signs of its slopes select, so every question costs a few multiplications.
 //
-// Triangles that are seen almost from their edge, that are very thin, or that reach very far have planes whose rounding
-// could matter: they keep only the range of their distances, and their sides if these are certain. So a careless bound
-// is never used; what is given up is only that such a triangle hides nothing early.
+// Rounding could matter for triangles that are seen almost edge-on, are very thin or reach very far. These keep only
+// the range of their distances, and their sides if these are certain. No unsafe bound is ever used: such a triangle
+// only hides nothing early.
 #include "lines/hiding/cell_depth.h"
 
 #include <cmath>
@@ -13,11 +13,11 @@
 namespace frontmost::lines_detail {
 namespace {
 
-/// Cells. Beyond, roundings could matter.
+/// In cells. Rounding could matter farther away.
 constexpr double kFarthest = 1e5;
-/// The same for triangles longer than so many times their width: for their planes, and for which side is within.
+/// Limits of length by width beyond which rounding could matter: for planes, and for which side is within.
 constexpr double kThinnest = 1e4, kThinnestSide = 1e9;
-/// Of the values: very much more than the rounding of a place in the picture.
+/// Relative to the values; far more than the rounding error of a place in the picture.
 constexpr double kDepthSlack = 1e-9, kSideSlack = 1e-5, kFloatSlack = 1e-6;
 
 }  // namespace
@@ -42,7 +42,8 @@ CellDepth::CellDepth(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3&
   linear_.by_x = (along_b * (c.y - a.y) - along_c * (b.y - a.y)) / turn;
   linear_.by_y = (along_c * (b.x - a.x) - along_b * (c.x - a.x)) / turn;
   linear_.at_0 = at_a - linear_.by_x * a.x - linear_.by_y * a.y;
-  // What a place is off by turns the plane, the more the smaller the triangle is, and sectors ask for it far away.
+  // An error in a place turns the plane, more for smaller triangles, and the plane may be evaluated far from the
+  // triangle.
   linear_.slack = kDepthSlack * (1 + thin) *
                   (std::max(std::abs(value(low_)), std::abs(value(high_))) +
                    (std::abs(linear_.by_x) + std::abs(linear_.by_y)) * (most * 1e-3 + 0.1 / reach));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A cell of an occluder grid in which many triangles come together, divided.
+// Division of a crowded cell of an occluder grid.
 //
 //        +----+----+----+----+     A cell is divided into 4 x 4 parts, and these again as long as that pays. A triangle
-//        |....|    |    |    |     is listed in the parts that it touches. If it covers a part wholly, what lies beyond
-//        |....|----+----+----|     it there, by distances or by its plane, hides nothing more: it is left out of the
-//        |    |    |    |    |     part. So a crowd of sheets behind one sheet takes one entry.
+//        |....|    |    |    |     is listed in the parts that it touches. If it covers a part wholly, triangles beyond
+//        |....|----+----+----|     it there, by distance or by plane, hide nothing more and are left out of the part.
+//        |    |    |    |    |     So a crowd of sheets behind one sheet takes one entry.
 //        +----+----+----+----+
 #include <array>
 #include <limits>
@@ -24,8 +24,8 @@ struct NearestCover {
   std::size_t entry = 0;
 };
 
-/// Leaves out what lies beyond the part's cover: by its distances, or by its plane. `numbers` are those of the part's
-/// entries among the cell's, which have `depths`.
+/// Removes triangles beyond the part's cover, by distance or by plane. `numbers` gives the place of each entry of the
+/// part among the cell's entries, and so in `depths`.
 void leave_beyond(const GridPlan& plan, const std::vector<CellDepth>& depths, const std::vector<std::size_t>& numbers,
                   const NearestCover& cover, CrowdedCell<CellEntry>& part) {
   std::size_t kept = 0;
@@ -49,7 +49,7 @@ CellParts<CellEntry> split_entries(const GridPlan& plan, const CrowdedCell<CellE
   std::array<NearestCover, CellTree::parts> covers;
   for (std::size_t e = 0; e < whole.items.size(); ++e) {
     if (e % kEntriesPerPoll == 0) check_cancelled(plan.execution);
-    // All that follow are beyond what covers each part.
+    // All entries that follow are beyond the cover of each part.
     const auto is_beyond = [&](const NearestCover& cover) { return whole.items[e].nearest > cover.farthest; };
     if (e % kEntriesPerLook == 0 && std::all_of(covers.begin(), covers.end(), is_beyond)) break;
     const Footprint& footprint = plan.footprints[whole.items[e].footprint];

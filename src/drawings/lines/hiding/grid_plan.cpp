@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grid is first made as fine as the number of triangles asks for, and its entries are counted. Where large
-// triangles would take too many cells it is made coarser until they fit: memory is bounded by sixteen entries for each
+// The grid is first made as fine as the number of triangles suggests, and its entries are counted. If large triangles
+// take too many cells, the grid is made coarser until they fit. So memory is bounded by sixteen entries for each
 // triangle and some millions.
 //
-// Footprints are sorted by their first cell, so that triangles that lie side by side on the screen do so in memory,
-// too: the order of a file may be anything. Places are rounded to floats outwards, and every comparison of places in
-// cells has a pad that is much larger than what rounding can do.
+// Footprints are sorted by their first cell, so that triangles that are neighbours on the screen are neighbours in
+// memory, whatever the order in the file. Places are rounded outwards to floats, and every comparison of places in
+// cells has a pad far above the rounding error.
 #include "lines/hiding/grid_plan.h"
 
 #include <bit>
@@ -20,18 +20,18 @@
 namespace frontmost::lines_detail {
 namespace {
 
-/// One cell for so many triangles. Sixteen boxes are asked at once, so that many small cells cost more than few large
-/// ones: from 4 to 32 the million-triangle terrain takes 1.1 to 0.8 s in all, and 64 gain nothing more.
+/// Triangles per cell. Sixteen boxes are tested at once, so many small cells cost more than few large ones. From 4 to
+/// 32, the time for the million-triangle terrain falls from 1.1 to 0.8 s in all; 64 gains nothing more.
 constexpr double kTrianglesPerCell = 32;
 constexpr double kMostCells = 1 << 22;
-/// How many cells a triangle may take, all in all: what bounds memory.
+/// The mean number of cells that a triangle may take; bounds memory.
 constexpr double kEntriesPerTriangle = 16;
 constexpr std::size_t kPerPart = 4096, kSeenPerPart = 1024;
-/// How far ahead triangles are fetched that lie anywhere.
+/// How far ahead triangles at random addresses are prefetched.
 constexpr std::size_t kAhead = 16;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Grows by what rounding may have moved a corner, also one far outside of the picture.
+/// Moved outwards by the greatest rounding error of a corner, also one far outside of the picture.
 double widened(double value, double direction) { return value + direction * 1e-9 * (1 + std::abs(value)); }
 
 }  // namespace
@@ -48,7 +48,7 @@ GridPlan::GridPlan(const SeenMesh& its_seen, const View& view, bool all, const E
   }
 }
 
-/// So many cells, the places of vertices on them, and what triangles take of them.
+/// Sets the resolution, the places of vertices in cells, and the footprints.
 void GridPlan::set_cells(const View& view, double cells) {
   const double size = std::sqrt(double(view.width) * view.height / cells);
   grid.columns = std::max(1, int(std::ceil(view.width / size)));
@@ -64,8 +64,8 @@ void GridPlan::set_cells(const View& view, double cells) {
   find_footprints();
 }
 
-/// What is seen, in the order of first cells: what lies side by side on the screen does in memory. Then what becomes of
-/// each.
+/// Footprints of triangles that are seen, in the order of first cells, so that neighbours on the screen are neighbours
+/// in memory. Then their ranges, occluders and numbers of entries.
 void GridPlan::find_footprints() {
   const std::size_t count = seen.mesh.triangles.size(), cells = grid.count();
   Buffer<Footprint> all(count);
@@ -161,7 +161,7 @@ GridPlan::Outline GridPlan::outline_of(std::uint32_t triangle) const {
   return outline;
 }
 
-/// Of the outline between the row's two sides alone.
+/// The extent of the outline between the lower and upper side of a row.
 GridPlan::Span GridPlan::within_row(const Outline& outline, int row) {
   Span span{infinite, -infinite};
   const double top = row - kCellPad, bottom = row + 1 + kCellPad;
@@ -181,7 +181,7 @@ GridPlan::Span GridPlan::within_row(const Outline& outline, int row) {
 Occluder GridPlan::occluder_of(const Footprint& footprint) const {
   glm::uvec3 v = seen.mesh.triangles[footprint.triangle];
   int turn = seen.facing[footprint.triangle];
-  // Without a branch, which would be wrong as often as not.
+  // Sorts without branches, which would be mispredicted half of the time.
   const auto order = [&](std::uint32_t& a, std::uint32_t& b) {
     turn *= 1 - 2 * int(b < a);
     const std::uint32_t low = std::min(a, b);
@@ -193,7 +193,7 @@ Occluder GridPlan::occluder_of(const Footprint& footprint) const {
   return {{at[v.x], at[v.y], at[v.z]}, {v.x, v.y, v.z}, turn, footprint.triangle, is_near(footprint)};
 }
 
-/// In cells, and infinite where it reaches behind the eye.
+/// In cells; infinite for a triangle that reaches behind the near plane.
 double GridPlan::area_of(std::uint32_t triangle) const {
   const glm::uvec3& t = seen.mesh.triangles[triangle];
   const glm::dvec3 &a = places_[t.x], &b = places_[t.y], &c = places_[t.z];
@@ -201,7 +201,7 @@ double GridPlan::area_of(std::uint32_t triangle) const {
   return std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
 }
 
-/// How many cells it takes, at most.
+/// An upper bound on the number of cells.
 double GridPlan::entries_of(const Footprint& footprint, const CellRange& range) const {
   const double columns = range.last_column - range.first_column + 1, rows = range.last_row - range.first_row + 1;
   if (!range.is_large()) return columns * rows;

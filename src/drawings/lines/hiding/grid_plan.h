@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an occluder grid is made from: how fine it is, and what each triangle takes of it. Known while it is made, and
-// not after. A small triangle takes the cells that its box touches. A large one takes, row by row, the cells that its
-// outline touches, which may be far fewer, and each at its own distance.
+// The plan of an occluder grid: its resolution, and the cells of each triangle. It exists only while the grid is built.
+// A small triangle takes the cells that its box touches. A large one takes, row by row, the cells that its outline
+// touches, which may be far fewer, each with its own distance.
 //
 //    small: all cells of its box      large: row by row, from its left side to its right
 //    +--+--+--+                       +--+--+--+--+--+
 //    |##|##|  |                       |  |  |##|  |  |
-//    |##|##|  |                       |  |##|##|##|  |      each cell with the distance at which the triangle
-//    +--+--+--+                       |##|##|##|##|##|      is nearest within it
+//    |##|##|  |                       |  |##|##|##|  |      each cell with the least distance of the triangle
+//    +--+--+--+                       |##|##|##|##|##|      within it
 //                                     +--+--+--+--+--+
 #pragma once
 
@@ -22,11 +22,11 @@
 
 namespace frontmost::lines_detail {
 
-/// Below the value, by up to 2^-22 of it: whatever it is rounded to.
+/// A float below the value by up to 2^-22 of it, in every rounding mode.
 inline float rounded_down(double value) { return float(value - std::abs(value) * 2e-7); }
 inline float rounded_up(double value) { return -rounded_down(-value); }
 
-/// A triangle's box in cells; `nearest` is infinite where it is not seen.
+/// A triangle's box in cells; `nearest` is infinite for triangles that are not seen.
 struct Footprint {
   glm::vec2 low, high;
   float nearest;
@@ -36,13 +36,13 @@ struct Footprint {
 /// The columns and rows of cells that a box touches.
 struct CellRange {
   int first_column, last_column, first_row, last_row;
-  /// Whether its outline leaves out some of the cells.
+  /// Whether the triangle's outline may leave out some of these cells.
   [[nodiscard]] bool is_large() const { return last_row - first_row >= 2 && last_column > first_column; }
 };
 
-/// A triangle in a cell. Sorted by nearness.
+/// A triangle in a cell. The nearest comes first.
 struct CellEntry {
-  float nearest;  ///< planar distance of what of it may lie in the cell
+  float nearest;  ///< least planar distance of the part that may lie in the cell
   std::uint32_t footprint;
   friend bool operator<(const CellEntry& a, const CellEntry& b) {
     return a.nearest != b.nearest ? a.nearest < b.nearest : a.footprint < b.footprint;
@@ -51,30 +51,30 @@ struct CellEntry {
 
 class GridPlan {
  public:
-  /// Borrows all. Takes fewer cells where triangles are large: a thousand sheets before a million cells would be a
-  /// thousand million entries. O(triangles).
+  /// Keeps references to its arguments. Takes fewer cells where triangles are large: a thousand sheets before a million
+  /// cells would give a thousand million entries. O(triangles).
   GridPlan(const SeenMesh& seen, const View& view, bool keeps_all, const Execution& execution);
 
   const SeenMesh& seen;
   const Sight sight;
-  const bool keeps_all;  ///< as OccluderGrid has it
+  const bool keeps_all;  ///< as for OccluderGrid
   const Execution& execution;
   SquareGrid grid;                   ///< over the picture, with squares of size 1
-  double scale = 1;                  ///< cells a pixel
-  Buffer<Footprint> footprints;      ///< of what is seen, in the order of first cells
+  double scale = 1;                  ///< cells per pixel
+  Buffer<Footprint> footprints;      ///< of triangles that are seen, in the order of their first cells
   Buffer<CellRange> ranges;          ///< of the footprints
   Buffer<Occluder> occluders;        ///< of the footprints
-  std::vector<std::uint32_t> large;  ///< the footprints whose ranges are
+  std::vector<std::uint32_t> large;  ///< indices of footprints whose ranges are large
 
   [[nodiscard]] CellDepth depth_of(std::uint32_t triangle) const {
     const glm::uvec3& t = seen.mesh.triangles[triangle];
     return {places_[t.x], places_[t.y], places_[t.z], sight.is_parallel()};
   }
-  /// Whether some of the triangle may lie before the near plane.
+  /// Whether a part of the triangle may lie before the near plane.
   [[nodiscard]] bool is_near(const Footprint& footprint) const {
     return double(footprint.nearest) <= sight.near() + 1e-6 * std::abs(sight.near());
   }
-  /// Calls visit(cell, nearest) for every cell that the triangle of that footprint may touch, and how near it is there.
+  /// Calls visit(cell, nearest) for every cell that the footprint's triangle may touch, with its least distance there.
   template <class Visitor>
   void visit_cells(std::size_t number, const Visitor& visit) const {
     const CellRange& all = ranges[number];
@@ -85,13 +85,13 @@ class GridPlan {
   }
 
  private:
-  /// What a triangle leaves between the near and far planes, in cells.
+  /// The part of a triangle between the near and far planes, as a polygon in cells.
   struct Outline {
     std::array<glm::dvec2, 5> corners;
     int count = 0;
     double nearest = 0;
   };
-  /// Left and right, in cells; none if it is empty.
+  /// The left and right ends, in cells; empty if left > right.
   struct Span {
     double left, right;
   };
@@ -107,7 +107,7 @@ class GridPlan {
   [[nodiscard]] int column(double x) const { return int(std::clamp(x, 0.0, double(grid.columns - 1))); }
   [[nodiscard]] int row(double y) const { return int(std::clamp(y, 0.0, double(grid.rows - 1))); }
 
-  /// Row by row, what of the outline lies in each.
+  /// Visits the cells that the outline touches, row by row.
   template <class Visitor>
   void visit_rows(const Footprint& footprint, const CellRange& all, const Visitor& visit) const {
     const Outline outline = outline_of(footprint.triangle);
@@ -121,16 +121,16 @@ class GridPlan {
   }
 
   Buffer<glm::dvec3> places_;  ///< of vertices: x and y in cells, z the planar distance
-  double entries_ = 0;         ///< rather more cells than the footprints take together
+  double entries_ = 0;         ///< an upper bound on the cells that all footprints take
 };
 
-/// Divides a cell that holds these triangles as long as that leaves less to ask to as many edges. Unless the plan keeps
-/// all, a part that a triangle covers whole holds none whose planes lie beyond it there. (J. Warnock. A Hidden Surface
-/// Algorithm for Computer Generated Halftone Pictures. 1969.)
+/// Divides a cell with these triangles, as long as that makes queries cheaper, if there are as many edges. Unless the
+/// plan keeps all, a part that a triangle covers whole omits triangles whose planes lie beyond it there. (J. Warnock. A
+/// Hidden Surface Algorithm for Computer Generated Halftone Pictures. 1969.)
 ///
-/// Cost: as divide_cell() says. Where n triangles lie upon each other, as in a stack of sheets of which each is seen,
-/// or around a vertex or an edge that all share, every edge there is held against every triangle by the boxes and sides
-/// of the kernels, 16 at a time.
+/// Cost: as for divide_cell(). Triangles that lie upon each other, as in a stack of visible sheets or around a common
+/// vertex or edge, are not separated. There, every edge is compared with every triangle by the boxes and sides of the
+/// kernels, 16 at a time.
 [[nodiscard]] DividedCell<CellEntry> divide_entries(const GridPlan& plan, CrowdedCell<CellEntry> cell);
 
 }  // namespace frontmost::lines_detail

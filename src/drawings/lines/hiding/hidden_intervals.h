@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of an edge is hidden so far, while one triangle after another is held against it.
+// The parts of an edge that are hidden so far, while one triangle after another is compared with it.
 //
-//    t = 0                              1        United intervals tell what is still open, and asking ends
-//    ---[======]------[===]--[========]---       where nothing is. With counts every triangle has its own
-//       hidden        hidden  hidden             interval, and the number over a place is how many hide it.
+//    t = 0                              1        United intervals show which parts are still open; the search
+//    ---[======]------[===]--[========]---       ends when none is. With counts, every triangle has its own
+//       hidden        hidden  hidden             interval; as many triangles hide a place as intervals cover it.
 //
-// An edge passes cells from one end to the other, so new intervals mostly lengthen the last one or follow it; a deque
+// An edge passes cells from one end to the other, so new intervals mostly lengthen the last one or follow it. A deque
 // is also quick at the other end.
 #pragma once
 
@@ -16,21 +16,21 @@
 
 namespace frontmost::lines_detail {
 
-/// United, so that it tells what is still open; or counted, one interval for each triangle.
+/// United intervals, which show what is still open; or, with counts, one interval for each triangle.
 class HiddenIntervals {
  public:
   struct Hidden {
     Interval interval;
-    std::uint32_t triangle;  ///< of those that are united, the one that came first
+    std::uint32_t triangle;  ///< of united intervals, the triangle that came first
   };
 
-  /// Forgets all, and begins anew.
+  /// Removes all intervals.
   void restart(bool counts) {
     counts_ = counts;
     hidden_.clear();
   }
 
-  /// O(intervals) at worst; O(log intervals) where it lengthens the first or the last one, or is a new one there.
+  /// O(intervals) at worst; O(log intervals) where the interval lengthens the first or last one, or becomes it.
   void add(Interval in, std::uint32_t triangle) {
     if (!(in.begin < in.end)) return;
     if (counts_) {
@@ -49,14 +49,14 @@ class HiddenIntervals {
     }
   }
 
-  /// Whether asking more can tell nothing new about a part. With counts it always can.
+  /// Whether all of `part` is known to be hidden, so that more triangles add nothing. Always false with counts.
   [[nodiscard]] bool cover(const Interval& part) const {
     if (counts_) return false;
     const auto at = first_to(part.end);
     return at != hidden_.end() && at->interval.begin <= part.begin;
   }
 
-  /// From the first to the last point of `part` that is still open; empty where none is.
+  /// The stretch from the first to the last open point of `part`; empty where none is open.
   [[nodiscard]] Interval open_part(Interval part) const {
     if (counts_) return part;
     if (const auto at = first_to(part.begin); at != hidden_.end() && at->interval.begin <= part.begin)
@@ -66,7 +66,7 @@ class HiddenIntervals {
     return part;
   }
 
-  /// United ones in order. With counts, a triangle that was added twice is there once.
+  /// United intervals in order. With counts, a triangle that was added twice occurs once.
   [[nodiscard]] const std::deque<Hidden>& intervals() {
     if (!counts_) return hidden_;
     std::sort(hidden_.begin(), hidden_.end(), [](const Hidden& a, const Hidden& b) { return a.triangle < b.triangle; });
@@ -76,14 +76,14 @@ class HiddenIntervals {
   }
 
  private:
-  /// Of united ones, the first that reaches t.
+  /// The first united interval that reaches t.
   [[nodiscard]] std::deque<Hidden>::const_iterator first_to(double t) const {
     return std::lower_bound(hidden_.begin(), hidden_.end(), t,
                             [](const Hidden& hidden, double place) { return hidden.interval.end < place; });
   }
 
   bool counts_ = false;
-  std::deque<Hidden> hidden_;  ///< cells may come from an edge's end to its beginning
+  std::deque<Hidden> hidden_;  ///< a deque, because cells may come from an edge's end to its beginning
 };
 
 }  // namespace frontmost::lines_detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cell by cell along the edge, the nearest occluders first, eight at a time. A cell is left as soon as what of the edge
-// lies in it is hidden: what else it holds could only hide the same again.
+// An edge visits the cells that it passes, and compares with the nearest occluders first, eight at a time. A cell is
+// left as soon as the part of the edge in it is hidden: further occluders could only hide it again.
 //
 //   edge ----> cells that it passes ----> boxes that overlap it ----> triangles that hide it ----> intervals
 //              (OccluderGrid)             (kernels, 16 at once)       (kernels, 8 at once)         (HiddenIntervals)
@@ -14,10 +14,10 @@ namespace frontmost::lines_detail {
 namespace {
 
 constexpr std::size_t kMostAtOnce = 64, kBlock = 16;
-/// Cells: less than what sides leave open, and more than the rounding of a place.
+/// In cells: less than the tolerance of sides, and more than the rounding error of a place.
 constexpr double kEndPad = 5e-6;
 
-/// A float not nearer, whatever rounding does.
+/// A float that is not greater than the value, in spite of rounding.
 float wide_low(double value) { return float(value - 1e-6 * std::abs(value)); }
 float wide_high(double value) { return -wide_low(-value); }
 
@@ -49,25 +49,26 @@ Interval within_view(const EdgeInEye& edge, const Projection& p) {
   return shown;
 }
 
-/// In pixels, for t within the view.
+/// The point at t in pixels. Precondition: t is within the view.
 glm::dvec2 on_screen(const EdgeInEye& edge, double t, const EdgeOccluders& o) {
-  // From the nearer end, so that both ends are met.
+  // Interpolated from the nearer end, so that both ends are exact.
   glm::dvec3 p = t <= 0.5 ? edge.from + (edge.to - edge.from) * t : edge.to + (edge.from - edge.to) * (1 - t);
-  // It is within the view; rounding may say otherwise of edges that are very much longer than their part in it.
+  // The point is within the view; rounding may put it outside, if the edge is very much longer than its part in the
+  // view.
   p.z = std::max(p.z, o.sight.near());
   return glm::clamp(glm::dvec2(o.sight.to_screen(p)), glm::dvec2(0), glm::dvec2(o.view.width, o.view.height));
 }
 
 enum class Asked { what_hides, what_covers_the_outer_side };
 
-/// What is asked about a span of an edge.
+/// A query about a span of an edge.
 struct EdgeQuestion {
   const EdgeOccluders& o;
   const EdgeInEye& edge;
   const Interval span;
   const Asked asked;
   const glm::dvec2 begin, end;  ///< of the span, in cells
-  const float farthest;         ///< what is no nearer does not matter
+  const float farthest;         ///< occluders that are no nearer do not matter
 
   EdgeQuestion(const EdgeOccluders& occlusion, const EdgeInEye& its_edge, const Interval& its_span, Asked what)
       : o(occlusion),
@@ -81,7 +82,7 @@ struct EdgeQuestion {
   [[nodiscard]] bool hides() const { return asked == Asked::what_hides; }
 };
 
-/// What of the edge may lie in a cell: rather more.
+/// An interval that contains the part of the edge in a cell, with some room.
 Interval part_in(const PassedCell& cell, const EdgeQuestion& question) {
   const Interval& span = question.span;
   const glm::dvec2 along = question.end - question.begin;
@@ -101,7 +102,7 @@ Interval part_in(const PassedCell& cell, const EdgeQuestion& question) {
                         at(is_forward ? cell.high[axis] : cell.low[axis], 2e-6) + 1e-12});
 }
 
-/// A part of the edge as it is seen in a cell.
+/// A part of the edge, as it appears in a cell.
 struct PartInCell {
   ScreenPart box;
   ScreenSegment segment;
@@ -115,7 +116,7 @@ PartInCell seen_in(const PassedCell& cell, const Interval& part, const EdgeQuest
   const glm::dvec2 corner(cell.square.x, cell.square.y);
   const double from = question.edge.distance(part.begin), to = question.edge.distance(part.end);
   float farthest = question.farthest;
-  // What covers may lie behind.
+  // An occluder that covers the outer side may lie behind the edge.
   float from_nearness = -std::numeric_limits<float>::infinity(), to_nearness = from_nearness;
   if (question.hides()) {
     farthest = std::min(farthest, wide_high(std::max(from, to)));
@@ -126,7 +127,7 @@ PartInCell seen_in(const PassedCell& cell, const Interval& part, const EdgeQuest
           {glm::vec2(a - corner), glm::vec2(b - corner), from_nearness, to_nearness}};
 }
 
-/// Holds what is in the batch against the edge. \returns true when more is hidden than before.
+/// Compares the occluders of the batch with the edge. \returns true when more is hidden than before.
 bool hold_against_batch(const EdgeQuestion& question, EdgeSearch& search) {
   const SightedEdge& edge = question.edge.edge;
   HiddenBatch found;
@@ -144,8 +145,8 @@ bool hold_against_batch(const EdgeQuestion& question, EdgeSearch& search) {
   return (found.hides | found.open) != 0;
 }
 
-/// Puts those of the entries from `first` on that have a bit into the batch, and asks when it is full. \returns false
-/// when nothing is left to hide in this cell.
+/// Adds the entries whose bits are set, counted from `first`, to the batch, and compares each batch that is full.
+/// \returns false when nothing is left to hide in this cell.
 bool ask_entries(std::uint64_t bits, std::size_t first, const PassedCell& cell, const EdgeQuestion& question,
                  EdgeSearch& search) {
   for (; bits != 0; bits &= bits - 1) {
@@ -160,8 +161,8 @@ bool ask_entries(std::uint64_t bits, std::size_t first, const PassedCell& cell, 
   return true;
 }
 
-/// For cells of many entries: the nearest first, then those just before the edge. Of a stack of sheets the ones between
-/// hide ever less than the next one, and are asked no more when that has left nothing where they are.
+/// For cells of many entries: asks the nearest first, then those just before the edge. In a stack of sheets, those
+/// between hide less and less; they are skipped once nothing in the cell is open.
 void ask_many(const OccluderGrid::Visit& cell, const EdgeQuestion& question, EdgeSearch& search) {
   const OccluderGrid& grid = question.o.grid;
   Interval open = search.hidden.open_part(part_in(cell, question));
@@ -185,7 +186,7 @@ void ask_many(const OccluderGrid::Visit& cell, const EdgeQuestion& question, Edg
   }
 }
 
-/// For cells of few entries.
+/// For cells of few entries: asks all in order.
 void ask_few(const OccluderGrid::Visit& cell, const EdgeQuestion& question, EdgeSearch& search) {
   const glm::dvec2 low = cell.low - kCellPad, high = cell.high + kCellPad;
   const ScreenPart part{{wide_low(low.x), wide_low(low.y)}, {wide_high(high.x), wide_high(high.y)}, question.farthest};
@@ -198,7 +199,7 @@ void ask_few(const OccluderGrid::Visit& cell, const EdgeQuestion& question, Edge
   }
 }
 
-/// Finds all that is hidden, or covered, of the question's span.
+/// Finds all hidden, or covered, intervals of the question's span.
 void answer(const EdgeQuestion& question, EdgeSearch& search) {
   search.hidden.restart(question.o.counts && question.hides());
   search.asked.fill(nullptr);
@@ -210,7 +211,7 @@ void answer(const EdgeQuestion& question, EdgeSearch& search) {
   if (search.batch.count > 0) (void)hold_against_batch(question, search);
 }
 
-/// Appends the parts of a span between the beginnings and ends of what hides it.
+/// Appends the parts of a span, cut where intervals begin and end.
 void append_parts(const EdgeQuestion& question, EdgeSearch& search, std::uint32_t number,
                   std::vector<DrawnPart>& parts) {
   std::vector<std::pair<double, int>>& changes = search.changes;
@@ -241,7 +242,7 @@ void append_parts(const EdgeQuestion& question, EdgeSearch& search, std::uint32_
   }
 }
 
-/// Appends a seen part, cut where what lies beside it begins and ends.
+/// Appends a visible part, cut where the cover beside it begins and ends.
 void append_outline(DrawnPart part, const EdgeQuestion& question, HiddenIntervals& covered,
                     std::vector<DrawnPart>& pieces) {
   const DrawnPart whole = part;

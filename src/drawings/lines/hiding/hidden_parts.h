@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where an edge goes out of sight, found edge by edge: each is held against the occluders in the cells that it passes,
-// and cut where what hides it begins and ends. Cutters have memory that they keep from edge to edge, so each thread has
-// one.
+// Where an edge is hidden. Each edge is compared with the occluders in the cells that it passes, and cut where the
+// hidden stretches begin and end. A cutter reuses its memory from edge to edge, so each thread has its own.
 #pragma once
 
 #include <array>
@@ -16,7 +15,7 @@
 
 namespace frontmost::lines_detail {
 
-/// What edges are held against.
+/// The scene with which edges are compared.
 struct EdgeOccluders {
   const WeldedMesh& mesh;
   const Sight& sight;
@@ -27,15 +26,15 @@ struct EdgeOccluders {
   const bool outlines;  ///< LineOptions::outlines
 };
 
-/// What has been found of an edge, and what is asked next.
+/// The findings about an edge, and the occluders that are to be compared next.
 struct EdgeSearch {
   HiddenIntervals hidden;
-  OccluderBatch batch;  ///< those that are still to be held against the edge
-  /// By the low bits of occluders' addresses: which were asked last, so that the next cell need not.
+  OccluderBatch batch;  ///< occluders that are still to be compared with the edge
+  /// The occluders that were asked last, by the low bits of their addresses, so that the next cell can skip them.
   std::array<const Occluder*, 64> asked{};
-  std::vector<std::pair<double, int>> changes;  ///< where one more or one less hides
-  std::uint64_t boxes = 0;                      ///< how many boxes of occluders were looked at, in all edges
-  std::uint64_t batches = 0;                    ///< how many batches of occluders were held against edges
+  std::vector<std::pair<double, int>> changes;  ///< places where one more or one less triangle hides the edge
+  std::uint64_t boxes = 0;                      ///< number of occluder boxes that were tested, over all edges
+  std::uint64_t batches = 0;                    ///< number of batches of occluders that were compared with edges
 };
 
 /// Cuts one edge after another. Not for several threads at once.
@@ -46,10 +45,9 @@ class EdgeCutter {
   /// Appends the parts of `edge`, whose number is `number`, that lie within the view. Its distances need not be set.
   void cut(const SightedEdge& edge, std::uint32_t number, std::vector<DrawnPart>& parts);
 
-  /// How many boxes of occluders all edges so far were held against: what the time goes with.
+  /// The number of occluder boxes that were tested for all edges so far; running time is proportional to it.
   [[nodiscard]] std::uint64_t boxes_asked() const { return search_.boxes; }
-  /// The work since the last call, in boxes that were looked at. A batch that was held against an edge takes as long as
-  /// 256 of them.
+  /// The work since the last call, in tested boxes. A batch that is compared with an edge counts as 256 boxes.
   [[nodiscard]] std::uint64_t take_work() {
     const std::uint64_t work = search_.boxes + 256 * search_.batches;
     return work - std::exchange(told_, work);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Four functions that are linear along the edge, so that their signs at both ends say all. A corner of the triangle is
-// in the planes through it by its number, not by arithmetic, and so is a point between two corners in the planes
-// through both.
+// Four functions are linear along the edge, so their signs at both ends decide. A vertex of the triangle is in the
+// planes through it by its number, not by arithmetic. So is a point between two vertices in the planes through both.
 //
 //    function over the edge       negative at 0, positive at 1: from the root to the end
-//    of two ends alone            positive at both: all of it       negative or 0 at both: none
+//    by its two ends              positive at both: all of it       negative or 0 at both: none
 //
-// The value at a root may be rounded, a sign never is: an edge that only touches a shadow is told apart from one that
+// The value at a root may be rounded; a sign never is. So an edge that only touches a shadow differs from one that
 // enters it.
 #include "lines/hiding/occluder.h"
 
@@ -18,8 +17,8 @@ namespace {
 
 Signed times(const Signed& value, int sign) { return {value.value * sign, value.sign * sign}; }
 
-/// Where the triangle is not between the eye and the near plane: with its normal n, a point A of it and the eye E, the
-/// line of sight to X meets it at the distance of X times n.(A - E) / n.(X - E).
+/// Where the triangle is not between the eye and the near plane. With its normal n, a point A of it and the eye E, the
+/// line of sight to X meets the triangle's plane at the distance of X times n.(A - E) / n.(X - E).
 Interval beyond_near(const Occluder& occluder, const SightedEdge& edge, const Sight& sight, const glm::dvec3& n) {
   const glm::dvec3 a(occluder.corners[0]);
   const auto beyond = [&](const glm::dvec3& x, double distance) {
@@ -43,8 +42,8 @@ struct OccluderCorners {
   }
 };
 
-/// What lies within the planes through the eye of `hidden`; `along(third)` says whether an edge counts that lies within
-/// one of them from end to end, with the corner `third` opposite.
+/// The part of `hidden` within the planes through the eye. `along(third)` says whether an edge counts that lies within
+/// one of these planes from end to end, with the corner `third` opposite.
 template <class Along>
 Interval in_shadow(const Occluder& occluder, const SightedEdge& edge, const Sight& sight, Interval hidden,
                    const Along& along) {
@@ -80,7 +79,7 @@ Interval where_positive(const Signed& at_0, const Signed& at_1, bool is_strict) 
     return {0, 1};
   }
   if (at_0.sign <= 0 && at_1.sign <= 0) return {1, 0};
-  // The values may be wrong by rounding, their signs are not.
+  // The values may be wrong by rounding; their signs are not.
   const double a = std::abs(at_0.value), b = std::abs(at_1.value);
   const double root = a + b > 0 ? a / (a + b) : 0.5;
   if (at_0.sign < 0) return {root, 1};

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cells are filled in two passes over the triangles, as all lists of this room are: entries are counted, and then put
-// where they belong. Each of up to sixteen parts of the triangles has counters of its own, so that threads need no
-// locks; cells are then sorted, and whoever filled them makes no difference.
+// Cells are filled in two passes over the triangles, like all lists of this room: entries are counted, then written to
+// their places. Each of up to sixteen parts of the triangles has its own counters, so threads need no locks. The cells
+// are sorted afterwards, so the order of filling makes no difference.
 //
 //    first_      |  cell 0  | cell 1 |    cell 2     | ...     where each cell's entries begin
 //    nearest_    | 1.2  3.4 |  2.0   | 0.5  0.9  7.1 |         the nearest first
-//    low_x_ ...  |  boxes, one array for each side   |         as kernels read them: many at a time
+//    low_x_ ...  |  boxes, one array for each side   |         in the layout of the kernels: many at a time
 //
-// Large triangles are asked first which cells they cover wholly. What lies behind that is never listed.
+// Large triangles are first tested for cells that they cover whole. Triangles behind these are never listed there.
 #include "lines/hiding/occluder_grid.h"
 
 #include <cstring>
@@ -20,12 +20,12 @@ namespace frontmost::lines_detail {
 namespace {
 
 constexpr std::size_t kCellsPerPart = 32, kLargePerPart = 64, kTrianglesPerPart = 4096, kTrianglesPerPoll = 16384;
-/// Each has a number for every cell.
+/// Each part has one counter for every cell.
 constexpr std::size_t kMostParts = 16;
 /// The kernels read whole vectors beyond the last entry.
 constexpr std::size_t kPadding = 64;
 
-/// Sorts as the float does.
+/// An integer that sorts like the float.
 std::uint32_t ordered(float value) {
   std::uint32_t bits;
   std::memcpy(&bits, &value, sizeof bits);
@@ -39,14 +39,15 @@ float from_ordered(std::uint32_t order) {
   return value;
 }
 
-/// To `value`, if that is less.
+/// Sets `least` to the minimum of itself and `value`.
 void lower(std::atomic<float>& least, float value) {
   float held = least.load(std::memory_order_relaxed);
   while (value < held && !least.compare_exchange_weak(held, value, std::memory_order_relaxed)) {
   }
 }
 
-/// By cell, how far away the nearest triangle is, at most, that covers it whole: it hides all that lies beyond.
+/// By cell: an upper bound on the distance of the nearest triangle that covers the cell whole and so hides all beyond
+/// it.
 std::vector<std::atomic<float>> backs_of(const GridPlan& plan) {
   std::vector<std::atomic<float>> backs(plan.grid.count());
   for (std::atomic<float>& back : backs) back.store(std::numeric_limits<float>::infinity(), std::memory_order_relaxed);
@@ -80,8 +81,8 @@ OccluderGrid::OccluderGrid(const SeenMesh& seen, const View& view, bool keeps_al
   occluders_ = std::move(plan.occluders);
 }
 
-/// What each cell holds, the nearest first. Parts of the triangles count and place by themselves: where they do does
-/// not matter, since cells are sorted then.
+/// Fills each cell with its entries, the nearest first. Parts of the triangles count and write on their own; the order
+/// of their entries does not matter, since cells are sorted afterwards.
 void OccluderGrid::fill_cells(const GridPlan& plan) {
   const std::size_t count = plan.footprints.size(), cells = cells_.count();
   const std::size_t parts = std::clamp(count / kTrianglesPerPart, std::size_t(1), kMostParts);
@@ -97,7 +98,7 @@ void OccluderGrid::fill_cells(const GridPlan& plan) {
       }
     });
   };
-  Buffer<std::uint32_t> next(parts * cells);  // by part and cell: of the cell's entries
+  Buffer<std::uint32_t> next(parts * cells);  // by part and cell: the index of the next entry in the cell
   parallel_for(plan.execution, parts, 1,
                [&](std::size_t part, std::size_t) { std::fill_n(next.data() + part * cells, cells, 0u); });
   for_each_entry([&](std::size_t part, std::size_t cell, std::size_t, float) { ++next[part * cells + cell]; });
@@ -120,7 +121,7 @@ void OccluderGrid::fill_cells(const GridPlan& plan) {
   });
 }
 
-/// Puts parts in the place of the cells that hold much. Their entries follow those of the cells.
+/// Divides crowded cells. The entries of the parts follow those of the cells.
 void OccluderGrid::divide_crowds(const GridPlan& plan, const CrowdLimits& limits) {
   std::vector<std::uint32_t> crowded;
   double squares = 0;
@@ -161,7 +162,7 @@ OccluderGrid::Crowd OccluderGrid::largest_crowd() const {
   return crowd;
 }
 
-/// Of what was set before, as much stays as there is.
+/// Resizes the arrays of entries and keeps as many old entries as fit.
 void OccluderGrid::set_entry_count(std::size_t count) {
   const auto resize = [](auto& values, std::size_t size) {
     std::remove_reference_t<decltype(values)> resized(size);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Occluders by the part of the picture that they may cover, the nearest first.
+// Occluders by the cells of the picture that they may cover, the nearest first.
 //
-// A grid of square cells lies over the picture, about 32 triangles to the cell. Each cell lists the triangles that may
-// cover some of it. What lies behind a triangle that covers a whole cell is left out of that cell, because it hides
-// nothing more there. Cells in which more than a thousand triangles come together are divided (lines/cell_tree.h).
+// A grid of square cells lies over the picture, with about 32 triangles to the cell. Each cell lists the triangles that
+// may cover some of it. A triangle behind another that covers the whole cell hides nothing more there and is left out.
+// Cells with more than a thousand triangles are divided (lines/cell_tree.h).
 #pragma once
 
 #include <atomic>
@@ -19,8 +19,8 @@ namespace frontmost::lines_detail {
 class GridPlan;
 struct CellEntry;
 
-/// Which cells are divided: those with `least` occluders and more, if the squares of their numbers are together more
-/// than `worth`. That is about how often lines would be held against occluders there, if there were as many lines.
+/// Cells with at least `least` occluders are divided, if the squares of their numbers of occluders add up to more than
+/// `worth`. That sum estimates how many comparisons of lines and occluders there would be, for as many lines.
 struct CrowdLimits {
   std::size_t least = 1024;
   double worth = 1 << 27;
@@ -28,9 +28,9 @@ struct CrowdLimits {
 
 class OccluderGrid {
  public:
-  /// Of triangles that are seen from a side. Unless it `keeps_all`, cells hold nothing that lies wholly behind a
-  /// triangle that covers them whole. O(triangles), with at most a score of cells to the triangle, and as
-  /// divide_entries() says where they crowd.
+  /// Takes the triangles that are not seen edge-on. Unless `keeps_all`, cells omit triangles that lie wholly behind a
+  /// triangle that covers the cell whole. O(triangles), with at most about 20 cells per triangle; crowded cells cost
+  /// what divide_entries() says.
   OccluderGrid(const SeenMesh& seen, const View& view, bool keeps_all, const Execution& execution,
                const CrowdLimits& limits = {});
 
@@ -39,7 +39,7 @@ class OccluderGrid {
     std::size_t first, last;
   };
 
-  /// Calls visit(Visit) for every cell that the segment between two points, in cells, passes, until it returns false.
+  /// Calls visit(Visit) for every cell that the segment passes, until it returns false. Both ends are in cells.
   template <class Visitor>
   void visit_cells(const glm::dvec2& from, const glm::dvec2& to, const Visitor& visit) const {
     cells_.visit_along(from, to, kCellPad, [&](const PassedCell& passed) {
@@ -47,15 +47,15 @@ class OccluderGrid {
     });
   }
 
-  /// Of the entries from that number on.
+  /// The boxes of the entries from number `entry` on.
   [[nodiscard]] ScreenBoxes boxes(std::size_t entry) const {
     return {low_x_.data() + entry, low_y_.data() + entry, high_x_.data() + entry, high_y_.data() + entry,
             nearest_.data() + entry};
   }
-  /// Whether the cell knows the sides of its triangles: else an edge among many that lie side by side, at an angle,
-  /// would be held against all whose boxes it meets.
+  /// Whether the cell stores the sides of its triangles. Without sides, an edge among many parallel slanting ones would
+  /// be compared with all whose boxes it meets.
   [[nodiscard]] bool has_sides(const Visit& visit) const { return has_sides(visit.cell); }
-  /// Of entries from the cell's `offset`-th on. Precondition: it has_sides().
+  /// The sides of the entries from the cell's `offset`-th on. Precondition: has_sides().
   [[nodiscard]] ScreenSides sides(std::uint32_t cell, std::size_t offset) const {
     const std::size_t first = first_side_[cell] + offset;
     ScreenSides sides;
@@ -67,10 +67,10 @@ class OccluderGrid {
     return sides;
   }
   [[nodiscard]] const Occluder& occluder(std::size_t entry) const { return occluders_[numbers_[entry]]; }
-  /// Cells a pixel.
+  /// Cells per pixel.
   [[nodiscard]] double scale() const { return scale_; }
 
-  /// The cell with most entries, and the triangle of its nearest.
+  /// The cell with most entries, and its nearest triangle.
   struct Crowd {
     std::size_t count = 0;
     std::uint32_t triangle = no_index;
@@ -95,7 +95,7 @@ class OccluderGrid {
 
   CellTree cells_;
   double scale_ = 1;
-  std::vector<std::size_t> first_;  ///< by cell: of the entries
+  std::vector<std::size_t> first_;  ///< by cell: index of its first entry
   Buffer<float> low_x_, low_y_, high_x_, high_y_, nearest_;
   Buffer<std::uint32_t> numbers_;
   std::vector<std::size_t> first_side_;  ///< by cell

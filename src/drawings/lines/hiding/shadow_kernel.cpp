@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The arithmetic of hidden_by() and of the bounds of exact_vector.h, operation by operation, so that every lane has
-// their bits.
+// The arithmetic of hidden_by() and of the bounds of exact_vector.h, operation by operation, so that every lane has the
+// same bits as these functions.
 //
-// Boxes and sides are floats in cells, sixteen at a time: they only leave out. What they leave is held against the edge
-// in doubles, eight triangles at a time, with bounds on the errors of all four functions: it hides nothing, hides an
-// interval for certain, or is left open.
+// Boxes and sides are floats in cells, sixteen at a time; they only exclude occluders. The others are compared with the
+// edge in doubles, eight triangles at a time, with bounds on the errors of all four functions. Each hides nothing,
+// hides an interval for certain, or is left open.
 
 #include "lines/hiding/shadow_kernel.h"
 
@@ -30,12 +30,12 @@ using Vector3 = Lanes3<V>;
 
 using LaneNormals = BoundedNormals<V>;
 
-/// Values with the signs that are certain.
+/// Values, with masks of their certain signs.
 struct Values {
   V value;
   M is_positive, is_negative, is_zero;
 
-  /// n.v times `sign`; zero where `is_on`. Any coordinate of v may be wrong by `slack`.
+  /// n.v times `sign`; zero where `is_on`. Each coordinate of v may be wrong by `slack`.
   HWY_INLINE Values(const LaneNormals& n, const Vector3& v, V sign, M is_on, double slack) {
     const D d;
     value = hn::Mul(Dot(n.value, v), sign);
@@ -48,12 +48,13 @@ struct Values {
   }
 };
 
-/// What all functions so far leave of the edge.
+/// The part of the edge that is left by all functions so far.
 struct Rest {
   V begin, end;
   M is_gone, is_open;
 
-  /// As where_positive(). What lies along a plane from end to end is gone, kept, or left open.
+  /// Lane form of where_positive(). `along` tells whether an edge that lies in a plane from end to end is gone, kept or
+  /// left open.
   enum class Along { gone, kept, open };
   template <Along along>
   HWY_INLINE void Keep(const Values& a, const Values& b) {
@@ -80,7 +81,7 @@ struct CornerLanes {
 template <bool needs_depth>
 HWY_INLINE void Ask(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden) {
   const D d;
-  // What is known of ends that are no vertices is left to hidden_by().
+  // Ends that are no vertices may still lie in planes by their vertices' numbers: hidden_by() decides that.
   const bool has_vertices = edge.slack == 0;
   const V from_vertex = hn::Set(d, has_vertices ? double(edge.from_on[0]) : -1.0);
   const V to_vertex = hn::Set(d, has_vertices ? double(edge.to_on[0]) : -1.0);

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many occluders at once: which may meet an edge, and what they hide of it.
+// Tests of many occluders at once: which of them may meet an edge, and which part of it they hide.
 //
-// The kernels answer in floats or doubles with bounds on their errors. What they leave open is asked again by
-// hidden_by() or covered_by(), which are exact; so a drawing has the same lines with every instruction set.
+// The kernels compute in floats or doubles, with bounds on their errors. Cases that they leave open are decided by
+// hidden_by() or covered_by(), which are exact. So a drawing has the same lines with every instruction set.
 #pragma once
 
 #include "lines/hiding/occluder.h"
 
 namespace frontmost::lines_detail {
 
-/// Boxes on the screen, in cells, with the nearest distance of what they enclose.
+/// Boxes on the screen, in cells, each with the least distance of its content.
 struct ScreenBoxes {
   const float *low_x, *low_y, *high_x, *high_y, *nearest;
 };
 
-/// What a part of an edge takes on the screen, and its farthest distance.
+/// A box around a part of an edge on the screen, in cells, and the part's greatest distance.
 struct ScreenPart {
   glm::vec2 low, high;
   float farthest;
@@ -26,7 +26,7 @@ struct ScreenSides {
   const float *a[count], *b[count], *c[count];
 };
 
-/// A segment on the screen, from a cell's corner on, and the nearness() of its ends.
+/// A segment on the screen, in cells from a cell's corner, and the nearness() of its ends.
 struct ScreenSegment {
   glm::vec2 from, to;
   float from_nearness, to_nearness;
@@ -51,11 +51,11 @@ struct OccluderBatch {
   }
 };
 
-/// Lane i in bit i.
+/// Bit i of a mask stands for lane i.
 struct HiddenBatch {
   alignas(64) double begin[OccluderBatch::most], end[OccluderBatch::most];
-  std::uint32_t hides = 0;  ///< hide from begin to end
-  std::uint32_t open = 0;   ///< rounding could matter: hidden_by() knows
+  std::uint32_t hides = 0;  ///< these hide the edge from begin to end
+  std::uint32_t open = 0;   ///< rounding leaves these open: hidden_by() decides
 };
 
 /// The functions of one instruction set.
@@ -63,12 +63,12 @@ struct ShadowKernels {
   /// Bit i: box i of the first `count`, at most 64, overlaps the part and is not wholly beyond it. Reads up to 64
   /// boxes.
   std::uint64_t (*overlapping)(const ScreenBoxes& boxes, std::size_t count, const ScreenPart& part);
-  /// Bit i: triangle i of the first `count`, at most 64, has the segment neither outside of one of its sides, nor
-  /// before its plane. Reads up to 64 of each.
+  /// Bit i: triangle i of the first `count`, at most 64, has the segment neither outside of one of its sides nor before
+  /// its plane. Reads up to 64 of each.
   std::uint64_t (*within_sides)(const ScreenSides& sides, std::size_t count, const ScreenSegment& segment);
-  /// hidden_by() of every occluder of the batch, to the bit, but for what is left open.
+  /// hidden_by() of every occluder of the batch, to the bit, except for those left open.
   void (*hide)(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden);
-  /// The same for covered_by().
+  /// covered_by() of every occluder of the batch, in the same form.
   void (*cover)(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden);
 };
 [[nodiscard]] ShadowKernels shadow_kernels(Isa isa);

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edges by their lower vertex. Most have two triangles that are wound alike: those are told without a sort.
+// Edges are found at their lower vertex. Most have two triangles that are wound alike and need no sort.
 //
-// An edge is asked by its lower vertex: the sides at a vertex are sorted by their other end, and sides with the same
-// end are one edge.
+// For the others, the sides at a vertex are sorted by their upper vertex; sides with the same one form an edge.
 //
 //    triangles at the edge     what is drawn
 //    one                       boundary
 //    two                       silhouette where only one faces the eye; border; crease by their angle
-//    more                      sheets of them (sheets.h), each judged as two; else surfaces meet there
+//    more                      each of their sheets (sheets.h) is judged like two; without sheets, surfaces meet
 //
-// Vertices at which nothing can be a feature are told by a kernel, many corners at a time, and skipped.
+// A kernel finds the vertices that have no features, many corners at a time, and these are skipped.
 #include "lines/mesh/feature_edges.h"
 
 #include <algorithm>
@@ -42,12 +41,12 @@ class Classifier {
         has_borders_(options.borders && !is_one_surface(surfaces.scene())) {}
 
   [[nodiscard]] const WeldedMesh& mesh() const { return mesh_; }
-  /// Edges of two triangles that are wound alike, face the same way and have SeenTriangle normals of a higher cosine
-  /// are none of the kinds.
+  /// An edge of two triangles that are wound alike and face the same way is no feature if the cosine of their
+  /// SeenTriangle normals is higher.
   [[nodiscard]] float plain_cosine() const {
     if (has_borders_) return std::numeric_limits<float>::infinity();
     if (!options_.creases) return -std::numeric_limits<float>::infinity();
-    // Of normals that are zero nothing is known: beyond a right angle they would look plain.
+    // Zero normals mean nothing is known; a limit below 0 would make them look plain.
     return std::max(float(cosine_), 0.0f) + kNormalRounding;
   }
 
@@ -78,7 +77,7 @@ class Classifier {
             [this](const Side& a, const Side& b) { return overlap(a, b); }};
   }
 
-  /// The other side than that of all triangles at the edge; 0 where they are on both.
+  /// The side of the edge on which no triangle lies, as seen; 0 where triangles are on both sides.
   [[nodiscard]] std::int8_t outer_side(std::span<const Side> sides) const {
     int inner = 0;
     for (const Side& side : sides) {
@@ -90,7 +89,7 @@ class Classifier {
   }
 
  private:
-  /// Of the eye's plane through the edge: where the triangle lies, whichever way it is wound.
+  /// The side of the eye's plane through the edge on which the triangle lies, whichever way it is wound.
   [[nodiscard]] int side_of(const Side& side) const { return seen_.facing[side.triangle] * (side.is_forward ? 1 : -1); }
 
   static bool is_one_surface(const Scene& scene) {
@@ -120,13 +119,13 @@ class Classifier {
   const SeenMesh& seen_;
   const Surfaces& surfaces_;
   const LineOptions& options_;
-  /// More than their product may be wrong by.
+  /// An upper bound on the rounding error of a product of two normals.
   static constexpr float kNormalRounding = 2e-6f;
   const double cosine_;
   const bool has_borders_;
 };
 
-/// Appends the feature, if it is one, of the edge to Corner::last() of corner j of a paired star.
+/// Appends the edge to Corner::last() of corner j of a paired star, if it is a feature.
 void add_feature(std::uint32_t vertex, std::span<const Corner> corners, std::size_t j, const Classifier& classifier,
                  std::vector<FeatureEdge>& features) {
   const WeldedMesh& mesh = classifier.mesh();
@@ -140,7 +139,7 @@ void add_feature(std::uint32_t vertex, std::span<const Corner> corners, std::siz
     features.push_back({vertex, upper, sides[0].triangle, sides[1].triangle, *kind, classifier.outer_side(sides)});
 }
 
-/// Appends the features among what is asked of a paired star.
+/// Appends the features among the `asked` edges of a paired star.
 void add_features(std::uint32_t vertex, std::span<const Corner> corners, std::uint32_t asked,
                   const Classifier& classifier, std::vector<FeatureEdge>& features) {
   const std::size_t begin = features.size();
@@ -150,7 +149,7 @@ void add_features(std::uint32_t vertex, std::span<const Corner> corners, std::ui
             [](const FeatureEdge& a, const FeatureEdge& b) { return a.to < b.to; });
 }
 
-/// The sides of the edges at a vertex to those above it, sorted by edge, then by opposite vertex.
+/// The sides of the edges from a vertex to higher ones, sorted by edge, then by opposite vertex.
 void find_sides(const WeldedMesh& mesh, std::uint32_t vertex, std::span<const Corner> corners,
                 std::vector<Side>& sides) {
   sides.clear();
@@ -162,13 +161,13 @@ void find_sides(const WeldedMesh& mesh, std::uint32_t vertex, std::span<const Co
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key() < b.key(); });
 }
 
-/// What is drawn of an edge, and the triangles for the sake of which it is.
+/// The kind with which an edge is drawn, and the triangles that cause it.
 struct Drawn {
   EdgeKind kind;
   std::uint32_t left, right;
 };
 
-/// Of the sheets of one edge that which comes first by its kind.
+/// An edge with several sheets is drawn once, with the kind that comes first in EdgeKind.
 std::optional<Drawn> first_of(std::span<const SidesOfSheet> sheets, const Classifier& classifier) {
   std::optional<Drawn> first;
   for (const SidesOfSheet& sheet : sheets)
@@ -177,7 +176,7 @@ std::optional<Drawn> first_of(std::span<const SidesOfSheet> sheets, const Classi
   return first;
 }
 
-/// `sides` are those of one edge with every double, `distinct` each opposite vertex once.
+/// `sides` are those of one edge, copies included; `distinct` has each opposite vertex once.
 std::optional<Drawn> drawn_of(std::span<const Side> sides, std::span<const Side> distinct,
                               const Classifier& classifier) {
   if (distinct.size() == 2) {
@@ -191,7 +190,7 @@ std::optional<Drawn> drawn_of(std::span<const Side> sides, std::span<const Side>
   return Drawn{*kind, distinct[0].triangle, distinct.size() > 1 ? distinct[1].triangle : no_index};
 }
 
-/// `sides` are those of find_sides().
+/// `sides` come from find_sides().
 void add_features(std::span<const Side> sides, std::uint32_t v, const Classifier& classifier, Features& features) {
   std::vector<Side> distinct;
   for (auto begin = sides.begin(); begin != sides.end();) {
@@ -200,7 +199,7 @@ void add_features(std::span<const Side> sides, std::uint32_t v, const Classifier
     for (auto side = begin; side != end; ++side) {
       if (distinct.empty() || distinct.back().opposite != side->opposite)
         distinct.push_back(*side);
-      else if (side->opposite > side->upper)  // known at one of its three edges
+      else if (side->opposite > side->upper)  // each triangle counts at one of its three edges only
         features.twins.push_back(side->triangle);
     }
     if (const std::optional<Drawn> drawn = drawn_of({begin, end}, distinct, classifier))

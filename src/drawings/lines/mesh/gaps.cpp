@@ -3,8 +3,8 @@
 //              | |                sixteenth of their length, and their triangles are on different sides. A rim is a
 //     ---------+ +---------       gap if such rims lie beside it all along: their stretches have to cover its length.
 //
-// Open sides are found by a tree of boxes. Which of them are beside a rim does not depend on the order in which the
-// tree gives them, and where more than 64 are, nothing is decided.
+// Open sides are found by a tree of boxes. The set of sides beside a rim does not depend on the order in which the tree
+// finds them. A rim with more than 64 sides beside it stays undecided.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,12 +17,13 @@ namespace frontmost::lines_detail {
 namespace {
 
 constexpr std::size_t kMostInLeaf = 8, kMostBeside = 64;
-constexpr double kShare = 1.0 / 16;  // of an edge's length: the widest gap
-constexpr double kAcross = 0.5;      // the cosine of the angle between the ways into both triangles, at least
+constexpr double kShare = 1.0 / 16;  // the widest gap, as a share of an edge's length
+constexpr double kAcross = 0.5;      // least cosine of the angle between the directions into both triangles
 
 /// A side of one triangle alone.
 struct OpenSide {
-  glm::dvec3 from, along, normal, ahead;  ///< of unit length; `ahead`: into the triangle
+  glm::dvec3 from, along, normal,
+      ahead;  ///< `from` is a point, the others unit vectors; `ahead` points into the triangle
   double length;
   std::uint32_t edge, triangle;
   std::array<std::uint32_t, 2> ends;
@@ -49,13 +50,13 @@ OpenSide open_side(const WeldedMesh& mesh, const FeatureEdge& edge, std::uint32_
   return side;
 }
 
-/// Open sides in boxes, each of two boxes of half as many.
+/// Open sides in a binary tree of boxes.
 class SideTree {
  public:
   explicit SideTree(std::vector<OpenSide> sides) : sides_(std::move(sides)), boxes_(1) { build(0, 0, sides_.size()); }
 
   [[nodiscard]] const std::vector<OpenSide>& sides() const { return sides_; }
-  /// Until `visit` returns false.
+  /// Visits sides whose boxes touch `box`, until `visit` returns false.
   template <class Visit>
   void visit_near(const Box& box, const Visit& visit) const {
     (void)visit_node(0, 0, sides_.size(), box, visit);
@@ -103,7 +104,7 @@ class SideTree {
   std::vector<Box> boxes_;
 };
 
-/// Whether stretches cover a length, but for pieces of `slack`.
+/// Whether stretches cover a length, up to holes of `slack`.
 bool cover(std::vector<std::pair<double, double>>& stretches, double length, double slack) {
   std::sort(stretches.begin(), stretches.end());
   double reached = 0;
@@ -121,7 +122,7 @@ class Gaps {
 
   [[nodiscard]] const std::vector<OpenSide>& sides() const { return tree_.sides(); }
 
-  /// Adds to `continued` its vertices with those beyond it, if it is one.
+  /// Whether the side is a gap. Adds its vertices, with those beyond the gap, to `continued`.
   [[nodiscard]] bool is_one(const OpenSide& side, VertexPairs& continued) const {
     const double widest = std::min(options_.widest, kShare * side.length);
     Box box = side.box;
@@ -146,13 +147,13 @@ class Gaps {
   }
 
  private:
-  /// Of a side, along the other that lies beside it; else empty.
+  /// The stretch of `side` beside which `other` lies, in lengths from its beginning; empty if there is none.
   static std::pair<double, double> stretch_beside(const OpenSide& side, const OpenSide& other, double widest) {
     const double slope = glm::dot(other.along, side.along);
     if (slope == 0) return {0, 0};
     const glm::dvec3 start = other.from - side.from;
     const double s = glm::dot(start, side.along), e = s + slope * other.length;
-    // A little beyond its ends: triangles that meet it at a corner alone may reach into its own.
+    // A little beyond the ends: triangles that meet the side only at a corner may reach into its own triangle.
     const double begin = std::max(-widest, std::min(s, e)), end = std::min(side.length + widest, std::max(s, e));
     const auto is_near = [&](double at) {
       const glm::dvec3 place = start + other.along * ((at - s) / slope);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fillers that share sides lie on one line: a seam, with all of their corners in order. Whatever the fillers' pattern,
-// each of them has every stretch between two neighbouring corners twice, on its long side and on one of its short ones.
-// So the other triangles' sides, cut at all corners, pair up as well without the fillers as they did with them.
+// Fillers that share sides lie on one line: together they are a seam. Each stretch between two neighbouring corners of
+// a filler occurs twice in it, on its long side and on a short one. So the sides of the other triangles, cut at all
+// corners, pair up without the fillers as they did with them.
 //
-//    fillers that share sides      A-M-B, A-N-M ...      one line each, found by uniting fillers with a side in common
-//    corners of the line           A N M B               in order: any axis will do on which two of them differ
+//    fillers that share sides      A-M-B, A-N-M ...      one line each, found by uniting fillers with a common side
+//    corners of the line           A N M B               sorted along any axis on which two of them differ
 //    a triangle with the side A-B  becomes A-N-C, N-M-C, M-B-C
 //
-// Lines are exact, because whether a triangle has no area is an exact sign; and the order along a line is that of one
-// coordinate, without any arithmetic.
+// Lines are exact: whether a triangle has no area is an exact sign, and the order along a line is that of one
+// coordinate, without arithmetic.
 #include <algorithm>
 #include <functional>
 #include <vector>
@@ -23,8 +23,8 @@ namespace frontmost::lines_detail {
 namespace {
 
 constexpr std::size_t kSeamsPerPoll = 1 << 18;
-/// As many triangles are added to those that there are, at most, and some: every seam that lies on a plane or a surface
-/// stays far below, but sides that overlap each other along a line would give as many as the square.
+/// The most triangles that are added: kMostAdded for each, and kAlwaysAdded. Every seam on a plane or a surface stays
+/// far below. But sides that overlap along a line could add as many as the square of their number.
 constexpr std::size_t kMostAdded = 4, kAlwaysAdded = 1 << 16;
 
 bool is_straight(const Positions& at, const glm::uvec3& t) {
@@ -36,24 +36,24 @@ bool is_straight(const Positions& at, const glm::uvec3& t) {
   return normal[0].sign() == 0 && normal[1].sign() == 0 && normal[2].sign() == 0;
 }
 
-/// Ascending.
+/// The numbers of the triangles without area, ascending.
 std::vector<std::uint32_t> fillers_of(const WeldedMesh& mesh, const Buffer<std::int8_t>& facing,
                                       const Execution& execution) {
   std::vector<std::uint32_t> fillers;
   for (std::uint32_t i = 0; i < facing.size(); ++i) {
     if (i % kSeamsPerPoll == 0) check_cancelled(execution);
-    // What has no area is seen from its edge, wherever the eye is.
+    // A triangle without area is seen edge-on from every eye.
     if (facing[i] == 0 && is_straight(mesh.positions, mesh.triangles[i])) fillers.push_back(i);
   }
   return fillers;
 }
 
-/// The lines of fillers, and the sides of fillers on them.
+/// The lines of fillers, and the fillers' sides on them.
 class Seams {
  public:
   Seams(const WeldedMesh& mesh, const std::vector<std::uint32_t>& fillers, const Execution& execution);
 
-  /// The seam that has the side between two vertices as one of its fillers'; no_index: none.
+  /// The seam that has a filler's side between these two vertices; no_index if there is none.
   [[nodiscard]] std::uint32_t of(std::uint32_t a, std::uint32_t b) const {
     if (!is_corner_[a] || !is_corner_[b]) return no_index;
     const Side side{std::min(a, b), std::max(a, b), 0};
@@ -63,7 +63,7 @@ class Seams {
   struct Range {
     std::size_t first, last;  ///< last is one beyond
   };
-  /// The seam's corners strictly between two of them.
+  /// The places of the seam's corners strictly between two of its corners.
   [[nodiscard]] Range between(std::uint32_t seam, std::uint32_t a, std::uint32_t b) const {
     const std::size_t i = place_of(seam, a), j = place_of(seam, b);
     return {std::min(i, j) + 1, std::max(i, j)};
@@ -73,7 +73,7 @@ class Seams {
   void leave(std::uint32_t seam) { is_open_[seam] = false; }
 
  private:
-  /// Of a filler, which is put in the place of `seam` at first.
+  /// A side of a filler; at first, `seam` holds the number of the filler.
   struct Side {
     std::uint32_t low, high, seam;
     friend bool operator<(const Side& a, const Side& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; }
@@ -88,8 +88,8 @@ class Seams {
   const Positions& positions_;
   std::vector<Side> sides_;             ///< ascending, each once
   std::vector<std::uint32_t> corners_;  ///< by seam, along its line
-  std::vector<std::size_t> first_;      ///< by seam, of its corners
-  std::vector<int> axes_;               ///< by seam: on which its corners differ
+  std::vector<std::size_t> first_;      ///< by seam: index of its first corner
+  std::vector<int> axes_;               ///< by seam: an axis on which its corners differ
   std::vector<bool> is_open_;           ///< by seam
   std::vector<bool> is_corner_;         ///< by vertex
 };
@@ -104,7 +104,7 @@ Seams::Seams(const WeldedMesh& mesh, const std::vector<std::uint32_t>& fillers, 
       is_corner_[a] = true;
     }
   }
-  // Of equal ones it does not matter which comes first: they are on one line.
+  // The order of equal sides does not matter: their fillers are on one line.
   sort_in_parts(sides_, std::less<>(), execution);
   const std::vector<std::uint32_t> seam_of = number_lines(fillers.size());
   for (Side& side : sides_) side.seam = seam_of[side.seam];
@@ -113,7 +113,7 @@ Seams::Seams(const WeldedMesh& mesh, const std::vector<std::uint32_t>& fillers, 
   sort_corners(execution);
 }
 
-/// By filler, the number of its line. Fillers with a side in common are on one: they have two points in common.
+/// By filler, the number of its line. Fillers with a common side are on one line, since they share two points.
 std::vector<std::uint32_t> Seams::number_lines(std::size_t fillers) {
   DisjointSets lines(fillers);
   for (std::size_t s = 1; s < sides_.size(); ++s) {
@@ -133,7 +133,7 @@ void Seams::sort_corners(const Execution& execution) {
     members.emplace_back(side.seam, side.low);
     members.emplace_back(side.seam, side.high);
     const glm::dvec3 along = glm::abs(positions_[side.high] - positions_[side.low]);
-    // Any axis will do on which two points of the line differ: all of them then do.
+    // Any axis works on which two points of the line differ: then all of them do.
     axes_[side.seam] = along.x > 0 ? 0 : along.y > 0 ? 1 : 2;
   }
   const auto is_earlier = [&](const auto& a, const auto& b) {
@@ -157,7 +157,7 @@ std::size_t Seams::place_of(std::uint32_t seam, std::uint32_t vertex) const {
   return std::size_t(at - corners_.begin());
 }
 
-/// A triangle, and on which seams its sides lie, from corner k to the next: no_index where on none.
+/// A triangle, and the seam of the side from corner k to the next; no_index where the side is on no seam.
 struct Seamed {
   glm::uvec3 corners, seams;
 };
@@ -166,7 +166,7 @@ Seamed seamed(const Seams& seams, const glm::uvec3& t) {
   return {t, {seams.of(t.x, t.y), seams.of(t.y, t.z), seams.of(t.z, t.x)}};
 }
 
-/// Leaves seams for which there is no room.
+/// Gives up seams for which there is no room.
 /// \returns how many triangles the others add.
 std::size_t leave_crowded(Seams& seams, const WeldedMesh& mesh, const Execution& execution) {
   std::vector<std::size_t> added(seams.count(), 0);
@@ -191,8 +191,8 @@ std::size_t leave_crowded(Seams& seams, const WeldedMesh& mesh, const Execution&
   return sum;
 }
 
-/// Calls add(corners) for what a triangle falls into. Halved again and again, at the middle corner of the side that has
-/// the lowest vertices: the same triangle in another order of its corners falls into the same pieces.
+/// Calls add(corners) for the pieces of a triangle. It is halved repeatedly, at the middle corner of the side with the
+/// lowest vertices. So the same triangle in another order of its corners gives the same pieces.
 template <class Add>
 void split(const Seams& seams, const Seamed& triangle, const Add& add) {
   int side = -1;
@@ -212,7 +212,7 @@ void split(const Seams& seams, const Seamed& triangle, const Add& add) {
   }
   const int next = side == 2 ? 0 : side + 1;
   const std::uint32_t middle = seams.corner(at.first + (at.last - at.first) / 2);
-  // The cut itself lies on no seam.
+  // The new side between the halves lies on no seam.
   Seamed from = triangle, to = triangle;
   from.corners[next] = middle;
   from.seams[next] = no_index;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Normals in doubles, many at once. Which way a triangle faces is on which side of its plane the eye is: that takes its
-// normal, which creases need, too. Where rounding could matter, the side is asked for again, exactly.
+// Normals are computed in doubles, many at once. A triangle's facing is the side of its plane on which the eye is,
+// which follows from the normal. Where rounding could matter, the facing is computed again, exactly.
 //
 //    bits of a triangle   turns left along x, y, z | turns right along x, y, z | climbs, by corner and axis | facing
 //
-// All of these are told for as many triangles as there are lanes, without branches; only the facing of those that
-// rounding leaves open is worked out one by one.
+// All of these are computed without branches, for as many triangles as there are lanes. Only facings that rounding
+// leaves open are computed one by one.
 
 #include "base/parallel.h"
 #include "lines/mesh/seen_mesh.h"
@@ -30,7 +30,7 @@ using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 using Vector3 = Lanes3<V>;
 
-/// As many triangles as there are lanes, the last one again where there are fewer.
+/// Loads one triangle per lane; if there are fewer triangles, the last one fills the other lanes.
 HWY_INLINE void Load(const WeldedMesh& mesh, std::size_t begin, std::size_t end, Vector3 (&corners)[3]) {
   HWY_ALIGN float places[9][kMostLanes];
   for (std::size_t i = 0; i < hn::Lanes(D()); ++i) {
@@ -44,7 +44,7 @@ HWY_INLINE void Load(const WeldedMesh& mesh, std::size_t begin, std::size_t end,
   for (int k = 0; k < 3; ++k) corners[k] = {load(3 * k), load(3 * k + 1), load(3 * k + 2)};
 }
 
-/// SeenTriangle::bits, as they come together.
+/// SeenTriangle::bits, appended one by one.
 struct Bits {
   hn::Vec<DU> all;
   int next = 0;
@@ -56,7 +56,7 @@ struct Bits {
   HWY_INLINE void Append(M mask) { Set(mask, next++); }
 };
 
-/// Along each axis points have an order from below to above: by the next axis' coordinate, then by that after it.
+/// The climbs. Along each axis, points are ordered from below to above by the next axis' coordinate, then by the third.
 HWY_INLINE void AppendClimbs(const Vector3 (&p)[3], Bits& bits) {
   M is_below[3][3];  // by corner, by axis: whether it comes before the next corner
   for (int k = 0; k < 3; ++k) {
@@ -67,7 +67,7 @@ HWY_INLINE void AppendClimbs(const Vector3 (&p)[3], Bits& bits) {
     is_below[k][1] = hn::Or(z, hn::And(same_z, x));
     is_below[k][2] = hn::Or(x, hn::And(same_x, y));
   }
-  // The next corner is below this one and the last above it.
+  // The bit is set where the next corner is below this one and the last above it.
   for (int k = 0; k < 3; ++k)
     for (int axis = 0; axis < 3; ++axis)
       bits.Append(hn::Not(hn::Or(is_below[k][axis], is_below[k == 0 ? 2 : k - 1][axis])));
@@ -89,7 +89,7 @@ HWY_INLINE hn::Vec<DU> BitsOfTriangles(const Vector3 (&p)[3], const BoundedNorma
   const V value = Dot(normal.value, to_eye), error = normal.ErrorOfDot(to_eye);
   const M is_towards = hn::Gt(value, error), is_away = hn::Lt(value, hn::Neg(error));
   const M is_zero = hn::Eq(error, hn::Zero(d));
-  // 0 for away, 1 where the error is none, 2 for towards, and 3.
+  // The two bits hold: 0 away, 1 exactly edge-on, 2 towards, 3 open.
   const M is_open = hn::Not(hn::Or(hn::Or(is_towards, is_away), is_zero));
   bits.Set(hn::Or(is_zero, is_open), SeenTriangle::kFacingShift);
   bits.Set(hn::Or(is_towards, is_open), SeenTriangle::kFacingShift + 1);
@@ -103,7 +103,7 @@ void See(const WeldedMesh& mesh, const Sight& sight, std::size_t begin, std::siz
     Vector3 p[3];
     Load(mesh, i, end, p);
     const BoundedNormals<V> normal(Minus(p[1], p[0]), Minus(p[2], p[0]));
-    // So that no product of two of these squares is out of range.
+    // The range keeps the product of two such squares finite.
     const V square = Dot(normal.value, normal.value);
     const M is_usual = hn::And(hn::Gt(square, hn::Set(d, 1e-100)), hn::Lt(square, hn::Set(d, 1e100)));
     const V scale = hn::IfThenElseZero(is_usual, hn::Div(hn::Set(d, 1.0), hn::Sqrt(square)));
@@ -129,7 +129,7 @@ namespace {
 
 constexpr std::size_t kTrianglesPerPart = 4096;
 
-/// The side of a triangle's plane on which the eye is, exactly.
+/// The exact side of a triangle's plane on which the eye is.
 int side_of_eye(const WeldedMesh& mesh, std::size_t triangle, const Sight& sight) {
   const glm::uvec3& t = mesh.triangles[triangle];
   const glm::dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];

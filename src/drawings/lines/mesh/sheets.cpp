@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sides that have the same third vertex are copies. Two groups of copies are a sheet. Three and more are sheets only if
-// one of the groups is there as often as all others together: it is what the others have in common, as the wall between
-// two rooms.
+// Sides with the same third vertex are copies. Two groups of copies form a sheet. Three or more groups form sheets only
+// if one group is as large as all others together: it is the part that the others share, like the wall between two
+// rooms.
 //
 //        A       B            three sides at an edge (o), S twice: the sheets are A-S and B-S
 //         \     /
-//          \   /              sheets that have no side in common must at least lie on each other; else surfaces
+//          \   /              sheets without a common side must at least lie on each other; else surfaces
 //           \ /               meet at the edge, and it is drawn
 //            o
 //            |  S (twice)
@@ -22,10 +22,10 @@ struct OwnedSide {
   SurfaceOf surface;
 };
 
-/// Sides with one opposite vertex.
+/// Sides with the same opposite vertex.
 using SidesOfCopy = std::span<const OwnedSide>;
 
-/// Of sides sorted by opposite vertex.
+/// Groups of copies. Precondition: `sides` are sorted by opposite vertex.
 std::vector<SidesOfCopy> copies_of(std::span<const OwnedSide> sides) {
   std::vector<SidesOfCopy> all;
   for (auto begin = sides.begin(); begin != sides.end();) {
@@ -37,7 +37,7 @@ std::vector<SidesOfCopy> copies_of(std::span<const OwnedSide> sides) {
   return all;
 }
 
-/// Copies of one object and material where there are such, else the first ones.
+/// One side of each group: of the same object and material if possible, else the first ones.
 SidesOfSheet sheet_of(const SidesOfCopy& a, const SidesOfCopy& b) {
   for (const OwnedSide& one : a)
     for (const OwnedSide& other : b)
@@ -45,11 +45,11 @@ SidesOfSheet sheet_of(const SidesOfCopy& a, const SidesOfCopy& b) {
   return {a[0].side, b[0].side};
 }
 
-/// Appends the sheets of sides that are all paired. \returns whether they are.
+/// Appends sheets that pair all sides. \returns false, and appends none, where that is impossible.
 bool pair_up(std::span<const OwnedSide> sides, std::vector<SidesOfSheet>& sheets) {
   const std::vector<SidesOfCopy> copies = copies_of(sides);
   if (copies.size() < 2) return false;
-  // With two opposite vertices it does not matter how often each is there.
+  // With two groups, their sizes do not matter.
   const auto centre = std::find_if(copies.begin(), copies.end(), [&](const SidesOfCopy& c) {
     return copies.size() == 2 || 2 * c.size() == sides.size();
   });
@@ -59,7 +59,7 @@ bool pair_up(std::span<const OwnedSide> sides, std::vector<SidesOfSheet>& sheets
   return true;
 }
 
-/// Sheets by what they have in common.
+/// Groups of sheets that are connected (union-find).
 class SheetGroups {
  public:
   explicit SheetGroups(std::size_t sheets) : group_(sheets), count_(sheets) {
@@ -82,7 +82,7 @@ class SheetGroups {
   std::size_t count_;
 };
 
-/// Whether from each sheet the others are reached over sides that sheets have in common or that lie on each other.
+/// Whether all sheets are connected by sides that they share or that lie on each other.
 bool is_connected(const std::vector<SidesOfSheet>& sheets, const SheetQuestions& questions) {
   SheetGroups groups(sheets.size());
   std::vector<std::pair<std::uint32_t, std::size_t>> ends;  // opposite vertex, sheet
@@ -110,7 +110,7 @@ std::optional<std::vector<SidesOfSheet>> find_sheets(std::span<const Side> sides
   std::vector<OwnedSide> owned;
   owned.reserve(sides.size());
   for (const Side& side : sides) owned.push_back({side, questions.surface_of(side.triangle)});
-  // Of an object those with one opposite vertex stay together, and so they do in what is left.
+  // The stable sort keeps sides of one object with the same opposite vertex together, also in `left`.
   std::stable_sort(owned.begin(), owned.end(),
                    [](const OwnedSide& a, const OwnedSide& b) { return a.surface.instance < b.surface.instance; });
   std::vector<SidesOfSheet> sheets;

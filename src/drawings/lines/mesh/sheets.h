@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sheets: which of the sides of an edge belong together where triangles are there more than once.
+// A sheet is a pair of an edge's sides that belong to one surface, where triangles are there more than once.
 //
-// Assemblies are exported part by part, and parts that touch have the same triangles at the place where they do. An
-// edge there has three or four sides, and yet every part is smooth: no line is to be drawn. Which two sides are one
-// surface is told from how often each is there and whose it is.
+// Assemblies are exported part by part, and parts that touch have the same triangles where they do. An edge there has
+// three or four sides, and yet every part is smooth: no line is to be drawn. The sides of one surface are found by how
+// often each side occurs and by its object.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@
 
 namespace frontmost::lines_detail {
 
-/// A triangle at an edge, which is known by its lower vertex.
+/// A triangle at an edge; the edge's lower vertex is known from the context.
 struct Side {
   std::uint32_t upper;  ///< the edge's other vertex
   std::uint32_t triangle;
@@ -36,20 +36,20 @@ struct SurfaceOf {
   friend bool operator==(const SurfaceOf&, const SurfaceOf&) = default;
 };
 
-/// What find_sheets() asks of the mesh.
+/// The questions that find_sheets() asks about the mesh.
 struct SheetQuestions {
   std::function<SurfaceOf(std::uint32_t triangle)> surface_of;
   /// Whether two sides with different opposite vertices lie on each other: in one plane, on one side of the edge.
   std::function<bool(const Side&, const Side&)> overlap;
 };
 
-/// The sheets of an edge with more than two opposite vertices. Where objects have triangles in common, as a housing and
-/// the cover on it, each of them goes on by itself: an object's two sides are a sheet, and so is a side that is there
-/// as often as all of the object's others together with each of these. What objects leave alone is paired in the same
-/// way. `sides` are those of one edge, with every double, sorted by opposite vertex; their winding does not matter.
-/// \returns none where a side stays without a partner or has too many, and where sheets neither have sides in common
-/// nor lie on each other: there surfaces meet. O(sides log sides), and the square of the sheets that have none in
-/// common.
+/// The sheets of an edge with more than two opposite vertices. Where objects share triangles, as a housing and its
+/// cover do, each object is paired by itself. An object's two sides are a sheet. A side that occurs as often as all of
+/// the object's others together forms a sheet with each of them. Sides that no object pairs are paired together in the
+/// same way. `sides` are all sides of one edge, copies included, sorted by opposite vertex; their winding does not
+/// matter.
+/// \returns none where surfaces meet: a side has no partner or too many, or sheets neither share sides nor overlap.
+/// O(sides log sides), and the square of the number of sheets without common sides.
 [[nodiscard]] std::optional<std::vector<SidesOfSheet>> find_sheets(std::span<const Side> sides,
                                                                    const SheetQuestions& questions);
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Partners are found by comparing all with all, and everything is asked of all corners: nearly without a branch, since
-// which of them matter is anybody's guess.
+// Partners are found by comparing all corners with all, almost without branches, because the relevant ones are
+// unpredictable.
 //
 //    corners of a vertex     next:  b c d a        Corner i runs from `next` to `last` around the vertex. Its partner
 //                            last:  c d a b        is the corner whose `next` is its `last`: the triangle beyond
-//                                                  that edge. In a closed star everybody has one partner.
+//                                                  that edge. In a closed star every corner has one partner.
 
 #include "lines/mesh/corner_table.h"
 
@@ -55,7 +55,7 @@ struct StarCorners {
       again |= twice << b;
     }
     const std::uint64_t all = (std::uint64_t(1) << count) - 1;
-    // Whoever is nobody's partner leaves somebody else with two.
+    // If some corner is nobody's partner, another corner has two.
     std::uint64_t partners = 0, pillows = 0;
     for (std::size_t j = 0; j < count; ++j) {
       partners |= std::uint64_t(1) << partner[j];

@@ -2,7 +2,7 @@
 //    vertices of all instances --places--> first at each place --counted in parts--> numbers of places
 //    triangles of all instances --------------- by these numbers --------------> triangles, without those that collapse
 //
-// Everything is counted in parts first and then written at its place, so no list grows and no thread waits.
+// All lists are counted in parts before they are written, so no list grows and no thread waits.
 #include "lines/mesh/welded_mesh.h"
 
 #include <algorithm>
@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t kPerPart = 8192;
 
-/// Calls visit(instance, first, last) for the pieces that the numbers from `begin` to `end`, counted over all
-/// instances, have in each; `firsts` are the instances' first numbers, and the count of all.
+/// Calls visit(instance, first, last) for the pieces of the range from `begin` to `end` within each instance. The range
+/// counts over all instances; `firsts` are the instances' first numbers, followed by the count of all.
 template <class Visitor>
 void visit_instances(const std::vector<std::size_t>& firsts, std::size_t begin, std::size_t end, const Visitor& visit) {
   auto i = std::size_t(std::upper_bound(firsts.begin(), firsts.end(), begin) - firsts.begin()) - 1;
@@ -39,7 +39,7 @@ std::vector<std::size_t> firsts_of(const Scene& scene, const Size& size) {
   return firsts;
 }
 
-/// How many are kept in the parts before each, and of all in the end.
+/// The number of kept items before each part, and at the end the number of all.
 template <class IsKept>
 std::vector<std::size_t> counted(std::size_t count, const IsKept& is_kept, const Execution& execution) {
   std::vector<std::size_t> before((count + kPerPart - 1) / kPerPart + 1, 0);
@@ -91,7 +91,7 @@ Buffer<std::uint32_t> number_places(const Scene& scene, Positions& positions, co
   return numbers;
 }
 
-/// By primitive, its three places; no_index first where it is left out.
+/// By primitive, its three place numbers; the first is no_index if the primitive is left out.
 Buffer<glm::uvec3> corners_of(const Surfaces& surfaces, const Buffer<std::uint32_t>& numbers,
                               const Execution& execution) {
   const Scene& scene = surfaces.scene();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arcs and circles where the corners of a chain lie on them.
+// Finds arcs and circles among the corners of a chain.
 //
-// An arc runs through its first, its middle and its last corner, so that it joins what comes before and after it. Runs
-// are made twice as long while they fit, and then halved: O(n log n).
+// An arc runs through its first, its middle and its last corner, so that it joins its neighbours. The length of a run
+// is doubled while it fits, and then halved: O(n log n).
 //
-// That corners lie on a circle says nothing of what is between them: a long line beside a few tiny ones has them there,
-// too, and so has the flat of a shaft. So an arc leaves a chord only where others show that the circle was cut so
+// Corners on a circle do not prove an arc: a long line beside a few tiny ones also has its corners there, and so has
+// the flat of a shaft. So an arc may deviate from a chord only where other chords show that the circle was cut as
 // coarsely.
 #include <algorithm>
 #include <cmath>
@@ -19,9 +19,9 @@ namespace {
 
 constexpr std::size_t fewest_joins = 4;
 constexpr double widest_join = 20.01 * std::numbers::pi / 180;  // of the circle; 18 to the whole
-constexpr double least_turn = 10 * std::numbers::pi / 180;      // less is as good a line
-/// What an arc leaves by more than the tolerance needs two chords like it, as long as half of it at least, among the
-/// three before it and the three after it. Not just the next: corners of something else may stand on the circle.
+constexpr double least_turn = 10 * std::numbers::pi / 180;      // a smaller arc is drawn as a line
+/// A chord that deviates by more than the tolerance needs two chords at least half as long, among the three before it
+/// and the three after it. Looking at the next ones alone fails where corners of other things stand on the circle.
 constexpr std::size_t reach = 3;
 constexpr int fewest_alike = 2;
 constexpr double alike = 0.5;
@@ -40,20 +40,20 @@ std::optional<Circle> circle_through(const glm::dvec2& a, const glm::dvec2& b, c
   return Circle{a + to_centre, glm::length(to_centre)};
 }
 
-/// From one point of the circle to the next, in (-pi, pi].
+/// The angle from one point of the circle to another, in (-pi, pi].
 double turn_between(const Circle& circle, const glm::dvec2& a, const glm::dvec2& b) {
   const glm::dvec2 u = a - circle.centre, v = b - circle.centre;
   return std::atan2(cross(u, v), glm::dot(u, v));
 }
 
-/// A row of corners, or a ring of them.
+/// A run of corners, open or closed to a ring.
 class ChordRun {
  public:
   ChordRun(const std::vector<glm::dvec2>& points, std::size_t first, std::size_t chords)
       : points_(points), first_(first), chords_(chords) {}
 
-  /// Whether an arc of the circle, which runs through all corners within the tolerance, stays within it beside all
-  /// chords but those that are evenly stepped.
+  /// Whether every chord lies within `tolerance` of the arc or is evenly stepped. The circle runs through all corners
+  /// within the tolerance.
   [[nodiscard]] bool is_like(const Circle& circle, double tolerance) const {
     for (std::size_t i = 0; i < chords_; ++i) {
       const double to_middle = glm::distance((corner(i) + corner(i + 1)) / 2.0, circle.centre);
@@ -115,7 +115,7 @@ class ArcFinder {
     double turn;
   };
 
-  /// The arc of the corners first to last, if they fit.
+  /// The arc through the corners from `first` to `last`, if they fit.
   [[nodiscard]] std::optional<Fit> fit(std::size_t first, std::size_t last) const {
     const std::optional<Circle> circle = circle_through(points_[first], points_[(first + last) / 2], points_[last]);
     if (!circle) return std::nullopt;
@@ -125,7 +125,7 @@ class ArcFinder {
     return Fit{*circle, *turn};
   }
 
-  /// Around the circle from corner to corner, all of them on it and none far from the next; else none.
+  /// The angle around the circle from corner to corner. None if a corner is off the circle or far from the next.
   [[nodiscard]] std::optional<double> turn_along(const Circle& circle, std::size_t first, std::size_t last) const {
     double turn = 0;
     for (std::size_t i = first; i < last; ++i) {
@@ -151,7 +151,7 @@ class ArcFinder {
     return fits;
   }
 
-  /// Arcs beyond a half circle come in two halves: formats differ in how they take longer ones.
+  /// An arc beyond a half circle is split in two: formats differ in how they take longer ones.
   void add_arc(std::size_t first, std::size_t last, std::vector<glm::dvec2>& kept) {
     const Fit arc = *fit(first, last);
     if (std::abs(arc.turn) <= std::numbers::pi) {

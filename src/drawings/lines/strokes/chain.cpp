@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// From segments to chains, and fewer corners on them.
+// Joins segments to chains, and removes corners from them.
 //
-// Ends are put on a grid of a thousandth of a pixel and sorted; two ends of one rank at one place, and no third, are
-// joined. Where more meet, all of them end: which one goes on would be a guess.
+// Ends are rounded to a thousandth of a pixel and sorted. Two ends of one rank at one place, and no third, are joined.
+// Where more meet, all of them end, since the continuation would be a guess.
 //
-// Corners are left out by a cone from the last corner that stayed: it holds all directions that pass every point since
-// at less than the tolerance.
+// Corners are removed with a cone from the last corner that stayed. The cone holds the directions that pass every point
+// since then at less than the tolerance.
 //
 //            . - '       p4 lies outside of the cone: p3 becomes
 //    p0 <====.  p2  p3   a corner, and a new cone begins there
@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint32_t none = no_index;
 
-/// An end of a segment: number 2 i for its from, 2 i + 1 for its to.
+/// An end of a segment: number 2 i for `from`, 2 i + 1 for `to`.
 struct SegmentEnd {
   std::int64_t x, y;
   std::uint32_t rank, number;
@@ -34,7 +34,7 @@ struct SegmentEnd {
   }
 };
 
-/// For every end the one other end that it meets, or none.
+/// By end: the only other end that it meets, or none.
 std::vector<std::uint32_t> partners(const std::vector<LineSegment>& segments) {
   std::vector<SegmentEnd> ends;
   ends.reserve(2 * segments.size());
@@ -77,7 +77,7 @@ class Chaining {
     return end % 2 == 0 ? segments_[end / 2].from : segments_[end / 2].to;
   }
 
-  /// From an end that meets none, to the next such; or around.
+  /// Appends the chain from this end to the next end without a partner, or once around.
   void follow(std::uint32_t end) {
     Chain chain;
     chain.rank = segments_[end / 2].rank;
@@ -99,8 +99,8 @@ class Chaining {
   std::vector<Chain> chains_;
 };
 
-/// Turns a closed chain so that no arc and no straight line runs across its beginning: to its sharpest corner, or,
-/// where all are blunt, to the end of its longest line.
+/// Rotates a closed chain so that no arc and no straight line runs across its beginning. It then begins at its sharpest
+/// corner or, where all are blunt, at the end of its longest line.
 void begin_at_corner(std::vector<glm::dvec2>& points) {
   constexpr double blunt = 0.866;  // the cosine of 30 degrees
   double least = blunt, longest = 0;
@@ -122,7 +122,7 @@ void begin_at_corner(std::vector<glm::dvec2>& points) {
   std::rotate(points.begin(), points.begin() + std::ptrdiff_t(begin), points.end());
 }
 
-/// Directions from a point that pass all points so far at less than the tolerance.
+/// The directions from `tip` that pass all points so far at less than the tolerance.
 class Cone {
  public:
   explicit Cone(const glm::dvec2& tip) : tip_(tip) {}
@@ -138,7 +138,7 @@ class Cone {
     const glm::dvec2 side = glm::dvec2(-d.y, d.x) * (tolerance / length);
     if (is_open_ || cross(right_, d - side) > 0) right_ = d - side;
     if (is_open_ || cross(d + side, left_) > 0) left_ = d + side;
-    farthest_ = length * length;  // a line that turns back is not left out
+    farthest_ = length * length;  // a line that turns back keeps its corner
     is_open_ = false;
   }
 
@@ -170,7 +170,7 @@ void straighten(Chain& chain, double tolerance) {
   }
   if (!chain.is_closed) kept.push_back(points.back());
   points = std::move(kept);
-  // A closed line and back again.
+  // The chain runs along a line and back again.
   if (chain.is_closed && points.size() == 2) chain.is_closed = false;
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Crumbs: strokes too short to be worth the pen's way.
+// Crumbs are strokes too short to be worth drawing.
 //
-// A crumb that ends in the air is left out, and then what ended in it alone. What is left of them joins a line that
-// begins where they end.
+// A crumb that ends in the air is removed; this may leave other crumbs with an end in the air. A crumb that remains is
+// joined to a line that begins where it ends.
 //
-//        a ________________ b          c ends in the air: it goes. d holds a line that would end in the air without it:
-//              |    d/                 it stays, or becomes the end of that line. Whether an end touches something is
-//             c     /________ e        told once for all crumbs, by the lines that pass near their ends.
+//        a ________________ b          c ends in the air and is removed. d holds a line that would end in the air
+//              |    d/                 otherwise, so d stays or becomes the end of that line. The lines that pass
+//             c     /________ e        near the ends of crumbs show, once for all, which ends touch something.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -39,19 +39,20 @@ struct CrumbEnd {
   std::size_t number;
 };
 
-/// The ends of crumbs by the square cells that they are in.
+/// The ends of crumbs in a grid of square cells.
 class EndGrid {
  public:
   explicit EndGrid(double cell) : cell_(cell) {}
 
   void add(const CrumbEnd& end) { cells_[key(column(end.at.x), column(end.at.y))].push_back(end); }
 
-  /// Calls visit(end) for those within `distance`, less than a cell, of the segment's cells, and others nearby.
+  /// Calls visit(end) for all ends within `distance` of the segment, and for others nearby. `distance` is less than a
+  /// cell.
   template <class Visit>
   void for_each(const glm::dvec2& a, const glm::dvec2& b, double distance, const Visit& visit) const {
     const glm::dvec2 low = glm::min(a, b) - distance, high = glm::max(a, b) + distance;
     for (std::int64_t x = column(low.x); x <= column(high.x); ++x) {
-      // Of a long slanting segment only the rows that it passes in this column.
+      // A long slanting segment visits only the rows that it passes in this column.
       double y0 = a.y, y1 = b.y;
       if (std::abs(b.x - a.x) > cell_) {
         const auto y_at = [&](double at) { return a.y + (b.y - a.y) * std::clamp((at - a.x) / (b.x - a.x), 0.0, 1.0); };
@@ -74,10 +75,10 @@ class EndGrid {
   std::unordered_map<std::uint64_t, std::vector<CrumbEnd>> cells_;
 };
 
-/// A chain that an end of a crumb lies on.
+/// A chain on which an end of a crumb lies.
 struct Touch {
   std::size_t end, chain;
-  bool is_at_end;  ///< of that chain, too
+  bool is_at_end;  ///< it also is an end of that chain
 
   friend bool operator<(const Touch& a, const Touch& b) {
     return std::tie(a.end, a.chain, b.is_at_end) < std::tie(b.end, b.chain, a.is_at_end);
@@ -101,7 +102,7 @@ class Crumbs {
       asked.pop_back();
       if (is_left_out_[i] || !is_loose(i)) continue;
       is_left_out_[i] = true;
-      // What ended in it may be loose now.
+      // Crumbs that ended on this one may be loose now.
       for (const std::size_t other : touched_by_[i]) asked.push_back(other);
     }
   }
@@ -144,7 +145,7 @@ class Crumbs {
   void find_touches(std::size_t chain, const glm::dvec2& a, const glm::dvec2& b, const EndGrid& ends) {
     ends.for_each(a, b, rule_.touching, [&](const CrumbEnd& end) {
       const std::size_t crumb = end.number / 2;
-      // What is hidden holds nothing that is seen.
+      // Hidden chains hold no visible ones.
       if (crumb == chain || (rule_.is_hidden(chains_[chain].rank) && !rule_.is_hidden(chains_[crumb].rank))) return;
       if (distance_to(end.at, a, b) > rule_.touching) return;
       const bool is_at_end =
@@ -154,8 +155,8 @@ class Crumbs {
     });
   }
 
-  /// Whether it may go: an end of it is in the air, or it only lies between lines that go on without it and is no piece
-  /// of an outline.
+  /// Whether the crumb may be removed: one of its ends is in the air, or it is not of a contour and only connects lines
+  /// that continue without it.
   [[nodiscard]] bool is_loose(std::size_t crumb) const {
     if (chains_[crumb].is_closed) return !chains_[crumb].is_contour;
     bool is_link = true;
@@ -206,7 +207,7 @@ class EndTable {
   std::multimap<Key, std::size_t> ends_;
 };
 
-/// Away from the chain's end.
+/// The unit direction of the chain at its end, pointing out of the chain.
 glm::dvec2 direction_at(const Chain& chain, bool is_last) {
   const std::size_t n = chain.points.size();
   const glm::dvec2 d = is_last ? chain.points[n - 1] - chain.points[n - 2] : chain.points[0] - chain.points[1];
@@ -219,7 +220,7 @@ void Crumbs::join() {
     if (!is_left_out_[i] && !chains_[i].is_closed) ends.add(chains_[i], i);
   for (std::size_t i = 0; i < chains_.size(); ++i) {
     if (!is_crumb_[i] || is_left_out_[i] || chains_[i].is_closed) continue;
-    // The end of another chain that goes on straightest.
+    // Finds the end of another chain that continues this crumb most straightly.
     std::size_t best = 0, own = 0;
     double straightest = 2;
     for (const bool is_last : {false, true}) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grid is as fine as the short lines are long, about one line to a cell, and never finer than what counts as one
-// place. All lines are known before the first is laid, so crowded cells are found by counting and are divided
-// beforehand, by where lines will be; what is laid later is only ever a piece of these lines.
+// A cell is as large as the mean short line and holds about one line, but is never below the distance that counts as
+// one place. All lines are known before the first is laid. So crowded cells are found by counting and divided
+// beforehand; the lines laid later are only pieces of the known ones.
 #include "lines/strokes/laid_lines.h"
 
 namespace frontmost::lines_detail {
@@ -10,8 +10,8 @@ namespace {
 /// Cells with more lines are divided.
 constexpr std::size_t kFewLines = 256;
 
-/// A grid for short lines of that number and mean length: about one to the cell. Never finer than what counts as one
-/// place: a drawing of one point would have ten million cells a side.
+/// A grid for `count` short lines of that mean length, about one to a cell. The least cell size matters for a drawing
+/// of one point, which would have ten million cells a side.
 SquareGrid grid_over(const glm::dvec2& low, const glm::dvec2& high, double count, double length, double near) {
   const double side = std::max({high.x - low.x, high.y - low.y, 1e-6});
   const double cell = std::max({length, side / std::sqrt(count), side / 4096, 8 * near});
@@ -72,7 +72,7 @@ void LaidLines::divide_crowds(const std::vector<Line>& lines) {
       for_each_cell(grid, lines[i], [&](std::uint32_t part) { parts[part].items.push_back(i); });
     return parts;
   };
-  // Most in a crowd is short, and lies on little: cells may be less than what counts as near for long ones.
+  // Most lines in a crowd are short and lie on few others, so cells may be smaller than `apart`.
   const double finest = std::max(2 * Nearness::shortest, near_.apart() / 16);
   for (std::size_t i = 0; i < crowds.size(); ++i)
     cells_.graft(crowded[i], divide_cell(std::move(crowds[i]), {kFewLines, CellTree::side * finest}, split).cells);

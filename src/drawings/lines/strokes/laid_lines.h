@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines that are drawn so far, found by where they lie: short ones in the cells of a grid that they pass, long
-// ones, which would pass too many, by the lines that they lie on.
+// An index of the lines that are drawn so far. Short lines are stored in the cells of a grid that they pass. Long lines
+// would pass too many cells and are stored by the infinite lines on which they lie.
 //
-//    short lines    cells that they pass               a cell holds a few lines, and each is looked at
+//    short lines    cells that they pass               a cell holds a few lines, and each is tested
 //    long lines     a plane of heights (long_lines.h)  a line crosses hundreds of others, and lies on one or two
 #pragma once
 
@@ -16,7 +16,7 @@ namespace frontmost::lines_detail {
 
 class LaidLines {
  public:
-  /// For lines that are pieces of these. Precondition: not empty.
+  /// For pieces of `lines`. Precondition: not empty.
   LaidLines(const std::vector<Line>& lines, const Nearness& nearness) : LaidLines(lines, nearness, Extent(lines)) {}
 
   void add(std::uint32_t number, const Line& line) {
@@ -27,12 +27,12 @@ class LaidLines {
     });
   }
 
-  /// Calls visit(numbers) for some of those that were added, perhaps again and again: all that have a stretch by
-  /// Nearness::overlap() are among them, of long ones those that LongLines::for_each() tells of. \returns how many were
-  /// looked at.
+  /// Calls visit(numbers) for candidates among the added lines, possibly repeatedly. These contain all short lines with
+  /// a stretch by Nearness::overlap(), and of long ones those that LongLines::for_each() finds. \returns how many were
+  /// tested.
   ///
-  /// Cost: a few lines each in drawings. Where thousands begin in one pixel, or run through one all along, each of them
-  /// is looked at for each other: 20 thousand take 1.4 s, and four times as many sixteen times as long.
+  /// Cost: a few tests per line in drawings. Where thousands of lines begin in one pixel, or run through it lengthwise,
+  /// each is tested against each: 20 thousand take 1.4 s, and four times as many take sixteen times as long.
   template <class Visit>
   std::size_t for_each(const Line& line, const Visit& visit) const {
     const SoughtLine sought(line, near_);
@@ -46,7 +46,7 @@ class LaidLines {
   }
 
  private:
-  /// What lines take up, and how many are short.
+  /// The bounding box of the lines, and the number and total length of the short ones.
   struct Extent {
     explicit Extent(const std::vector<Line>& lines);
     glm::dvec2 low{1e300}, high{-1e300};
@@ -55,12 +55,12 @@ class LaidLines {
   LaidLines(const std::vector<Line>& lines, const Nearness& nearness, const Extent& extent);
   void divide_crowds(const std::vector<Line>& lines);
 
-  /// How far from a line what lies on it may be, and a little.
+  /// The greatest distance from a line of lines that lie on it, with some room.
   [[nodiscard]] double reach_of(const Line& line) const { return near_.reach_of(line.length + Nearness::shortest); }
 
   const Nearness near_;
   CellTree cells_;
-  std::vector<std::vector<BriefLine>> lines_;  ///< by cell: the short ones
+  std::vector<std::vector<BriefLine>> lines_;  ///< the short lines by cell
   LongLines long_;
 };
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long segments, found by the line that they lie on.
+// Long segments, indexed by the infinite line on which they lie.
 //
-// A long line passes many cells of a grid, and in them many lines that it only crosses. What lies on it meets two
-// opposite sides of the drawing, prolonged, at nearly the same heights: a place in a plane of its own, in which lines
-// that cross or run beside each other lie apart.
+// A long line passes many cells of a grid, and in them many lines that it only crosses. A line on top of it meets two
+// opposite sides of the drawing, prolonged, at nearly the same heights. These two heights are a point in a dual plane,
+// in which lines that cross or run in parallel lie apart.
 //
-//     drawing          its plane      The plane is a table of buckets. Lines that may lie on a line have their places
-//     near
-//    |            _b    |   . b       its own: a line that turns about its middle moves there along a straight way.
+//     drawing          dual plane     The plane is a table of buckets. Lines that may lie on a line are near its
+//    |            _b    |   . b       point. A line that turns about its middle moves there along a straight way.
 //   a|  ___-----  |     |
 //    |--          |     +------ a
 #pragma once
@@ -24,7 +23,7 @@ namespace frontmost::lines_detail {
 
 class LongLines {
  public:
-  /// The corners of what holds all segments. Precondition: they differ.
+  /// `low` and `high` are the corners of a box around all segments. Precondition: they differ.
   LongLines(const glm::dvec2& low, const glm::dvec2& high, const Nearness& near)
       : low_(low), extent_(std::max(high.x - low.x, high.y - low.y)), bucket_(extent_ / 512), near_(near) {}
 
@@ -33,13 +32,13 @@ class LongLines {
   void add(std::uint32_t number, const Line& segment) {
     const BriefLine brief(segment, number);
     const glm::dvec2 d = glm::abs(segment.to - segment.from);
-    // Near the diagonal what lies on it may count as the other kind.
+    // Near the diagonal, a line on top of the segment may be of the other kind.
     if (d.y <= 1.05 * d.x) flat_[key(heights(segment, 0))].push_back(brief);
     if (d.x <= 1.05 * d.y) steep_[key(heights(segment, 1))].push_back(brief);
   }
 
-  /// Calls visit(numbers) for those that may lie on the segment, of all whose lines turn from this one's by at most
-  /// what Nearness allows at its length, and pass its middle as near as counts. \returns how many were looked at.
+  /// Calls visit(numbers) for segments that may lie on this one: their lines turn from its line by at most the angle
+  /// that Nearness allows at its length, and pass near its middle. \returns how many were tested.
   template <class Visit>
   std::size_t for_each(const Line& segment, const SoughtLine& sought, const Visit& visit) const {
     const double slope = near_.slope_within(segment.length), off = near_.apart();
@@ -48,7 +47,8 @@ class LongLines {
     const Table& table = axis == 0 ? flat_ : steep_;
     std::size_t looked_at = 0;
     if (table.empty()) return looked_at;
-    // Turned about the middle, a line moves at the farther side by up to this, and at the nearer one by its share.
+    // A line that turns about the middle moves by up to `spread` at the farther side, and by a share of it at the
+    // nearer one.
     const glm::dvec2 at = heights(segment, axis);
     const double middle = ((segment.from[axis] + segment.to[axis]) / 2 - low_[axis]) / extent_;
     const int far = middle < 0.5 ? 1 : 0;
@@ -70,7 +70,7 @@ class LongLines {
  private:
   using Table = std::unordered_map<std::uint64_t, std::vector<BriefLine>>;
 
-  /// Where the segment's line meets both ends of the axis.
+  /// The heights at which the segment's line meets both ends of the axis.
   [[nodiscard]] glm::dvec2 heights(const LineSegment& s, int axis) const {
     const double slope = (s.to[1 - axis] - s.from[1 - axis]) / (s.to[axis] - s.from[axis]);
     const double first = s.from[1 - axis] + slope * (low_[axis] - s.from[axis]);

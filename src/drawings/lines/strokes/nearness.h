@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which lines count as lying on each other.
+// The rule by which lines count as lying on each other.
 //
 //     a --------------------------      Of two lines that run side by side, nearer to each other than `apart` and at
 //            b -----------------------  nearly one angle, the later one is drawn only where the earlier one is not. The
 //            |<-- overlap -->|          overlap is the stretch of a line on which another lies.
 //
-// A long line and another may differ less in their angle than two short ones: else long lines that cross at a small
-// angle would lose what lies between them.
+// The allowed difference in angle is smaller for long lines than for short ones. Otherwise long lines that cross at a
+// small angle would lose what lies between them.
 #pragma once
 
 #include <algorithm>
@@ -29,33 +29,34 @@ struct Line : LineSegment {
   glm::dvec2 along;
 };
 
-/// Where a line is covered, in pixels from its beginning.
+/// A covered stretch of a line, in pixels from its beginning.
 struct Stretch {
   double begin, end;
 };
 
 class Nearness {
  public:
-  /// Pixels: what is left over or taken away is longer. Places of one point differ by the rounding of floats, 1e-7 of
-  /// some thousand pixels.
+  /// In pixels: shorter stretches are neither kept nor removed. Places of one point differ by the rounding of floats,
+  /// 1e-7 of some thousand pixels.
   static constexpr double shortest = 8e-3;
-  /// Between a long line and what counts as lying on it. Tiny pieces point anywhere, but such lists would be too many.
+  /// Greatest slope between a long line and a line on it. Tiny pieces point anywhere, but their lists would be too
+  /// long.
   static constexpr double most_slope = 1.0 / 128;
-  /// Between short ones: they part by at most a quarter of what they share, to either side.
+  /// Greatest slope between short lines: they part by at most a quarter of their overlap, to either side.
   static constexpr double most_short_slope = 0.5;
 
   explicit Nearness(double apart) : apart_(apart) {}
 
   [[nodiscard]] double apart() const { return apart_; }
 
-  /// How much a direction may differ from that of a long line: over its length by some times what counts as near, for
-  /// the part that lies on the long line may be short.
+  /// The allowed difference in direction from a long line. It moves the end by several times `apart`, because the part
+  /// on the long line may be short.
   [[nodiscard]] double slope_within(double length) const { return std::min(8 * apart_ / length, most_slope); }
 
-  /// How far from a line of that length lies at most what lies on it.
+  /// The greatest distance from a line of that length of lines that lie on it.
   [[nodiscard]] double reach_of(double length) const { return std::min(apart_, length / 4); }
 
-  /// Where, along `line`, `other` lies on it; empty where it does not. Lengths in pixels.
+  /// The stretch of `line` on which `other` lies, in pixels; empty if there is none.
   [[nodiscard]] Stretch overlap(const Line& line, const Line& other) const {
     constexpr Stretch nothing{0, 0};
     const bool has_long = line.is_long() || other.is_long();
@@ -67,7 +68,7 @@ class Nearness {
     if (!(end - begin > shortest)) return nothing;
     const double a_off = cross(line.along, a), slope = (cross(line.along, b) - a_off) / (b_at - a_at);
     const auto off = [&](double at) { return std::abs(a_off + slope * (at - a_at)); };
-    // Short ones are closer together, or all would lie on each other that start from a point.
+    // Short lines must be closer together, or all lines from one point would lie on each other.
     const double most = reach_of(end - begin);
     return off(begin) <= most && off(end) <= most ? Stretch{begin, end} : nothing;
   }
@@ -76,7 +77,7 @@ class Nearness {
   double apart_;
 };
 
-/// A line for which others are sought that may lie on it.
+/// A line, with the limits for other lines that may lie on it.
 struct SoughtLine {
   SoughtLine(const Line& line, const Nearness& nearness)
       : middle((line.from + line.to) / 2.0),
@@ -86,12 +87,12 @@ struct SoughtLine {
         turn(line.is_long() ? Nearness::most_slope * (1 + 1e-4) : Nearness::most_short_slope) {}
 
   glm::dvec2 middle, along;
-  double half;   ///< of the length
-  double reach;  ///< how far away they may lie
-  double turn;   ///< the tangent of the angle to them, at most
+  double half;   ///< half of the length
+  double reach;  ///< the greatest distance of such lines
+  double turn;   ///< the greatest tangent of the angle to such lines
 };
 
-/// As much of a line as tells that it does not lie on another, in 20 bytes.
+/// A short form of a line in 20 bytes, which suffices to exclude that it lies on another.
 struct BriefLine {
   BriefLine(const Line& line, std::uint32_t its_number)
       : middle((line.from + line.to) / 2.0), half((line.to - line.from) / 2.0), number(its_number) {}
@@ -103,7 +104,7 @@ struct BriefLine {
   [[nodiscard]] bool may_lie_on(const SoughtLine& line) const {
     const glm::dvec2 other(half), apart = glm::dvec2(middle) - line.middle;
     const double across = std::abs(cross(line.along, other)), along = std::abs(glm::dot(line.along, other));
-    // What floats leave of the place, and more.
+    // More than the rounding error of floats.
     const double slack = 1e-6 * (1 + std::abs(double(middle.x)) + std::abs(double(middle.y)) + along + across);
     const bool is_beside = std::abs(cross(line.along, apart)) > line.reach + across + slack;
     const bool is_beyond = std::abs(glm::dot(line.along, apart)) > line.half + along + slack;
@@ -112,7 +113,7 @@ struct BriefLine {
   }
 };
 
-/// Calls visit(numbers) for those of some lines that may lie on a line, a few hundred at a time.
+/// Calls visit(numbers) for those `lines` that may lie on `sought`, a few hundred at a time.
 template <class Visit>
 void visit_likely(std::span<const BriefLine> lines, const SoughtLine& sought, const Visit& visit) {
   std::array<std::uint32_t, 256> found;

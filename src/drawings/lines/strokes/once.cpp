@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines that lie on each other are drawn once: segments are laid down by rank, each without what lies there already.
+// Coincident lines are drawn once: segments are added by rank, each without the stretches that earlier ones cover.
 //
 //    there already       ======      =====
 //    the new line    ----------------------------
 //    what is added   ----      ------     ------        its stretches that nothing covers yet
 //
-// Ranks say what is above: seen lines before hidden ones, outlines before the rest. Within a rank the line that comes
-// first stays whole, so the result depends on the order of edges alone, which is the same for any number of threads.
+// Ranks give the order of visibility: visible lines before hidden ones, outlines before the rest. Within a rank the
+// first line stays whole. So the result depends only on the order of edges, which is the same for any number of
+// threads.
 #include <algorithm>
 #include <numeric>
 
@@ -18,10 +19,10 @@ namespace {
 
 class OverlapRemover {
  public:
-  /// For these lines. Precondition: not empty.
+  /// For pieces of `lines`. Precondition: not empty.
   OverlapRemover(const std::vector<Line>& lines, double apart) : near_(apart), index_(lines, near_) {}
 
-  /// Adds what of `line` is not there yet to `fresh`.
+  /// Appends the uncovered stretches of `line` to `fresh`.
   void lay(const Line& line, std::vector<LineSegment>& fresh) {
     find_covered(line);
     if (covered_.empty()) return add(line, fresh);
@@ -31,7 +32,7 @@ class OverlapRemover {
     double at = 0;
     for (const Stretch& c : covered_) {
       if (c.begin - at > least) {
-        // The line's own ends to the bit, so that its neighbours find them.
+        // The line's own ends are kept to the bit, so that its neighbours find them.
         const glm::dvec2 from = at == 0 ? line.from : line.from + line.along * at;
         const glm::dvec2 to = c.begin == line.length ? line.to : line.from + line.along * c.begin;
         add(Line({from, to, line.rank, line.is_contour}), fresh);
@@ -64,9 +65,9 @@ class OverlapRemover {
   const Nearness near_;
   LaidLines index_;
   std::vector<Line> laid_;
-  std::vector<std::uint32_t> asked_;  ///< by line: the question that it was last part of
+  std::vector<std::uint32_t> asked_;  ///< by line: the last query that found it
   std::uint32_t asking_ = 0;
-  std::vector<Stretch> covered_;  ///< of the line that is laid
+  std::vector<Stretch> covered_;  ///< stretches of the current line
 };
 
 }  // namespace

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order in which a plotter's pen travels little: always on to the nearest end.
+// An order of chains with little pen travel: the next chain begins at the nearest end.
 //
-// Ends lie in a tree of boxes whose nodes know the lowest end in them that is left: those that are empty are not
-// entered, nor those where only higher numbers are as near. So crowds of ends, also at one place, cost no more than
-// others.
+// Ends lie in a tree of boxes whose nodes know their lowest remaining end. Empty nodes are not entered, nor are nodes
+// where only higher numbers are as near. So crowds of ends, even at one place, cost no more than others.
 //
-//    ends left in a box    lowest     A pen asks for the end nearest to where it is; of several at one distance the
-//    [ 3 7 9 | 4 5 ]         3        one with the lowest number is drawn. A box is entered only if it may hold a
-//      /         .                    nearer end, or one as near with a lower number. Both ends of a chain leave the
-//    [3 7 9]   [4 5]                  tree when it is drawn, and the lowest numbers are mended on the way up.
+//    ends left in a box    lowest     The search finds the end nearest to the pen; of equals, the one with the lowest
+//    [ 3 7 9 | 4 5 ]         3        number. A box is entered only if it may hold a nearer end, or one as near with a
+//      /         .                    lower number. Both ends of a chain leave the tree when it is drawn, and the
+//    [3 7 9]   [4 5]                  lowest numbers are updated on the way up.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -40,7 +39,7 @@ class EndTree {
     build(0, 0, ends_.size());
   }
 
-  /// The end that is left nearest to `from`, of equals the lowest number. Precondition: one is left.
+  /// The remaining end nearest to `from`; among equals, the lowest number. Precondition: at least one remains.
   [[nodiscard]] std::uint32_t nearest(const glm::dvec2& from) const {
     Found best;
     visit(0, from, best);
@@ -67,10 +66,10 @@ class EndTree {
     glm::dvec2 at;
     std::uint32_t number;
   };
-  /// Node i has the nodes 2 i + 1 and 2 i + 2 below it.
+  /// The children of node i are nodes 2 i + 1 and 2 i + 2.
   struct Node {
     glm::dvec2 low{0}, high{0};
-    std::uint32_t begin = 0, end = 0;  ///< of the ends that are left; of leaves alone
+    std::uint32_t begin = 0, end = 0;  ///< range of the remaining ends; leaves only
     std::uint32_t lowest = no_end;
     bool is_leaf = true;
   };
@@ -132,14 +131,14 @@ class EndTree {
 void reverse(Chain& chain) {
   std::reverse(chain.points.begin(), chain.points.end());
   if (chain.bulges.empty()) return;
-  // The join that begins at a point now ends there.
+  // The join that began at a point now ends there.
   chain.bulges.pop_back();
   std::reverse(chain.bulges.begin(), chain.bulges.end());
   chain.bulges.push_back(0);
   for (double& bulge : chain.bulges) bulge = -bulge;
 }
 
-/// Goes on with `chain` where it touches the last one and no_end of the two is closed.
+/// Appends `chain`, or continues the last one with it where both are open and touch.
 void draw(Chain&& chain, double touching, std::size_t first, std::vector<Chain>& drawn) {
   if (drawn.size() > first && !drawn.back().is_closed && !chain.is_closed &&
       glm::distance(drawn.back().points.back(), chain.points.front()) <= touching) {

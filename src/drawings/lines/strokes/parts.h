@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What strokes are made of, on their way:
+// The steps from the parts of a drawing to strokes, and their data:
 //
 //    parts of a drawing --> segments --draw_once--> --chained--> chains --without_crumbs-->
 //        --straighten--> --find_arcs--> --nearest_first--> Strokes
 //
-// Each step takes what the one before gave, and none looks back: a chain knows its rank and its points, and nothing of
-// the edges that it came from.
+// Each step takes the result of the step before and nothing else: a chain knows its rank and its points, but not the
+// edges that it came from.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@
 
 namespace frontmost::lines_detail {
 
-/// A straight piece on the screen; what differs in rank is never joined. Lower ranks are drawn over higher ones.
+/// A straight piece on the screen. Pieces of different rank are never joined; lower ranks are drawn over higher ones.
 struct LineSegment {
   glm::dvec2 from, to;
   std::uint32_t rank;
@@ -30,44 +30,43 @@ struct Chain {
   std::vector<double> bulges;  ///< empty, or one for each point
   std::uint32_t rank = 0;
   bool is_closed = false;
-  bool is_contour = false;  ///< a part of it is
+  bool is_contour = false;  ///< some of its segments are pieces of a contour
 };
 
 inline double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-/// Of what lies on each other, within `apart` pixels, what has the lower rank, or comes first. What is left keeps its
-/// order.
+/// Removes overlaps: where segments lie on each other, within `apart` pixels, the one with the lower rank stays, or the
+/// first of equals. The order of the segments stays.
 [[nodiscard]] std::vector<LineSegment> draw_once(const std::vector<LineSegment>& segments, double apart,
                                                  const Execution& execution);
 
-/// Ends within about 1 / places_per_pixel are one place.
+/// Ends within about 1 / places_per_pixel count as one place.
 inline constexpr double places_per_pixel = 1000;
 
-/// Joins segments of one rank wherever exactly two ends meet. By rank, then in the order of the segments.
+/// Joins segments of one rank wherever exactly two ends meet. Chains are sorted by rank, then by their first segment.
 [[nodiscard]] std::vector<Chain> chained(const std::vector<LineSegment>& segments);
 
 struct CrumbRule {
-  double shortest;  ///< pixels: of a line that is no crumb
-  double touching;  ///< pixels: what is nearer counts as touching
+  double shortest;  ///< pixels: shorter chains are crumbs
+  double touching;  ///< pixels: nearer ends and lines touch
   std::function<bool(std::uint32_t rank)> is_hidden;
 };
 
-/// Chains without those that are shorter than the rule has it, but for pieces of outlines: a crumb of which an end
-/// touches nothing is left out, and so is one between lines that go on without it, unless it is a contour. What holds
-/// others together is joined to one of them that has its rank, or stays. What is hidden holds nothing that is seen.
-/// Near-linear. Precondition: no arcs.
+/// Chains without crumbs. A crumb with an end that touches nothing is removed; so is one between lines that continue
+/// without it, unless it is a contour. A crumb that holds others together is joined to one of its rank, or stays.
+/// Hidden chains hold no visible ones. Near-linear. Precondition: no arcs.
 [[nodiscard]] std::vector<Chain> without_crumbs(std::vector<Chain> chains, const CrumbRule& rule,
                                                 const Execution& execution);
 
-/// Leaves out corners that lie within `tolerance` of the line between those that stay.
+/// Removes corners that lie within `tolerance` of the line between the remaining ones.
 void straighten(Chain& chain, double tolerance);
 
-/// Puts arcs where four chords or more have their ends on a circle, within `tolerance`, and stay within it of the arc
-/// or are evenly stepped.
+/// Replaces runs of at least four chords by arcs. Their ends lie on a circle within `tolerance`, and the chords stay
+/// within `tolerance` of the arc or are evenly stepped.
 void find_arcs(Chain& chain, double tolerance);
 
-/// Chains of one rank, each begun at the end that is nearest to the last one's end, and joined with it where the two
-/// are within `touching`.
+/// Chains of one rank in drawing order. Each chain begins at the end that is nearest to the last one's end, and is
+/// joined to it where the distance is within `touching`.
 [[nodiscard]] std::vector<Chain> nearest_first(std::vector<Chain> chains, double touching, const Execution& execution);
 
 }  // namespace frontmost::lines_detail

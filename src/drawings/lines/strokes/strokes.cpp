@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rank is a number for everything that parts must have in common to be one stroke: whether they are hidden, whether
-// they are an outline, their kind and their instance, as far as the options ask for it. Ranks are dealt out in that
-// order, so that sorting by rank is sorting by what is drawn above.
+// A rank is a number for everything that the parts of a stroke have in common: whether they are hidden, whether they
+// are an outline, their kind and their instance, as far as the options ask for it. Ranks are numbered in that order, so
+// sorting by rank sorts by drawing order.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -16,13 +16,13 @@ namespace {
 
 using namespace lines_detail;
 
-/// What the parts of a stroke have in common, as one number: the order of strokes.
+/// Maps the common properties of a stroke's parts to one number, which gives the order of strokes.
 class Classes {
  public:
   Classes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options)
       : surfaces_(surfaces), drawing_(drawing), options_(options) {}
 
-  /// Ranks grow with what is drawn further below: hidden lines last, outlines first.
+  /// Lower keys are drawn above higher ones: outlines come first, hidden lines last.
   [[nodiscard]] std::uint64_t key(const DrawnPart& part) const {
     const DrawnEdge& edge = drawing_.edges[part.edge];
     std::uint64_t key = part.hidden_by != 0;
@@ -60,7 +60,7 @@ void check(const StrokeOptions& options) {
     throw Error(ErrorCode::bad_argument, "strokes", "the grazing angle must be from 0 to pi/2");
 }
 
-/// Which parts of a drawing get strokes.
+/// Selects the parts of a drawing that get strokes.
 class Choice {
  public:
   Choice(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options)
@@ -72,7 +72,7 @@ class Choice {
   }
 
  private:
-  /// Whichever way the triangles are turned.
+  /// True regardless of the triangles' winding.
   [[nodiscard]] bool is_grazing(const DrawnEdge& edge) const {
     if (edge.kind != EdgeKind::intersection) return false;
     const glm::dvec3 a = normal(edge.left), b = normal(edge.right);
@@ -90,7 +90,7 @@ class Choice {
   const double cosine_;
 };
 
-/// The segments of all parts with their ranks, and what stands behind each rank: a stroke without points.
+/// The segments of all parts with their ranks, and for each rank a stroke without points.
 struct Ranked {
   std::vector<LineSegment> segments;
   std::vector<Stroke> strokes;
@@ -120,8 +120,8 @@ Ranked ranked(const Surfaces& surfaces, const Drawing& drawing, const StrokeOpti
   return result;
 }
 
-/// Lines that are less apart count as one, and so do the ends of a line: it is seen as a point. Such crumbs are what is
-/// left of two tessellations of one circle, where they pass through each other.
+/// Whether all points are less than `apart` from the first: such a chain is seen as a point. It is left over where two
+/// tessellations of one circle pass through each other.
 bool is_point(const Chain& chain, double apart) {
   const glm::dvec2& begin = chain.points.front();
   return std::all_of(chain.points.begin(), chain.points.end(),
@@ -164,7 +164,7 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
   report_progress(execution, "strokes", 0.8);
   if (options.nearest_first) chains = nearest_first(std::move(chains), options.tolerance, execution);
   check_cancelled(execution);
-  // What is hidden has the highest ranks, and lies below.
+  // Hidden chains have the highest ranks and are drawn first, below the others.
   std::stable_sort(chains.begin(), chains.end(), [&](const Chain& a, const Chain& b) {
     return parts.strokes[a.rank].is_hidden > parts.strokes[b.rank].is_hidden;
   });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Circles of one size in a view share one number ("6x"). Places for it are tried around each circle, in twelve
-// directions and from near to far; the way of the leader costs its length, and more for every line that it crosses. The
-// cheapest place at which the number meets nothing is taken:
+// Circles of one size in a view share one number ("6x"). Its place is searched around each circle, in twelve directions
+// and from near to far. A leader costs its length, and more for every line that it crosses. The cheapest place at which
+// the number is free of obstacles is taken:
 //
 //             __6x...__            knee and shelf with the number
 //            /
@@ -9,8 +9,8 @@
 //      .--<'                       tip on the circle
 //     (  o  )
 //
-// The largest sizes go first, because their leaders have the longest ways around what lies within them. What has no
-// place is counted, so that the caller can say so.
+// The largest sizes go first, because their leaders have the longest ways around inner circles. Sizes without a place
+// are counted, so that the caller can report them.
 #include "sheets/dimensions/diameters.h"
 
 #include <algorithm>
@@ -21,18 +21,18 @@ namespace frontmost::detail {
 namespace {
 
 constexpr double least_turn = 190 * std::numbers::pi / 180;  // less is an arc, and has a radius
-constexpr double same_radius = 1e-3;                         // of it
-constexpr double same_axis = 5e-3;                           // of the radius
-constexpr double chamfer = 0.25;                             // of the radius: how much wider its rim is
+constexpr double same_radius = 1e-3;                         // as a share of the radius
+constexpr double same_axis = 5e-3;                           // as a share of the radius
+constexpr double chamfer = 0.25;                             // as a share of the radius: how much wider its rim is
 constexpr double same_place = 0.05;                          // millimetres
-constexpr std::size_t most_circles = 4096;                   // of a view
+constexpr std::size_t most_circles = 4096;                   // per view
 constexpr std::size_t most_diameters = 64;
 constexpr std::size_t most_tried = 12;  // circles of one size
 constexpr double nearest_knee = 5, farthest_knee = 90, knee_step = 2.5;
-constexpr double cost_of_crossing = 4;  // millimetres of way
-constexpr int most_crossed = 16;        // more is no way that an eye could follow
+constexpr double cost_of_crossing = 4;  // in millimetres of leader
+constexpr int most_crossed = 16;        // no eye could follow a leader that crosses more
 
-/// Whether two lie about one line.
+/// Whether two rounds have the same axis.
 bool is_coaxial(const Round& a, const Round& b) {
   if (glm::length(glm::cross(a.axis, b.axis)) > same_axis) return false;
   const glm::dvec3 between = b.from - a.from;
@@ -43,7 +43,7 @@ bool is_same_radius(const Round& a, const Round& b) {
   return std::abs(a.radius - b.radius) <= same_radius * std::max(a.radius, b.radius);
 }
 
-/// A circle that ends a chamfer at a wall.
+/// Whether the circle ends a chamfer at a wall.
 bool is_rim(const SeenCircle& circle, const std::vector<SeenCircle>& all) {
   if (circle.round->kind == RoundKind::cylinder) return false;
   return std::any_of(all.begin(), all.end(), [&](const SeenCircle& wall) {
@@ -72,7 +72,7 @@ std::vector<Diameters::Group> Diameters::groups_of(const MeasuredView& view) {
   std::vector<Group> groups;
   for (const SeenCircle& circle : circles) {
     if (circle.round->turn < least_turn || is_rim(circle, circles) || !take(*circle.round)) continue;
-    // By radius and not by number: rounding may part what is one.
+    // Grouped by radius and not by number: rounding may split one size.
     auto group = std::find_if(groups.begin(), groups.end(),
                               [&](const Group& g) { return is_same_radius(*g.circles[0].round, *circle.round); });
     if (group == groups.end()) {
@@ -85,7 +85,7 @@ std::vector<Diameters::Group> Diameters::groups_of(const MeasuredView& view) {
     });
     if (!is_there) group->circles.push_back(circle);
   }
-  // The largest have the longest ways around what lies within them.
+  // The largest have the longest leaders around inner circles.
   std::stable_sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) {
     return a.circles[0].round->radius > b.circles[0].round->radius;
   });
@@ -110,7 +110,7 @@ std::optional<Diameters::Leader> Diameters::best_leader(const Group& group, std:
         const glm::dvec2 knee = tip + way * out, end = knee + glm::dvec2(side * shelf, 0);
         const TextAlign align = side > 0 ? TextAlign::left : TextAlign::right;
         PageBox box = pen_.box_of(text, knee + glm::dvec2(side * text_distance, 0), align);
-        box.high.y += 2 * text_distance;  // the shelf and room below it
+        box.high.y += 2 * text_distance;  // the shelf, and room below it
         if (obstacles_.is_free(box)) best = Leader{tip, knee, end, align, cost};
         crossed += obstacles_.crossings({knee, knee + knee_step * out});
       }

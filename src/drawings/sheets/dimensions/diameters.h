@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Diameters on leader lines: which circles of the views get one, each once on the sheet, and where its number stands.
+// Diameters on leader lines: the circles that get one, each once on the sheet, and the places of the numbers.
 //
-// A cylinder that is cut by something else is found in several parts; parts about one axis with one radius count as
-// one. Circles that only end a chamfer at a wall have no diameter of their own.
+// A cylinder that another shape cuts is found in several parts; parts with one axis and one radius count as one.
+// Circles that only end a chamfer at a wall have no diameter.
 #pragma once
 
 #include <string>
@@ -20,12 +20,12 @@ class Diameters {
   Diameters(const DimensionOptions& options, DimensionPen& pen, const Obstacles& obstacles)
       : options_(options), pen_(pen), obstacles_(obstacles) {}
 
-  /// Counts a cylinder, and what continues it, as dimensioned. \returns false where it was.
+  /// Marks a cylinder and its continuations as dimensioned. \returns false if it was already.
   bool take(const Round& round);
-  /// Those that a view shows and no view before it.
+  /// Adds the diameters that this view shows and no earlier view does.
   void add(const MeasuredView& view, Dimensions& all);
-  /// Counts the cylinders of a view that have no diameter, because no view draws them, or because they are prisms. Call
-  /// it after all views were added.
+  /// Counts the cylinders of a view without a diameter, because no view draws them or because they are prisms. Call it
+  /// after all views were added.
   void count_missing(const MeasuredView& view, Dimensions& all);
 
  private:

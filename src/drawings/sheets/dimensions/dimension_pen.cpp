@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines and numbers are kept in two groups, because they have pens of different widths. Everything that is drawn is at
-// once an obstacle for what comes later, so no number is put on a line that a dimension has drawn before.
+// Lines and numbers are in two groups, because their pens have different widths. Everything drawn becomes an obstacle,
+// so no number is put on a line that a dimension has drawn before.
 #include "sheets/dimensions/dimension_pen.h"
 
 #include <numbers>
@@ -30,7 +30,7 @@ void DimensionPen::text(std::string_view text, const glm::dvec2& at, TextAlign a
            {options_.text_height, is_upright ? std::numbers::pi / 2 : 0, align, TextLine::bottom});
   if (!is_upright) return obstacles_.add(box_of(text, at, align));
   const PageBox level = box_of(text, {0, 0}, align);
-  // A quarter turn takes (x, y) to (y, -x).
+  // A quarter turn maps (x, y) to (y, -x).
   obstacles_.add(PageBox{at + glm::dvec2(level.low.y, -level.high.x), at + glm::dvec2(level.high.y, -level.low.x)});
 }
 

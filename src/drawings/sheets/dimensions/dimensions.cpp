@@ -4,8 +4,8 @@
 //    views --> overall sizes: width below, height on the left, each direction of space once
 //          --> diameters, view by view, where there is room
 //
-// Upright sizes are drawn by the same code as level ones: x and y change places, and what is "below" becomes "left".
-// Numbers are rounded to as many digits as a drawing shows, and never by a half that only noise decides.
+// Upright sizes use the same code as level ones: x and y are swapped, and "below" becomes "left". Numbers are rounded
+// to the digits of a drawing, except where noise would decide how a half is rounded.
 #include "sheets/dimensions/dimensions.h"
 
 #include <algorithm>
@@ -20,14 +20,14 @@ namespace {
 
 constexpr double same_direction = 0.9999;  // cosine
 
-/// One overall size: along `axis` of its view, from `begin` to `end` on the page.
+/// An overall size along `axis` of its view.
 struct OverallSize {
   int axis;
   Extent extent;
   std::string text;
 };
 
-/// On the page for a level size as it is; for an upright one x and y change places, seen from the right.
+/// Draws a size: a level one as it is; for an upright one, x and y are swapped, seen from the right.
 class OverallPen {
  public:
   OverallPen(DimensionPen& pen, const MeasuredView& view, const glm::dvec2& taken)
@@ -47,7 +47,7 @@ class OverallPen {
     const double length = e.high - e.low, arrow = pen_.arrow_length(), width = pen_.width_of(size.text);
     const bool is_inside = length >= 2 * arrow + 1;
     const bool is_text_inside = width + 2 * text_distance <= length;
-    // Read from the right, an upright number's text runs upwards, which is towards lower y.
+    // Read from the right, the text of an upright number runs upwards, towards lower y.
     const double first = is_level ? e.high : e.low, forwards = is_level ? 1 : -1;
     const double tail = is_inside ? 0 : 2 * arrow;
     const double text_tail = is_text_inside ? tail : std::max(tail, arrow) + width + 2 * text_distance;
@@ -64,7 +64,7 @@ class OverallPen {
  private:
   DimensionPen& pen_;
   const MeasuredView& view_;
-  const glm::dvec2 distance_;  ///< of lines from the view, on its left and below it
+  const glm::dvec2 distance_;  ///< of dimension lines from the view, on its left and below it
 };
 
 void validate(const DimensionOptions& options) {
@@ -80,11 +80,11 @@ void validate(const DimensionOptions& options) {
 
 std::string dimension_text(double number, int decimals) {
   const double size = std::abs(number);
-  // Three digits of what is below 1 say as much as two decimals of what is above.
+  // Below 1, three significant digits are as precise as two decimals above 1.
   if (size > 0 && size < 1) decimals = std::max(decimals, std::min(9, 2 - int(std::floor(std::log10(size)))));
   double unit = 1;
   for (int i = 0; i < decimals; ++i) unit *= 10;
-  // Which way a half is rounded would depend on noise.
+  // Noise would decide how a half is rounded, so one more digit is written.
   constexpr double noise = 2e-4;
   const double off = std::abs(size * unit - std::round(size * unit));
   if (std::abs(off - 0.5) < noise) unit *= 10;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dimensions of drawing sheets: overall sizes and diameters, as ISO 129 has them.
+// Dimensions of drawing sheets by ISO 129: overall sizes and diameters.
 //
-// Overall sizes are taken of what is drawn and not of the model's box, in the direction in which the view looks. A
-// cylinder of which both ends are outermost is measured by its diameter: the corners of its polygon would give a little
-// less.
+// Overall sizes are measured on the drawn lines, not on the model's box, along the axes of the view. If both ends
+// belong to one cylinder, its diameter is used: the corners of its polygon would give slightly less.
 #pragma once
 
 #include <span>
@@ -15,54 +14,53 @@
 
 namespace frontmost::detail {
 
-/// A view of a sheet that is to have dimensions.
+/// A view of a sheet, with the settings for its dimensions.
 struct DimensionedView {
-  const SheetView* sheet = nullptr;  ///< its place on the page is settled
+  const SheetView* sheet = nullptr;  ///< its place on the page is final
   const Drawing* drawing = nullptr;  ///< in parallel projection
   const Rounds* rounds = nullptr;    ///< of the drawing's surfaces; null for no diameters
-  bool with_hidden = true;           ///< its hidden circles have diameters
-  bool is_dimensioned = true;        ///< false: only kept free, as pictures at an angle are
-  glm::dvec2 taken{0};               ///< millimetres on its left and below it that other marks take
+  bool with_hidden = true;           ///< hidden circles get diameters
+  bool is_dimensioned = true;        ///< false: only an obstacle, like views at an angle
+  glm::dvec2 taken{0};               ///< millimetres on the left and below that other marks occupy
 };
 
 struct DimensionOptions {
-  double numbers_per_unit = 1;  ///< what the numbers say of a length of 1 in the scene; above 0
-  int decimals = 2;             ///< at most, but for what is so small that three digits take more; 0 to 6
-  Pen pen{0.25, {}};            ///< of lines and arrows
-  double text_height = 3.5;     ///< millimetres, as TextStyle's
+  double numbers_per_unit = 1;  ///< numbers per unit of length of the scene; above 0
+  int decimals = 2;             ///< at most, except for small numbers, which have three digits; 0 to 6
+  Pen pen{0.25, {}};            ///< pen of lines and arrows
+  double text_height = 3.5;     ///< millimetres, as in TextStyle
 };
 
-/// Which overall sizes a view has.
+/// The overall sizes of a view.
 struct OverallSizes {
-  bool width = false;   ///< below it
-  bool height = false;  ///< on its left
+  bool width = false;   ///< drawn below it
+  bool height = false;  ///< drawn on its left
 };
 
-/// Each direction of space once: in the first view that shows it in true length upright or level. Views that are not
-/// dimensioned have none.
+/// The overall sizes of each view. Each direction of space has one size, in the first view that shows it in true
+/// length, level or upright. Views that are not dimensioned have none.
 [[nodiscard]] std::vector<OverallSizes> overall_sizes_of(std::span<const DimensionedView> views);
-/// Millimetres that these take beside the view, on its left and below, beyond what other marks take.
+/// Millimetres that these sizes occupy on the left of the view and below it, in addition to other marks.
 [[nodiscard]] glm::dvec2 room_for(const OverallSizes& sizes, double text_height);
 
-/// Numbers without trailing zeros, of so many decimals at most, or of three digits where that is more, and one more
-/// where that is a five: "50", "12.7", "1.875".
+/// A number without trailing zeros, with at most so many decimals or three significant digits, whichever is more. Where
+/// a half would be rounded, it has one more digit: "50", "12.7", "1.875".
 [[nodiscard]] std::string dimension_text(double number, int decimals);
 
 struct Dimensions {
-  PageLayer layer{"7 dimensions"};  ///< a group of lines and one of texts, neither with a name
-  std::size_t count = 0;            ///< of dimensions on the page
-  std::size_t left_out = 0;         ///< diameters for which there was no room
+  PageLayer layer{"7 dimensions"};  ///< one group of lines and one of texts, both without names
+  std::size_t count = 0;            ///< number of dimensions on the page
+  std::size_t left_out = 0;         ///< diameters without room
   std::size_t undrawn = 0;          ///< diameters of cylinders that are seen along their axes, but not drawn
-  std::size_t prisms = 0;           ///< likewise of cylinders of fewer than 18 sides, which count as polygons
+  std::size_t prisms = 0;           ///< likewise, of cylinders of fewer than 18 sides, which count as polygons
 };
 
-/// Overall sizes as overall_sizes_of() shares them out, and diameters of circles and cylinders that are seen along
-/// their axes, each once on the sheet, those of one size in a view together ("6x⌀10"). A size that is that of one
-/// cylinder has its sign and takes the place of the diameter. Circles that end a cone or a chamfer at a cylinder, and
-/// less than a half circle and a bit, have none. Diameters stand on leader lines, where they neither meet a line or
-/// text of the drawing nor what is in `taken` and leave `area` (the page within its frame): as near as such a place is,
-/// with as few lines crossed. At most 64 of them. O(lines + rounds). \throws Error bad_argument for options out of
-/// range.
+/// Places overall sizes by overall_sizes_of(), and the diameters of circles and cylinders seen along their axes, each
+/// once on the sheet, those of one size in a view together ("6x⌀10"). An overall size of a single cylinder has its sign
+/// and replaces the diameter. Circles at the end of a cone or chamfer, and arcs of little more than a half circle or
+/// less, have none. At most 64 diameters stand on leader lines, as near as possible and crossing few lines. They avoid
+/// lines and texts of the drawing and `taken`, and stay within `area` (the page within its frame). O(lines + rounds).
+/// \throws Error bad_argument for options out of range.
 [[nodiscard]] Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBox& area,
                                           std::span<const PageBox> taken, const DimensionOptions& options = {});
 

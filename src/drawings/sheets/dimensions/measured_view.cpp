@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A circle of twenty sides reaches a little less far than the circle that it stands for. So where a round surface is
-// the outermost thing, within what a side of 20 degrees leaves out, its own radius says how far the view reaches.
-// Extension lines begin at what is drawn at that end, the nearest to the dimension line.
+// A polygon of twenty sides reaches slightly less far than its circle. So if a round surface is the outermost feature,
+// within the sagitta of a side of 20 degrees, its own radius gives the extent. Extension lines begin at the lines drawn
+// at that end, at the ones nearest to the dimension line.
 #include "sheets/dimensions/measured_view.h"
 
 #include <algorithm>
@@ -14,10 +14,10 @@
 namespace frontmost::detail {
 namespace {
 
-constexpr double square = 2e-3;               // sine: as centre lines have it
+constexpr double square = 2e-3;               // sine, as for centre lines
 constexpr double least_drawn = 0.2;           // likewise
 constexpr double nearly_whole = 6.2;          // radians
-constexpr double widest_sagitta = 0.016;      // of the radius: of sides of 20 degrees
+constexpr double widest_sagitta = 0.016;      // as a share of the radius, for sides of 20 degrees
 constexpr double same_place_on_paper = 0.02;  // millimetres of paper
 
 }  // namespace
@@ -91,7 +91,7 @@ double MeasuredView::foot_of_end(int axis, double end) const {
   const auto look_at = [&](const glm::dvec2& point) {
     const double off = std::abs(point[axis] - end);
     if (off > slack || off > nearest + same_place_on_paper) return;
-    // Of those at one distance the one that is nearest to the dimension line.
+    // Among points at one distance, the one nearest to the dimension line is taken.
     const bool is_nearer = off < nearest - same_place_on_paper;
     const double at = point[other];
     foot = is_nearer ? at : axis == 0 ? std::max(foot, at) : std::min(foot, at);

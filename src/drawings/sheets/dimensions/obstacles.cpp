@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines are cut into pieces of about a cell, arcs into chords, and each piece is listed in the cells that its box
-// touches. A place for a number is asked in a few cells then. Texts are few and are gone through one by one.
+// touches. A box for a number then queries a few cells. Texts are few and are tested one by one.
 #include "sheets/dimensions/obstacles.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace frontmost::detail {
 namespace {
 
-constexpr double cell_side = 4;  // millimetres, of text about
+constexpr double cell_side = 4;  // millimetres, about the size of a text
 constexpr int most_cells = 512;  // along one side
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
@@ -50,7 +50,7 @@ Obstacles::Obstacles(const PageBox& area) : area_(area) {
   segments_in_.resize(std::size_t(cells_.x) * std::size_t(cells_.y));
 }
 
-/// Cells at the border hold what is beyond it.
+/// Visits the cells that a box touches. Cells at the border also hold everything beyond it.
 template <class Visit>
 void Obstacles::visit_cells(const PageBox& box, const Visit& visit) const {
   const auto cell = [&](const glm::dvec2& at) {
@@ -62,7 +62,7 @@ void Obstacles::visit_cells(const PageBox& box, const Visit& visit) const {
 }
 
 void Obstacles::add(const PageSegment& segment) {
-  // In steps, so that a long one does not fill the box around it.
+  // In steps, so that a long segment does not fill the box around it.
   const double length = glm::distance(segment.from, segment.to);
   const int steps = int(std::clamp(std::ceil(length / cell_side), 1.0, 1.0 * most_cells));
   for (int i = 0; i < steps; ++i) {

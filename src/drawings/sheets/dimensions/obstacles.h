@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands on a page already: where there is room for text.
+// The lines and texts on a page, to find free places for more text.
 //
-//    +----+----+----+----+      Cells are about as large as a number. A box is free where it lies on the page and meets
-//    |  __|____|___ |    |      neither a line of its cells nor a text; a leader may cross lines, each at a cost, and
-//    | /  | 50 |   \|    |      never a text.
+//    +----+----+----+----+      Cells are about as large as a number. A box is free if it lies on the page and touches
+//    |  __|____|___ |    |      neither a line of its cells nor a text. A leader may cross lines, each at a cost, but
+//    | /  | 50 |   \|    |      no text.
 //    +----+----+----+----+
 #pragma once
 
@@ -25,14 +25,14 @@ class Obstacles {
   explicit Obstacles(const PageBox& area);
 
   void add(const PageSegment& segment);
-  /// No line may cross it, and no text meet it.
+  /// Adds a text: no line may cross it, and no text may touch it.
   void add(const PageBox& text);
-  /// The strokes and centre lines of a view, arcs as chords.
+  /// Adds the strokes and centre lines of a view, arcs as chords.
   void add(const SheetView& view);
 
-  /// Whether the box lies in the area and meets nothing.
+  /// Whether the box lies in the area and touches nothing.
   [[nodiscard]] bool is_free(const PageBox& box) const;
-  /// How many lines it crosses; a thousand more where it leaves the area or meets a text.
+  /// The number of lines that the segment crosses; 1000 more if it leaves the area or touches a text.
   [[nodiscard]] int crossings(const PageSegment& segment) const;
 
  private:

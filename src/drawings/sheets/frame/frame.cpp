@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frame of a sheet after ISO 5457: border, zones, centring and trimming marks.
+// The frame of a sheet by ISO 5457: border, zones, centring and trimming marks.
 //
-//      1   2   3   4          Zones are counted from the middle of each side, an even number on each. Their border lies
-//    +---+---+---+---+        outside of the frame, so that the drawing space stays whole; pages as narrow as A4 have
-//  A |               | A      letters and figures on two sides alone.
+//      1   2   3   4          Zones are counted from the middle of each side, an even number on each. Their border is
+//    +---+---+---+---+        outside of the frame, so that the drawing space stays whole. Pages as narrow as A4 have
+//  A |               | A      letters and numbers on two sides only.
 //    +               +
 //  B |               | B
 //    +---+---+---+---+
@@ -16,14 +16,14 @@
 namespace frontmost::detail {
 namespace {
 
-constexpr double filing_margin = 20, frame_margin = 10;  // millimetres, of paper outside the frame
+constexpr double filing_margin = 20, frame_margin = 10;  // millimetres of paper outside the frame
 constexpr double strip = 5;                              // width of the zones' border, outside the frame
-constexpr double zone = 50;                              // from the centring marks on
+constexpr double zone = 50;                              // beginning at the centring marks
 constexpr double mark_inside = 10;                       // of centring marks
 constexpr double narrow_page = 210;                      // A4 has zones on two sides
 constexpr double frame_width = 0.7, zone_width = 0.35, zone_text = 3.5;
 
-/// A, B, ... without I and O, which look like figures; AA follows Z.
+/// A, B, ... without I and O, which look like digits; AA follows Z.
 std::string zone_letter(int number) {
   constexpr std::string_view letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";
   const int count = int(letters.size());
@@ -33,8 +33,8 @@ std::string zone_letter(int number) {
   return name;
 }
 
-/// The lines between zones along one axis, in the frame from `low` to `high`, the first and the last end included. An
-/// even number of zones, nearest to the page's side divided by 50 mm.
+/// The lines between zones along one axis, in the frame from `low` to `high`, including both ends. The number of zones
+/// is even and nearest to the page's side divided by 50 mm.
 std::vector<double> zone_ends(double side, double low, double high) {
   const int half = std::max(1, int(std::lround(side / (2 * zone))));
   std::vector<double> ends = {low};
@@ -64,11 +64,11 @@ class FrameDrawing {
   }
 
  private:
-  /// Two rectangles of 10 x 5 mm over each other, filled by a pen that goes round and round: DXF has no fills.
+  /// Two rectangles of 10 x 5 mm in an L shape, filled by rounds of the pen, because DXF has no fills.
   void trimming_mark(PageGroup& group, const glm::dvec2& corner) const {
     constexpr double length = 10, width = 5;
     const glm::dvec2 inwards = 1.0 - 2.0 * corner;
-    // So near that the pen's round corners leave nothing open along the diagonals either.
+    // Rounds are so near that the pen's round corners leave no gaps along the diagonals.
     for (double in = frame_width / 2; in < width / 2; in += 0.6 * frame_width) {
       const double far = length - in, near = width - in;
       std::vector<glm::dvec2> points = {{in, in}, {far, in}, {far, near}, {near, near}, {near, far}, {in, far}};
@@ -77,7 +77,7 @@ class FrameDrawing {
     }
   }
 
-  /// From the zones' border into the drawing, but not into the title block.
+  /// Marks from the zones' border into the drawing, but not into the title block.
   void centring_marks(PageGroup& group) const {
     const glm::dvec2 middle = page_ * 0.5;
     for (const int axis : {0, 1})
@@ -93,7 +93,7 @@ class FrameDrawing {
       }
   }
 
-  /// Around the frame, or above it and on its right.
+  /// The border around the frame, or above it and on its right.
   void zones_border(PageGroup& group) const {
     const glm::dvec2 low = space_.low - strip, high = space_.high + strip;
     if (is_narrow_)
@@ -102,18 +102,18 @@ class FrameDrawing {
       group.add(rectangle(low, high), true);
   }
 
-  /// Figures from left to right, and letters downwards.
+  /// Numbers from left to right, and letters downwards.
   void zones_along(int axis, PageGroup& lines, PageGroup& names) const {
     const int across = 1 - axis;
     const std::vector<double> ends = zone_ends(page_[axis], space_.low[axis], space_.high[axis]);
     for (const bool at_end : {false, true}) {
-      if (is_narrow_ && at_end != (axis == 1)) continue;  // above, and on the right
+      if (is_narrow_ && at_end != (axis == 1)) continue;  // only above, and on the right
       const double edge = at_end ? space_.high[across] : space_.low[across],
                    outer = at_end ? edge + strip : edge - strip;
       const auto point = [&](double along, double beside) {
         return axis == 0 ? glm::dvec2(along, beside) : glm::dvec2(beside, along);
       };
-      for (const double at : ends)  // where a centring mark stands there is a line already
+      for (const double at : ends)  // centring marks are lines already
         if (at != page_[axis] / 2) lines.add(std::vector<glm::dvec2>{point(at, edge), point(at, outer)}, false);
       for (std::size_t i = 0; i + 1 < ends.size(); ++i)
         add_text(names, axis == 0 ? std::to_string(i + 1) : zone_letter(int(i)),

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fields of a title block after ISO 7200, with their names in small letters above what they say.
+// The fields of a title block by ISO 7200, with their names in small letters above their texts.
 //
 //    +--------------+--------------+-------------+
-//    | Legal owner  | Created by   | Doc. type   |   Letters have the heights of ISO 3098. A text that is too wide for
-//    |              | Approved by  | Number      |   its field goes into two lines before it gets smaller letters, and
-//    | Scale | Pro- | Title        |             |   below the smallest height it is made as small as it has to be:
+//    | Legal owner  | Created by   | Doc. type   |   Letters have the heights of ISO 3098. A text too wide for its
+//    |              | Approved by  | Number      |   field is split into two lines before its letters get smaller.
+//    | Scale | Pro- | Title        |             |   Below the smallest standard height it is scaled to fit:
 //    | Unit  | jec. |              | Date | Sheet|   nothing is cut off.
 //    +--------------+--------------+-------------+
 #include "sheets/frame/title_block.h"
@@ -19,7 +19,7 @@ namespace {
 
 constexpr double outer_width = 0.7, inner_width = 0.35;
 constexpr double label_height = 1.8;
-constexpr double indent = 1.2;                             // millimetres, of all text in a field
+constexpr double indent = 1.2;                             // millimetres, for all text in a field
 constexpr double heights[] = {5, 3.5, 2.5, label_height};  // of ISO 3098
 
 /// A field's name, its rectangle in the block, and the tallest letters that suit it.
@@ -35,7 +35,7 @@ struct FittedText {
   std::vector<std::string> lines;
 };
 
-/// In two lines, parted at the blank that makes the longer one shortest; in one where there is none.
+/// The text in two lines, split at the blank that makes the longer one shortest; in one line without blanks.
 std::vector<std::string> halves(const std::string& text) {
   std::vector<std::string> best = {text};
   double least = text_width(text);
@@ -50,9 +50,9 @@ std::vector<std::string> halves(const std::string& text) {
   return best;
 }
 
-/// The tallest letters with which the text is no wider than the field, rather in two lines than smaller.
+/// The text in the tallest letters that fit the field; two lines are preferred to smaller letters.
 FittedText fitted(const std::string& text, const Field& field) {
-  const double room = field.high.x - field.low.x - 3 * indent;  // of which two are before the text
+  const double room = field.high.x - field.low.x - 3 * indent;  // two of the indents are before the text
   const double rows = field.high.y - field.low.y - label_height - 2 * indent;
   const std::vector<std::string> parted = field.lines > 1 ? halves(text) : std::vector<std::string>{text};
   const auto widest = [](const std::vector<std::string>& lines) {
@@ -80,7 +80,7 @@ class BlockDrawing {
     const FittedText fit = fitted(text, field);
     PageGroup& group =
         texts_.try_emplace(fit.height, PageGroup{"title block: text", text_pen(fit.height)}).first->second;
-    // In the middle of what the label leaves, with what letters reach below their line.
+    // Centred below the label, with room for descenders.
     const double step = 1.6 * fit.height, taken = step * double(fit.lines.size() - 1) + 1.3 * fit.height;
     const double top = field.low.y + indent + label_height, free = field.high.y - top;
     glm::dvec2 at = corner_ + glm::dvec2(field.low.x + 2 * indent, top + (free - taken) / 2 + fit.height);
@@ -90,8 +90,8 @@ class BlockDrawing {
     }
   }
 
-  /// The truncated cone from the side and from its narrow end, which is on the left: what is seen from the left stands
-  /// on the right in first-angle projection, and on the left in third-angle projection.
+  /// The truncated cone from the side and from its narrow end, which is on the left. In first-angle projection the view
+  /// from the left is on the right; in third-angle projection, on the left.
   void add_symbol(const Field& field, ProjectionMethod method) {
     add(field, "");
     if (method == ProjectionMethod::none) return;
@@ -118,7 +118,7 @@ class BlockDrawing {
 
   void finish(PageLayer& layer) {
     PageGroup border{"title block", {outer_width, {}}};
-    // The frame is its right and its lower side.
+    // The frame itself is the right and the lower side.
     border.add(std::vector<glm::dvec2>{corner_ + glm::dvec2(0, title_block_size.y), corner_,
                                        corner_ + glm::dvec2(title_block_size.x, 0)},
                false);
@@ -132,7 +132,7 @@ class BlockDrawing {
   }
 
  private:
-  /// Its upper and its left side, where they are not the block's own: the neighbours' are the others.
+  /// Adds the upper and left side of a field, if they are not the block's own; neighbours add the other sides.
   void outline(const Field& field) {
     if (field.low.y > 0)
       inner_.add(std::vector<glm::dvec2>{corner_ + field.low, corner_ + glm::dvec2(field.high.x, field.low.y)}, false);
@@ -145,7 +145,7 @@ class BlockDrawing {
   PageGroup labels_{"title block: labels", text_pen(label_height)};
   PageGroup symbol_{"title block: projection", {inner_width, {}}};
   PageGroup axes_{"title block: axes", {0.18, {}, {3, 0.5, 0.2, 0.5}}};
-  std::map<double, PageGroup> texts_;  ///< by their height: each has its pen
+  std::map<double, PageGroup> texts_;  ///< by text height, since each height has its pen
 };
 
 }  // namespace

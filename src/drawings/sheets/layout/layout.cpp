@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Along an axis a line of cells is as wide as the widest view before its anchor and the widest behind it, at the scale,
-// and the room for what is written beside them, which does not scale. So the size of a layout is linear in the scale,
-// and the largest scale for an area is a division.
+// A line of cells is as wide as its widest view before the anchor and its widest behind it, both times the scale. Room
+// for annotations is added, which does not scale. So the size of a layout is linear in the scale, and the largest scale
+// for an area is a division.
 //
 //    before  anchor  behind   gap   before  anchor  behind
 //    |---------+--------|           |-----------+------|        one line of cells, along one axis
@@ -12,7 +12,7 @@
 namespace frontmost::detail {
 
 glm::ivec2 cell_of(NamedView view, ProjectionMethod method) {
-  // Third-angle: what is seen from a side stands on that side. First-angle: on the other one.
+  // Third-angle: the view from a side is placed on that side. First-angle: on the opposite side.
   const int side = method == ProjectionMethod::third_angle ? 1 : -1;
   switch (view) {
     case NamedView::front: return {0, 0};

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the views of a sheet stand, in columns and rows about the front one; its size and its scale.
+// The layout of a sheet's views in columns and rows around the front view, with its size and scale.
 //
-//               column -1   0     1             third-angle projection: what is seen from a side stands on that side
-//    row -1                 top   iso           first-angle projection: on the other side
+//               column -1   0     1             third-angle projection: the view from a side is on that side
+//    row -1                 top   iso           first-angle projection: on the opposite side
 //    row  0     left     front  right  back
 //    row  1              bottom
 //
-// Views in line share an axis: anchors of a row are at one height, so that an edge is at the same height in all of
-// them.
+// Views in line share an axis: anchors of a row have the same height, so an edge has the same height in all of them.
 #pragma once
 
 #include <string>
@@ -17,40 +16,40 @@
 
 namespace frontmost::detail {
 
-/// What a view takes around its anchor, in millimetres at scale 1:1, y down; and its cell, of which views in line share
-/// the row or the column. Anchors in a row are at one height, in a column below each other.
+/// The extent of a view around its anchor, in millimetres at scale 1:1, y down, and its cell. Views in line share the
+/// row or the column. Anchors of a row have the same height, those of a column the same x.
 struct ViewCell {
   glm::dvec2 low{0}, high{0};
   int column = 0, row = 0;
-  /// Millimetres of paper beside it at any scale, for what is written about it: left and above, right and below.
+  /// Millimetres of paper for annotations, at any scale: left and above (before), right and below (behind).
   glm::dvec2 room_before{0}, room_behind{0};
 };
 
-/// The cell of a named view about the front view: a view from the left stands to the right in first-angle projection,
-/// and to the left in third-angle projection.
+/// The cell of a named view relative to the front view. The view from the left is on the right in first-angle
+/// projection, and on the left in third-angle projection.
 [[nodiscard]] glm::ivec2 cell_of(NamedView view, ProjectionMethod method);
 
-/// Columns and rows in use, each as wide as its widest view.
+/// The columns and rows in use, each as wide as its widest view.
 class SheetLayout {
  public:
-  /// Precondition: not empty. `gap` in millimetres, at any scale, between columns and between rows.
+  /// Precondition: not empty. `gap` is in millimetres at any scale, between columns and between rows.
   SheetLayout(const std::vector<ViewCell>& cells, const glm::dvec2& gap);
-  /// The same views, otherwise apart.
+  /// The layout of these views with another gap.
   [[nodiscard]] SheetLayout with_gap(const glm::dvec2& gap) const { return {cells_, gap}; }
 
   [[nodiscard]] glm::dvec2 size(double scale) const { return extent_ * scale + gaps_; }
-  /// The largest scale at which all fits into `area`; 1 where it has no size.
+  /// The largest scale at which the layout fits into `area`; 1 if it has no size.
   [[nodiscard]] double largest_scale(const glm::dvec2& area) const;
   [[nodiscard]] const glm::dvec2& gap() const { return gap_; }
-  /// How many columns and rows are in use.
+  /// The number of columns and rows in use.
   [[nodiscard]] glm::dvec2 counts() const { return {lines_[0].size(), lines_[1].size()}; }
-  /// Whether no view, with the layout's upper left corner at `corner`, reaches to the right of `block` and below it.
+  /// Whether no view extends beyond `block` to the right and downwards. `corner` is the layout's upper left corner.
   [[nodiscard]] bool leaves_free(const glm::dvec2& block, double scale, const glm::dvec2& corner) const;
-  /// Where the anchors are, with the layout's upper left corner at `corner`.
+  /// The places of the anchors. `corner` is the layout's upper left corner.
   [[nodiscard]] std::vector<glm::dvec2> anchors(double scale, const glm::dvec2& corner) const;
 
  private:
-  /// Along one axis: numbers of lines in use, and how far views reach before and behind their anchors.
+  /// A column or row in use, with its number and the extent of its views before and behind their anchors.
   struct Line {
     int number;
     double before, behind;
@@ -65,16 +64,16 @@ class SheetLayout {
   glm::dvec2 extent_{0}, gaps_{0};
 };
 
-/// A sheet whose size and scale are settled.
+/// A sheet whose size and scale are final.
 struct SheetPlan {
   glm::dvec2 size{0};
   double scale = 1;
   std::vector<glm::dvec2> anchors;
 };
 
-/// With a title block no view lies on it; where room is left views stand farther apart, evenly, and a given scale
-/// without a page takes the smallest of A4 to A0 on which all has room. `has_scale` is false in perspective.
-/// \throws Error when the drawing does not fit, saying what would.
+/// Plans the sheet. Views avoid the title block and are spread evenly if there is room. A given scale without a page
+/// takes the smallest of A4 to A0 that has room. `has_scale` is false in perspective.
+/// \throws Error when the drawing does not fit; the message says what would.
 [[nodiscard]] SheetPlan plan_sheet(const SheetLayout& layout, const SheetOptions& options, bool has_scale);
 
 }  // namespace frontmost::detail

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paper of a sheet and its scale: the largest that has room, or what was asked for.
+// The paper and scale of a sheet: the largest scale that fits, or the given one.
 //
-//    pages in question, in the order of preference --> the largest scale on each
-//        --> rounded to ISO 5455, or as asked for --> views spread over what room is left
+//    candidate pages in order of preference --> the largest scale on each
+//        --> rounded to ISO 5455, or as given --> views spread over the remaining room
 //
-// Where a title block stands in a corner, whether a layout has room depends on where it stands, and the largest scale
-// has no formula. It is found by halving: a layout that has room at a scale has room at every smaller one.
+// Next to a title block, whether a layout fits depends on its place, and the largest scale has no formula. It is found
+// by bisection: a layout that fits at a scale fits at every smaller one.
 #include <algorithm>
 #include <optional>
 
@@ -16,13 +16,13 @@
 namespace frontmost::detail {
 namespace {
 
-constexpr double longest_side = 1e5;   // millimetres: validate(Page)
-constexpr double widest_spread = 45;   // between views of a sheet that has room
+constexpr double longest_side = 1e5;   // millimetres, as in validate(Page)
+constexpr double widest_spread = 45;   // largest gap between views of a sheet with more room
 constexpr double upright_width = 250;  // millimetres, between A4 and A3
-constexpr double slack = 1 + 1e-9;     // for rounding
-constexpr int bisections = 60;         // more than doubles have
+constexpr double slack = 1 + 1e-9;     // tolerance for rounding
+constexpr int bisections = 60;         // more than the bits of a double
 
-/// Where views may stand on a page: from corner to corner, but not both to the right of `block` and below it.
+/// The area for views on a page: a rectangle without the part that is both right of `block` and below it.
 struct Area {
   glm::dvec2 page{0}, low{0}, high{0};
   std::optional<glm::dvec2> block;
@@ -36,8 +36,8 @@ Area area_on(const glm::dvec2& page, const SheetOptions& options) {
   return {page, space.low + options.margin, space.high - options.margin, space.block - options.margin};
 }
 
-/// The corner of a layout that has room in the area: in its middle, or in that of what is above the block or beside it,
-/// or as far from the block as can be.
+/// The corner of a layout that fits into the area: centred, or centred in the part above or beside the block, or as far
+/// from the block as possible.
 std::optional<glm::dvec2> corner_in(const Area& area, const SheetLayout& layout, double scale) {
   const glm::dvec2 size = layout.size(scale);
   const auto middle_of = [&](const glm::dvec2& high) { return area.low + (high - area.low - size) * 0.5; };
@@ -52,7 +52,7 @@ std::optional<glm::dvec2> corner_in(const Area& area, const SheetLayout& layout,
   return std::nullopt;
 }
 
-/// The largest scale that has such a corner. All smaller ones have one too.
+/// The largest scale with such a corner; smaller ones have one too.
 double largest_scale(const Area& area, const SheetLayout& layout) {
   double most = layout.largest_scale(area.size());
   if (!area.block || corner_in(area, layout, most)) return most;
@@ -65,7 +65,7 @@ double largest_scale(const Area& area, const SheetLayout& layout) {
   return least;
 }
 
-/// The views of a sheet with a frame share what room there is, where the title block lets them.
+/// Spreads the views of a framed sheet over the remaining room, as far as the title block allows.
 SheetLayout spread(const SheetLayout& layout, const Area& area, double scale) {
   const glm::dvec2 least = layout.gap(), free = area.size() - layout.with_gap(glm::dvec2(0)).size(scale);
   const glm::dvec2 most = glm::clamp(free / (layout.counts() + 1.0), least, glm::dvec2(widest_spread));
@@ -93,17 +93,17 @@ SheetPlan fitted_page(const SheetLayout& layout, double scale, double margin) {
   if (plan.size.x > longest_side || plan.size.y > longest_side)
     refuse_page("scale", "at " + scale_text(scale) + " the page would be " + size_text(plan.size / 1000.0, 4) +
                              " m; 100 m a side is the limit");
-  // A drawing of one point, or none.
+  // A drawing of one point, or an empty one, still needs a page.
   plan.size = glm::max(plan.size, glm::dvec2(1));
   return plan;
 }
 
-/// The pages that may be taken, in the order of preference.
+/// The candidate pages, in order of preference.
 std::vector<glm::dvec2> pages_of(const Paper& paper, const SheetOptions& options) {
   std::vector<glm::dvec2> pages = {paper.size};
   if (paper.may_turn) pages.emplace_back(paper.size.y, paper.size.x);
   if (!options.title_block) return pages;
-  // ISO 5457: A4 stands upright, all larger ones lie.
+  // ISO 5457: A4 is upright, all larger pages lie.
   if (paper.may_turn && paper.size.x > upright_width) std::swap(pages[0], pages[1]);
   const auto is_small = [](const glm::dvec2& page) {
     return page.x < least_framed_page.x || page.y < least_framed_page.y;
@@ -115,8 +115,8 @@ std::vector<glm::dvec2> pages_of(const Paper& paper, const SheetOptions& options
   return pages;
 }
 
-/// The area on that page on which the drawing is largest, and its largest scale there. `taken` is the scale that would
-/// be taken of a largest one: of pages on which it is the same the first is best.
+/// The area on the page with the largest drawing, and its largest scale. `taken` maps a largest scale to the scale that
+/// will be used; the first of the pages with equal results is best.
 template <class Taken>
 std::pair<Area, double> best_area(const std::vector<glm::dvec2>& pages, const SheetLayout& layout,
                                   const SheetOptions& options, const Taken& taken) {
@@ -130,7 +130,7 @@ std::pair<Area, double> best_area(const std::vector<glm::dvec2>& pages, const Sh
   return best;
 }
 
-/// Of a scale of numbers: the smallest of A4 to A0 that has room, or A0.
+/// The smallest of A4 to A0 that has room at the given scale, or A0.
 Paper smallest_paper(const SheetLayout& layout, const SheetOptions& options) {
   Paper paper;
   for (const char* const name : {"a4", "a3", "a2", "a1", "a0"}) {
@@ -155,7 +155,7 @@ SheetPlan plan_sheet(const SheetLayout& layout, const SheetOptions& options, boo
   const Paper paper = paper_of(layout, options);
   if (paper.fits_drawing) return fitted_page(layout, *options.scale, options.margin);
   const auto taken = [&](double scale) {
-    if (!options.title_block) return scale;  // without one the page turns to what fits better
+    if (!options.title_block) return scale;  // without a title block, the page turns to the better fit
     if (options.scale) return std::min(scale * slack, *options.scale);
     return is_standard ? standard_scale(scale) : scale;
   };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Letters of one stroke's width, upright, in the proportions of ISO 3098-1 type B: drawn for this library, of lines and
-// circular arcs that meet without corners, as templates have them.
+// Letters of one stroke width, upright, in the proportions of ISO 3098-1 type B. They were drawn for this library, from
+// lines and circular arcs that join without corners, as on lettering templates.
 //
-// Strokes are the way of a pen's middle, as in ISO 3098: letters have one width of line, can be plotted, and are the
-// same on every machine because no font is needed.
+// Strokes are the path of the pen's centre, as in ISO 3098: letters have one line width, can be plotted, and are the
+// same on every machine, because no font is needed.
 #include "sheets/lettering/glyphs.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace frontmost::detail {
 namespace {
 
-/// By code.
+/// Sorted by code.
 constexpr Glyph glyphs[] = {
     {U' ', 1, ""},
     {U'!', 0, "0,9 0,3;0,0.4 0,0"},
@@ -198,7 +198,7 @@ struct Mark {
   std::u32string_view letters;  ///< base and composite, one after the other
 };
 
-/// Lower-case bases i and j lose their dot under a mark.
+/// Lower-case i and j lose their dot under a mark.
 constexpr Mark marks[] = {
     {"-0.9,9 0.7,7.5", false, U"AÀEÈIÌOÒUÙaàeèıìoòuùNǸnǹ"},
     {"-0.7,7.5 0.9,9", false, U"AÁEÉIÍOÓUÚYÝaáeéıíoóuúyýCĆcćLĹlĺNŃnńRŔrŕSŚsśZŹzź"},

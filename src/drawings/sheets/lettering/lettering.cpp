@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A text is set letter by letter: the strokes of each are scaled and turned, and the next letter begins at a fixed
-// distance behind them. Letters with marks are put together from a base and a mark, which stands higher on tall
-// letters. For what has no letter stands missing_glyph(), so that nothing disappears from a drawing in silence.
+// A text is set letter by letter: strokes are scaled and rotated, and the next letter begins at a fixed distance behind
+// them. Letters with marks are composed of a base and a mark, which is higher on tall letters. Characters without a
+// letter become missing_glyph(), so that nothing disappears silently.
 #include <algorithm>
 #include <cmath>
 
@@ -14,14 +14,14 @@ namespace {
 
 using detail::Glyph;
 
-constexpr double gap = 3;       // between the middles of strokes: ISO 3098-1 has two widths of the pen between letters
-constexpr double rise = 3;      // of a mark that stands above a tall letter
-constexpr double tall = 6.5;    // letters that reach above this are
-constexpr double edge = 0.5;    // half of the pen
-constexpr double capital = 10;  // from edge to edge
+constexpr double gap = 3;       // between the middles of strokes: ISO 3098-1 has two pen widths between letters
+constexpr double rise = 3;      // of a mark above a tall letter
+constexpr double tall = 6.5;    // letters that reach higher are tall
+constexpr double edge = 0.5;    // half of the pen width
+constexpr double capital = 10;  // height of capitals, from edge to edge
 constexpr double eighth = 0.7853981633974483;
 
-/// Runs through the points of strokes: visit(point, bulge of the way to it, whether a stroke begins there).
+/// Visits the points of strokes: visit(point, bulge of the way to it, whether a stroke begins there).
 template <class Visit>
 void for_each_point(const char* strokes, const Visit& visit) {
   bool begins = true;
@@ -47,12 +47,12 @@ void for_each_point(const char* strokes, const Visit& visit) {
   }
 }
 
-/// A character as it is drawn: a letter, perhaps with a mark on it.
+/// A character to be drawn: a letter, possibly with a mark.
 struct Character {
   const Glyph* glyph = nullptr;
   const char* mark = nullptr;
   glm::dvec2 mark_at{0};
-  double indent = 0, width = 0;  ///< the letter's place in the width of both
+  double indent = 0, width = 0;  ///< `indent`: the letter's offset within the common width
 };
 
 Character character_of(char32_t code) {
@@ -72,7 +72,7 @@ Character character_of(char32_t code) {
   return character;
 }
 
-/// Calls visit(character, its left) for every one. \returns where the last one ends; negative without any.
+/// Calls visit(character, its left) for every character. \returns the end of the last one; negative if there is none.
 template <class Visit>
 double for_each_character(std::string_view text, const Visit& visit) {
   double left = 0;
@@ -84,7 +84,7 @@ double for_each_character(std::string_view text, const Visit& visit) {
   return left - gap;
 }
 
-/// Appends strokes to a group, from tenths of the height about the text's left end to its place on the page.
+/// Appends strokes to a group, transformed from tenths of the height to the text's place on the page.
 class LetterPen {
  public:
   LetterPen(PageGroup& group, const glm::dvec2& at, const TextStyle& style, const glm::dvec2& shift)

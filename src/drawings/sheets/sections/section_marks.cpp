@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-//    A               A          A cutting line is thin, with long dashes and dots, and has thick ends beyond what it
-//    |               |          cuts. Arrows at the ends point the way the section looks, with its letter behind them:
-//    v               v          the same letter, twice, is the name of the view.
+//    A               A          A cutting line is thin, with long dashes and dots, and has thick ends beyond the cut
+//    |               |          part. Arrows at the ends point in the section's view direction, with its letter behind
+//    v               v          them. The letter, written twice, is the name of the section.
 //    ===- - - . - ===
 #include "frontmost/sheets.h"
 #include "sheets/page_marks.h"
@@ -10,7 +10,7 @@
 namespace frontmost::detail {
 namespace {
 
-constexpr double gap_before = 3, thick_length = 6;   // millimetres beyond what is cut
+constexpr double gap_before = 3, thick_length = 6;   // millimetres beyond the cut part
 constexpr double arrow_place = 6;                    // likewise: in the middle of the thick end
 constexpr double arrow_length = 8, head_length = 4;  // millimetres
 constexpr double letter_distance = 1;                // from the arrow's tail

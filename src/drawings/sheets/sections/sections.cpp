@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A section is a view of what its plane leaves of the model. The plane is seen from its edge in views that look along
-// another axis: the first of these gets the cutting line, and that may be another section. The section stands where the
-// view would stand that looks the same way, if that place is free, and otherwise in a column of its own behind those of
-// all views.
+// A section is a view of the part of the model behind its plane. The plane is edge-on in views along other axes: the
+// first of these gets the cutting line, even if it is another section. The section takes the cell of the view with the
+// same direction, if that is free, and otherwise a column of its own behind those of all views.
 #include "sheets/sections/sections.h"
 
 #include <algorithm>
@@ -15,8 +14,8 @@ namespace frontmost::detail {
 namespace {
 
 constexpr double least_spacing = 1.2, most_spacing = 3;  // millimetres between hatch lines
-constexpr double spacing_share = 0.03;                   // of the section's diagonal
-constexpr double thinnest = 0.8;                         // millimetres: parts below it are solid
+constexpr double spacing_share = 0.03;                   // as a share of the section's diagonal
+constexpr double thinnest = 0.8;                         // millimetres: thinner parts are solid
 constexpr double name_distance = 5, name_height = 5;     // millimetres above a section
 constexpr int first_own_column = 3;                      // behind those of all views
 
@@ -26,7 +25,7 @@ constexpr int first_own_column = 3;                      // behind those of all 
               reason);
 }
 
-/// The axis to which a view along one looks from.
+/// The axis whose direction is nearest to `direction`.
 Axis axis_towards(const glm::dvec3& direction) {
   int axis = 0;
   for (int k = 1; k < 3; ++k)
@@ -34,7 +33,7 @@ Axis axis_towards(const glm::dvec3& direction) {
   return Axis(direction[axis] > 0 ? axis : axis + 3);
 }
 
-/// The view in which each section's plane is marked: the first that sees it from its edge, if need be another section.
+/// By section, the view in which its plane is marked: the first that sees it edge-on, which may be another section.
 std::vector<std::size_t> hosts_of(const std::vector<PlannedView>& views) {
   std::vector<std::size_t> hosts(views.size(), views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -47,7 +46,7 @@ std::vector<std::size_t> hosts_of(const std::vector<PlannedView>& views) {
   return hosts;
 }
 
-/// A cutting line in the pixels of its host.
+/// A cutting line in the pixels of its host view.
 struct Trace {
   glm::dvec2 from{0}, to{0}, looking{0};
   DrawingBounds box;
@@ -127,7 +126,7 @@ void keep_section_room(std::vector<ViewCell>& cells, std::vector<PlannedView>& v
     cell.room_before[along] = std::max(
         cell.room_before[along], cutting_line_room + (along == 1 && host.section ? name_distance + name_height : 0));
     cell.room_behind[along] = std::max(cell.room_behind[along], cutting_line_room);
-    // Arrows stand where the viewer of the section does.
+    // Arrows are on the side from which the section is viewed.
     const bool is_behind = trace.looking[across] < 0;
     const double size = trace.box.high[across] - trace.box.low[across];
     const double rest =

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sections of sheets: what they cut, where they stand, how they are hatched, and the marks that lead to them: cutting
-// planes, and the names of the views (ISO 128-3).
+// Sections of sheets: their cuts, places, hatching, cutting lines and names (ISO 128-3).
 //
-//    views of a sheet         +------+   A|   |A   cutting lines in the first view that sees the plane from its edge
+//    views of a sheet         +------+   A|   |A   cutting lines in the first view that sees the plane edge-on
 //                             |      |    |---|
 //                             +------+
 //                               A-A                the section, under the name of its line
@@ -17,33 +16,33 @@
 
 namespace frontmost::detail {
 
-inline constexpr std::string_view section_letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";  // none that looks like a number
+inline constexpr std::string_view section_letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";  // letters that do not look like digits
 
-/// Surfaces that keep their scene.
+/// Surfaces that own a reference to their scene.
 [[nodiscard]] std::shared_ptr<const Surfaces> surfaces_of(std::shared_ptr<const Scene> scene,
                                                           const Execution& execution);
 
-/// What a plane leaves of a scene.
+/// The part of a scene behind a plane.
 struct CutScene {
   std::shared_ptr<const Surfaces> surfaces;
   std::shared_ptr<const Section> section;
   CuttingPlane plane;
 };
-/// Cuts `surfaces` for a view of them. \throws Error bad_argument where the plane misses them.
+/// Cuts `surfaces` for a view of them. \throws Error bad_argument if the plane misses them.
 [[nodiscard]] CutScene cut_for(const SectionView& wanted, const Surfaces& surfaces, const View& camera,
                                const Execution& execution);
 
-/// The cells of sections: where the view would stand that looks the same way, or in a column of their own.
+/// Sets the cells of sections: those of the views with the same direction if free, else a column of their own.
 void place_sections(std::vector<ViewCell>& cells, const std::vector<PlannedView>& views);
-/// Lets cells keep room for cutting lines and names, and says so in the views.
+/// Reserves room in the cells for cutting lines and names, and records it in the views.
 void keep_section_room(std::vector<ViewCell>& cells, std::vector<PlannedView>& views);
 
-/// Hatches the cut faces of views whose places on the sheet are settled.
+/// Hatches the cut faces of views whose places on the sheet are final.
 void hatch_sections(std::vector<PlannedView>& views, const SheetOptions& options, const Execution& execution);
-/// A plane that is seen from its edge, on the page.
+/// The line of an edge-on cutting plane on the page.
 struct CuttingLine {
-  glm::dvec2 from{0}, to{0};  ///< where what it cuts begins and ends
-  glm::dvec2 looking{0};      ///< which way its section looks, across the line; of unit length
+  glm::dvec2 from{0}, to{0};  ///< ends of the part that it cuts
+  glm::dvec2 looking{0};      ///< the section's view direction, across the line; unit length
   std::string letter;         ///< "A"
 };
 
@@ -54,25 +53,25 @@ struct ViewName {
 };
 
 struct SectionMarkOptions {
-  Pen thin{0.25, {}, {6, 1, 0.1, 1}};  ///< of lines; their ends are twice as wide
-  double text_height = 5;              ///< millimetres, as TextStyle's
+  Pen thin{0.25, {}, {6, 1, 0.1, 1}};  ///< pen of the lines; their ends are twice as wide
+  double text_height = 5;              ///< millimetres, as in TextStyle
 };
 
-/// Millimetres that a cutting line takes beyond its ends; on the side from where its section looks it takes
-/// `section_arrow_room` beside them.
+/// Millimetres that a cutting line takes beyond its ends (`cutting_line_room`), and beside them on the side from which
+/// the section is viewed (`section_arrow_room`).
 inline constexpr double cutting_line_room = 12, section_arrow_room = 15;
 
 struct SectionMarks {
-  PageLayer layer{"9 sections"};  ///< groups of lines, of ends with arrows, and of letters; none has a name
-  std::vector<PageBox> boxes;     ///< what arrows and letters cover
+  PageLayer layer{"9 sections"};  ///< unnamed groups of lines, of ends with arrows, and of letters
+  std::vector<PageBox> boxes;     ///< boxes of arrows and letters
 };
 
-/// Cutting lines in long dashes and dots, with thick ends 3 to 9 mm beyond what they cut, an arrow at each and its
-/// letter behind it; and the names of views. All are strokes of pens, for plotters as well.
+/// Draws cutting lines in long dashes and dots, with thick ends 3 to 9 mm beyond the cut part, an arrow at each end and
+/// its letter behind it; and the names of views. All are pen strokes, also for plotters.
 [[nodiscard]] SectionMarks draw_section_marks(std::span<const CuttingLine> lines, std::span<const ViewName> names,
                                               const SectionMarkOptions& options = {});
 
-/// Cutting lines and names of all sections; nothing without any.
+/// The cutting lines and names of all sections; empty if there are none.
 [[nodiscard]] SectionMarks section_marks_of(const std::vector<PlannedView>& views, const Pen& thin);
 
 }  // namespace frontmost::detail

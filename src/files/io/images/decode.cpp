@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells image formats apart, and holds the limits that all decoders share.
+// Recognizes image formats, and holds the limits that all decoders share.
 #include "io/images/decode.h"
 
 #include <algorithm>
@@ -17,8 +17,9 @@ struct Signature {
 
 using namespace std::string_view_literals;
 
-/// Formats that models refer to in the wild and that we name instead of calling them broken. Literals with a zero
-/// inside say their own length: as plain ones they would end there, and "MM" begins many a text.
+/// Formats that occur in models but are not read; messages name them instead of calling them broken. Literals with a
+/// zero byte inside use the suffix sv, because a plain literal would end at the zero. "MM" alone begins many
+/// texts.
 constexpr Signature foreign_formats[] = {
     {1, "KTX 20", "KTX2"},
     {1, "KTX 11", "KTX"},
@@ -50,7 +51,7 @@ Texture decode(std::span<const std::byte> bytes, const std::string& name, detail
               bytes.empty() ? "the image is empty" : "neither PNG nor JPEG nor WebP");
 }
 
-/// Runs a decoder of the caller's, whose errors do not know where they come from.
+/// Runs the caller's decoder. Its errors do not know the file's name, which is added here.
 template <class Ask>
 auto ask_decoder(const std::string& name, Ask ask) {
   try {
@@ -69,13 +70,14 @@ void check_image_size(const std::string& name, std::uint64_t width, std::uint64_
   const std::string size = std::to_string(width) + " x " + std::to_string(height);
   if (width == 0 || height == 0)
     throw Error(ErrorCode::file_malformed, name, format, "an image of " + size + " pixels");
-  // Sides first: their product is then far below 64 bits.
+  // The sides are checked first, so that their product stays far below 64 bits.
   if (width > std::uint64_t(max_image_side) || height > std::uint64_t(max_image_side) ||
       width * height > max_image_pixels)
     throw Error(ErrorCode::limit_exceeded, name, format,
                 size + " pixels, more than " + std::to_string(max_image_side) + " on a side or " +
                     std::to_string(max_image_pixels) + " in all");
-  // A file of some hundred bytes may name the greatest size there is; memory is asked for only where pixels can follow.
+  // A file of some hundred bytes may claim the greatest size. Memory is allocated only if the bytes can hold the
+  // pixels.
   if (double(width * height) > densest * double(byte_count))
     throw Error(ErrorCode::file_malformed, name, format,
                 std::to_string(byte_count) + " bytes cannot hold " + size + " pixels");

@@ -19,25 +19,26 @@ inline constexpr std::uint64_t max_image_pixels = std::uint64_t(1) << 28;
 /// \throws Error file_malformed (truncated files included), unsupported, limit_exceeded.
 [[nodiscard]] Texture decode_texture(std::span<const std::byte> bytes, const std::string& name);
 
-/// By `decoder`, where that is not null, else as above. \throws Error also where what it gives is not an image: other
-/// sizes than it told, or another number of pixels.
+/// Decodes by `decoder`, unless it is null, else as above. \throws Error also if the decoder's result is no image of
+/// the size that the decoder announced, or has another number of pixels.
 [[nodiscard]] Texture decode_texture(std::span<const std::byte> bytes, const std::string& name,
                                      const ImageDecoder* decoder);
 
-/// Width and height as the file's header states them; the same limits and errors, without decoding.
+/// Width and height as the file's header states them, without decoding. Limits and errors are those of
+/// decode_texture().
 [[nodiscard]] glm::ivec2 texture_size(std::span<const std::byte> bytes, const std::string& name);
-/// The same by `decoder`, where that is not null.
+/// Width and height by `decoder`, unless it is null, else as above.
 [[nodiscard]] glm::ivec2 texture_size(std::span<const std::byte> bytes, const std::string& name,
                                       const ImageDecoder* decoder);
 
-/// Whether WebP images can be decoded: by `decoder`, where that is not null, else by this build.
+/// Whether WebP images can be decoded: by `decoder`, unless it is null, else by this build.
 [[nodiscard]] bool decodes_webp(const ImageDecoder* decoder);
 
 }  // namespace frontmost
 
 namespace frontmost::detail {
 
-/// What to read of an image.
+/// The part of an image to read: its size alone, or its pixels, too.
 enum class ImagePart : std::uint8_t { size, pixels };
 
 [[nodiscard]] Texture decode_png(std::span<const std::byte> bytes, const std::string& name, ImagePart part);
@@ -45,9 +46,9 @@ enum class ImagePart : std::uint8_t { size, pixels };
 [[nodiscard]] Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, ImagePart part);
 [[nodiscard]] bool has_webp();
 
-/// The part of every decoder between header and pixels. `densest` is the most pixels that one byte of a valid file can
-/// stand for: a header that claims more belongs to a truncated or hostile file, and gets no memory. `format` is
-/// the place of an error.
+/// Check of every decoder between header and pixels. `densest` is the greatest number of pixels that one byte of a
+/// valid file can hold. A header that claims more belongs to a truncated or hostile file, and no memory is allocated
+/// for it. `format` is the place of an error.
 void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height, std::size_t byte_count,
                       double densest, const char* format = "");
 

@@ -14,14 +14,14 @@
 namespace frontmost::detail {
 namespace {
 
-/// A progressive file of a few kilobytes can hold thousands of scans, each a pass over the whole image; real ones
-/// hold about ten.
+/// Limit of scans in a progressive file. Each scan is a pass over the whole image, and a file of a few kilobytes can
+/// hold thousands of them; real files have about ten.
 constexpr int max_scans = 200;
-/// The same for large images: 16 scans at the greatest size.
+/// Limit of scans times pixels, for large images: 16 scans at the greatest size.
 constexpr std::uint64_t max_scanned_pixels = 16 * max_image_pixels;
 
-/// libjpeg reports errors by longjmp, which must not pass over C++ objects: the functions that set the jump
-/// (`read_header`, `read_rows`) hold none, and everything they need lies here.
+/// libjpeg reports errors by longjmp, which must not pass over C++ objects. The functions that call setjmp
+/// (`read_header`, `read_rows`) hold none; their data lies here.
 struct Reader {
   jpeg_decompress_struct jpeg{};
   jpeg_error_mgr errors{};
@@ -50,8 +50,8 @@ struct Reader {
       errors.format_message(reinterpret_cast<j_common_ptr>(&jpeg), message);
     std::longjmp(jump, 1);
   }
-  /// Level -1 is damaged data, which libjpeg repairs. Most of it is harmless, but an image that ends early would be
-  /// grey below.
+  /// Level -1 means damaged data, which libjpeg repairs. Most damage is harmless, but the lower part of an image that
+  /// ends early would be grey.
   void on_message(int level) {
     if (level < 0 && std::strncmp(errors.jpeg_message_table[errors.msg_code], "Premature end", 13) == 0)
       fail("ends too early");
@@ -87,7 +87,7 @@ bool read_rows(Reader& reader, unsigned char* pixels, std::size_t row_bytes) {
   return true;
 }
 
-/// Adobe writes inks inverted (0 is full ink), others do not.
+/// Adobe writes inverted inks (0 is full ink), other programs do not.
 void inks_to_rgb(Texture& texture, bool inverted) {
   for (glm::u8vec4& pixel : texture.pixels) {
     const glm::uvec4 paper = inverted ? glm::uvec4(pixel) : 255u - glm::uvec4(pixel);
@@ -106,7 +106,7 @@ Texture decode_jpeg(std::span<const std::byte> bytes, const std::string& name, I
   Reader reader;
   if (!read_header(reader, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size())) fail(reader, name);
   const std::uint64_t width = reader.jpeg.image_width, height = reader.jpeg.image_height;
-  // Every block of 64 luminance samples takes at least one bit.
+  // Each block of 64 luminance samples takes at least one bit.
   check_image_size(name, width, height, bytes.size(), 64 * 8);
 
   Texture texture;

@@ -7,7 +7,7 @@
 namespace frontmost::detail {
 namespace {
 
-/// A picture of one colour takes no bits at all for its pixels, so that only the callers' limits of pixels hold.
+/// The pixels of a picture of one colour take no bits at all, so only the callers' limits of pixels hold.
 constexpr double any_density = double(max_image_pixels);
 
 const char* reason_of(VP8StatusCode status) {

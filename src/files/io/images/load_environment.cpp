@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Environments: images of light from all around, put into the one shape that lighting asks for.
+// Environments: images of light from all directions, converted to the one layout that lighting expects.
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -9,14 +9,14 @@
 namespace frontmost {
 namespace {
 
-/// What load_environment() says of values out of range.
+/// Replaces values out of range as load_environment() documents.
 float usable_light(float value) {
   constexpr float infinity = std::numeric_limits<float>::infinity(), greatest_half = 65504;
   if (!(value > 0)) return 0;  // NaN too
   return value == infinity ? greatest_half : std::min(value, max_environment_value);
 }
 
-/// Takes the plane of that name out of `image`, or a copy of the grey one.
+/// Moves the plane `name` out of `image`, or copies the grey plane.
 Buffer<float> take_light(Image& image, const char* name, const std::string& file) {
   Channel* channel = image.find(name);
   const bool is_grey = channel == nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// NumPy arrays: a Python dictionary that gives type, order and shape, and then the raw numbers.
+// NumPy arrays: a Python dictionary with type, order and shape, followed by the raw numbers.
 #include <charconv>
 #include <cstring>
 #include <string_view>
@@ -15,7 +15,7 @@ using namespace std::string_view_literals;
 
 constexpr std::string_view magic = "\x93NUMPY"sv;
 constexpr std::size_t prefix_size = 10;  // magic, version, length of the dictionary
-// What NumPy itself aligns to since version 1.14, so that the numbers can be mapped where they lie.
+// Alignment of the numbers that NumPy itself uses since version 1.14, so that files can be mapped.
 constexpr std::size_t alignment = 64;
 
 [[noreturn]] void fail_npy(const std::string& name, const std::string& reason) {
@@ -28,7 +28,7 @@ std::string shape_of(const Image& image) {
   return shape;
 }
 
-/// The dictionary's text; where it ends the numbers begin.
+/// The dictionary's text, and its end, at which the numbers begin.
 struct Dictionary {
   std::string_view text;
   std::size_t end = 0;
@@ -38,10 +38,10 @@ Dictionary dictionary(std::span<const std::byte> bytes, const std::string& name)
   const auto byte = [&](std::size_t i) { return std::to_integer<std::size_t>(bytes[i]); };
   if (bytes.size() < prefix_size + 2) fail_npy(name, "the header is cut short");
   const std::size_t version = byte(6);
-  // Version 3 differs from 2 in that names may be UTF-8; there are no names in what is read here.
+  // Version 3 differs from 2 only in UTF-8 names, which the arrays read here do not have.
   if (version < 1 || version > 3)
     throw Error(ErrorCode::unsupported, name, "NPY", "version " + std::to_string(version));
-  // From version 2 on the length has four bytes.
+  // The length has four bytes from version 2 on.
   const std::size_t start = version == 1 ? prefix_size : prefix_size + 2;
   std::size_t length = byte(8) + (byte(9) << 8);
   if (version > 1) length += (byte(10) << 16) + (byte(11) << 24);
@@ -49,9 +49,9 @@ Dictionary dictionary(std::span<const std::byte> bytes, const std::string& name)
   return {{reinterpret_cast<const char*>(bytes.data()) + start, length}, start + length};
 }
 
-/// What follows `key` and a colon in the dictionary. NumPy writes keys in single quotes, always.
+/// The text behind `key` and a colon in the dictionary. NumPy always writes keys in single quotes.
 std::string_view value_of(std::string_view text, std::string_view key, const std::string& name) {
-  // Not a parser of Python: keys are found as NumPy writes them, and whatever is not so written is refused.
+  // This is no parser of Python: keys are found as NumPy writes them, and any other spelling is refused.
   const std::size_t place = text.find(key);
   const std::size_t colon = place == text.npos ? text.npos : text.find(':', place);
   const std::size_t value = colon == text.npos ? text.npos : text.find_first_not_of(' ', colon + 1);
@@ -71,7 +71,7 @@ std::vector<std::size_t> shape(std::string_view text, const std::string& name) {
     if (error != std::errc() || sizes.size() == 3) fail_npy(name, "the shape is not (height, width[, channels])");
     sizes.push_back(size);
     place = rest;
-    // A tuple of one has a comma behind it, and so may others.
+    // A tuple of one number ends with a comma, and longer tuples may, too.
     while (place < stop && (*place == ',' || *place == ' ')) ++place;
   }
   if (sizes.size() < 2) fail_npy(name, "the shape is not (height, width[, channels])");
@@ -82,7 +82,7 @@ std::vector<std::size_t> shape(std::string_view text, const std::string& name) {
 
 std::string npy_header(const std::string& type, const std::string& shape) {
   std::string text = "{'descr': " + type + ", 'fortran_order': False, 'shape': (" + shape + "), }";
-  // Blanks and a line end fill up to the alignment at which the numbers begin.
+  // Blanks and a line end fill the header up to the alignment.
   text.append((alignment - (prefix_size + text.size() + 1) % alignment) % alignment, ' ');
   text += '\n';
   std::string header(magic);
@@ -103,7 +103,7 @@ void save_npy(const Image& image, OutputFile& file) {
 
 Image load_npy(std::span<const std::byte> bytes, const std::string& name) {
   const Dictionary header = dictionary(bytes, name);
-  // Five characters with both quotes: longer names, as '<f16', must not pass for '<f1'.
+  // Five characters include both quotes, so that longer names such as '<f16' do not pass for '<f1'.
   const std::string_view type = value_of(header.text, "'descr'", name).substr(0, 5);
   const bool floats = type == "'<f4'" || type == "'>f4'", integers = type == "'<u4'" || type == "'>u4'";
   if (!floats && !integers)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Portable float maps: "PF" (three channels) or "Pf" (one), width and height, a scale whose sign gives the byte
-// order, each on a line of its own, and then floats, the bottom row first.
+// Portable float maps: "PF" (three channels) or "Pf" (one), width and height, and a scale whose sign gives the byte
+// order, each on a line of its own. Floats follow, the bottom row first.
 #include <cctype>
 #include <charconv>
 #include <string_view>
@@ -15,13 +15,13 @@ namespace {
   throw Error(ErrorCode::file_malformed, name, "PFM", reason);
 }
 
-/// Takes words off the front of the file; exactly one blank ends each, as pixels may look like blanks.
+/// Takes words off the front of the file. Exactly one blank ends each word, because pixels may look like blanks.
 class Header {
  public:
   Header(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
   std::string_view word() {
-    // A file of another kind may hold no blank for megabytes.
+    // A file of another format may hold no blank for megabytes.
     constexpr std::size_t longest = 64;
     const auto* text = reinterpret_cast<const char*>(bytes_.data());
     std::size_t end = 0;
@@ -66,16 +66,17 @@ void save_pfm(const Image& image, OutputFile& file) {
 Image load_pfm(std::span<const std::byte> bytes, const std::string& name) {
   Header header(bytes, name);
   RawLayout layout;
-  // Others have made more of these, as PF4 with four channels: to call one of them Pf would misread it.
+  // Other programs have extended the format, for example PF4 with four channels. A prefix match would misread such
+  // files.
   const std::string_view kind = header.word();
   if (kind != "PF" && kind != "Pf") fail_pfm(name, "neither PF nor Pf");
   layout.channels = kind == "PF" ? 3 : 1;
   layout.width = header.size();
   layout.height = header.size();
   const std::string_view scale = header.word();
-  // 0 would leave the byte order open, as 0 and -0 are one number.
+  // A scale of 0 is refused: its sign cannot give the byte order, because 0 and -0 are one number.
   if (scale.find_first_of("123456789") == std::string_view::npos) fail_pfm(name, "the scale is not a number");
-  layout.big_endian = scale[0] != '-';  // its size is a unit that nobody agrees on, and is left aside
+  layout.big_endian = scale[0] != '-';  // the scale's size has no agreed meaning and is ignored
   layout.bottom_row_first = true;
   return read_raw(header.rest(), layout, name, "PFM");
 }

@@ -17,10 +17,10 @@ std::optional<PictureRows> picture_rows(const Image& image) {
 }
 
 PictureRows picture_rows(const Bitmap& bitmap) {
-  constexpr std::size_t bytes = 4;  // of a pixel
+  constexpr std::size_t bytes = 4;  // a pixel
   const std::size_t size = bitmap.rgba.size();
   std::uint8_t least = 255;
-  // Without branches and without an end: that is quicker than to stop at the first that is transparent.
+  // The loop has no branches and no early exit, which is faster than stopping at the first transparent pixel.
   for (std::size_t i = bytes - 1; i < size; i += bytes) least = std::min(least, bitmap.rgba[i]);
   const bool with_alpha = least < 255;
   return {bitmap.width, bitmap.height, with_alpha, [&bitmap, with_alpha](int y, std::uint8_t* row) {

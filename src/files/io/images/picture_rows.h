@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures row by row as formats of 8 bits hold them, whether they lie in planes of floats or in bytes.
+// Pictures as rows of 8-bit pixels for image formats, made from planes of floats or from bytes.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace frontmost::detail {
 
-/// sRGB, straight alpha: R, G, B or R, G, B, A, a byte each. Borrows what it was made from.
+/// Rows of sRGB bytes with straight alpha: R, G, B or R, G, B, A. Borrows the picture that it was made from.
 struct PictureRows {
   int width = 0, height = 0;
-  bool with_alpha = false;  ///< where any pixel is not opaque
+  bool with_alpha = false;  ///< whether any pixel is not opaque
   /// Fills row y, from the top. May be called from many threads at once.
   std::function<void(int y, std::uint8_t* row)> row;
 
@@ -21,7 +21,7 @@ struct PictureRows {
   [[nodiscard]] std::size_t row_bytes() const { return pixel_bytes() * std::size_t(width); }
 };
 
-/// None unless the channels are R, G, B, or R, G, B, A, of floats. O(pixels), as a look for alpha.
+/// Empty unless the channels are R, G, B, or R, G, B, A, of floats. O(pixels), to look for alpha.
 [[nodiscard]] std::optional<PictureRows> picture_rows(const Image& image);
 [[nodiscard]] PictureRows picture_rows(const Bitmap& bitmap);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Radiance pictures (.hdr, .pic): a text header, a line with the size, and rows of pixels with one exponent for three
-// mantissas. Rows are plain, or repeat whole pixels (until 1991), or are packed byte by byte, each component for
-// itself. G. Ward. Real Pixels. Graphics Gems II. 1991; Radiance's src/common/color.c.
+// mantissas. Rows are plain, or repeat whole pixels (until 1991), or pack the bytes of each component by itself. G.
+// Ward. Real Pixels. Graphics Gems II. 1991; Radiance's src/common/color.c.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -21,7 +21,7 @@ namespace {
   throw Error(code, name, "Radiance", reason);
 }
 
-/// The beginning of a text of the file, for messages.
+/// The start of a text of the file, quoted for messages.
 std::string quoted(std::string_view text) {
   std::string quote(1, '"');
   quote += text.substr(0, 40);
@@ -29,7 +29,7 @@ std::string quoted(std::string_view text) {
   return quote;
 }
 
-/// What is left of the file.
+/// The rest of the file that is not read yet.
 class RadianceBytes {
  public:
   RadianceBytes(std::span<const std::byte> bytes, const std::string& name) : rest_(bytes), name_(name) {}
@@ -43,7 +43,7 @@ class RadianceBytes {
     rest_ = rest_.subspan(length + 1);
     return {text, length > 0 && text[length - 1] == '\r' ? length - 1 : length};
   }
-  /// The next `count` bytes, of row `row`, which messages name.
+  /// The next `count` bytes. Messages name `row`.
   const std::uint8_t* take(std::size_t count, std::size_t row) {
     if (count > rest_.size()) fail_radiance(name_, "row " + std::to_string(row) + " is cut short");
     const auto* taken = reinterpret_cast<const std::uint8_t*>(rest_.data());
@@ -62,7 +62,7 @@ struct RadianceSize {
   bool bottom_row_first = false, right_column_first = false;
 };
 
-/// "-Y 512 +X 1024": from the top, from the left.
+/// Reads the line of the size, such as "-Y 512 +X 1024": rows from the top, columns from the left.
 RadianceSize size_of(std::string_view line, const std::string& name) {
   RadianceSize size;
   const char *place = line.data(), *const end = place + line.size();
@@ -82,10 +82,10 @@ RadianceSize size_of(std::string_view line, const std::string& name) {
   return size;
 }
 
-/// Reads up to the pixels.
+/// Reads everything before the pixels.
 RadianceSize read_radiance_header(RadianceBytes& bytes, const std::string& name) {
   constexpr std::string_view format_key = "FORMAT=", rgbe = "32-bit_rle_rgbe";
-  bytes.line();  // #?RADIANCE or #?RGBE
+  bytes.line();  // "#?RADIANCE" or "#?RGBE"
   for (std::string_view line = bytes.line(); !line.empty(); line = bytes.line()) {
     if (!line.starts_with(format_key)) continue;
     const std::string_view format = line.substr(format_key.size());
@@ -97,13 +97,13 @@ RadianceSize read_radiance_header(RadianceBytes& bytes, const std::string& name)
   return size_of(bytes.line(), name);
 }
 
-/// One row of pixels, component by component as they are packed: red, green, blue, exponent.
+/// One row of pixels, stored by component: red, green, blue, exponent.
 struct RadianceRow {
   std::array<std::vector<std::uint8_t>, 4> components;
-  std::size_t number = 0;  ///< as the file has them, for messages
+  std::size_t number = 0;  ///< row of the file, for messages
 };
 
-/// A byte over 128 says how often the next one is repeated, one up to it how many follow as they are.
+/// A byte above 128 says how often the next byte is repeated; any other says how many plain bytes follow.
 void read_packed(RadianceBytes& bytes, RadianceRow& row, const std::string& name) {
   for (std::vector<std::uint8_t>& component : row.components)
     for (std::size_t x = 0; x < component.size();) {
@@ -119,8 +119,8 @@ void read_packed(RadianceBytes& bytes, RadianceRow& row, const std::string& name
     }
 }
 
-/// Pixels of four bytes each, of which those with three ones repeat the pixel before them: as often as the fourth says,
-/// times 256 for each such one that came directly before.
+/// Reads pixels of four bytes each. A pixel that begins with three ones repeats the pixel before it, as often as its
+/// fourth byte says, times 256 for each repeating pixel directly before it.
 void read_plain(RadianceBytes& bytes, RadianceRow& row, const std::string& name) {
   const std::size_t width = row.components[0].size();
   std::size_t unit = 1;
@@ -128,7 +128,7 @@ void read_plain(RadianceBytes& bytes, RadianceRow& row, const std::string& name)
     const std::uint8_t* pixel = bytes.take(4, row.number);
     const bool repeats = pixel[0] == 1 && pixel[1] == 1 && pixel[2] == 1;
     const std::size_t count = repeats ? pixel[3] * unit : 1;
-    // Nothing to repeat, a number that would not end the file, or more pixels than the row has.
+    // Errors: nothing to repeat, a factor that would grow without end, or more pixels than the row has.
     if (repeats && (x == 0 || unit > width || count > width - x))
       fail_radiance(name, "row " + std::to_string(row.number) + ": a run of " + std::to_string(count) + " pixels at " +
                               std::to_string(x) + " of " + std::to_string(width));
@@ -162,13 +162,13 @@ void read_row(RadianceBytes& bytes, RadianceRow& row, const std::string& name) {
 Image load_radiance(std::span<const std::byte> bytes, const std::string& name) {
   RadianceBytes rest(bytes, name);
   const RadianceSize size = read_radiance_header(rest, name);
-  // A row of one colour takes a pixel and what repeats it.
+  // A row of one colour takes one pixel and one run.
   const double densest = double(std::max<std::size_t>(size.width, 2)) / 8;
   check_image_size(name, size.width, size.height, rest.rest().size(), densest, "Radiance");
   Image image{int(size.width), int(size.height), {}};
   for (const char* channel : {"R", "G", "B"})
     image.channels.push_back({channel, Buffer<float>(size.width * size.height)});
-  // What is stored is mantissa / 256 * 2^(exponent - 128), and 0 with exponent 0.
+  // The stored value is mantissa / 256 * 2^(exponent - 128), or 0 for exponent 0.
   std::array<float, 256> scales = {};
   for (int exponent = 1; exponent < 256; ++exponent) scales[std::size_t(exponent)] = std::ldexp(1.0f, exponent - 136);
   RadianceRow row;

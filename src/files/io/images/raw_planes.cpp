@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers as they lie in NPY and PFM files: pixel by pixel, the channels of each side by side.
+// Raw numbers of NPY and PFM files: pixel by pixel, the channels of a pixel side by side.
 
 #include "io/images/raw_planes.h"
 
@@ -31,7 +31,7 @@ std::size_t image_row(const RawLayout& layout, std::size_t file_row) {
 }  // namespace
 
 void write_raw(const Image& image, const RawLayout& layout, OutputFile& file) {
-  // Many rows at a time, so that small pictures take few system calls.
+  // Many rows are written at a time, so that small pictures take few system calls.
   constexpr std::size_t block_bytes = std::size_t(1) << 20;
   const std::size_t row_bytes = layout.row_values() * value_size;
   const std::size_t block_rows = std::clamp<std::size_t>(block_bytes / row_bytes, 1, layout.height);
@@ -54,10 +54,10 @@ Image read_raw(std::span<const std::byte> bytes, const RawLayout& layout, const 
   constexpr std::size_t most_channels = 1024;
   if (layout.channels < 1 || layout.channels > most_channels)
     throw Error(ErrorCode::limit_exceeded, name, format, std::to_string(layout.channels) + " channels, not 1 to 1024");
-  // No bound on what the bytes may hold: the very number of them is asked for below.
+  // The density has no limit, because the exact number of bytes is checked below.
   check_image_size(name, layout.width, layout.height, bytes.size(), std::numeric_limits<double>::infinity(), format);
   const std::size_t expected = layout.height * layout.row_values() * value_size;
-  // Longer is as wrong as shorter: a header that was misread would otherwise give a picture shifted by some bytes.
+  // Too many bytes are as wrong as too few: a misread header would give a picture shifted by some bytes.
   if (bytes.size() != expected)
     throw Error(ErrorCode::file_malformed, name, format,
                 "the header asks for " + std::to_string(expected) + " bytes of numbers, but " +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What PFM and NPY share: both are a short text header and raw numbers.
+// Raw numbers that follow the short text header of a PFM or NPY file.
 #pragma once
 
 #include <bit>
@@ -16,7 +16,7 @@ namespace frontmost::detail {
 
 static_assert(std::endian::native == std::endian::little, "raw numbers are written and read as they lie in memory");
 
-/// Which numbers a file holds, row by row, the channels of a pixel side by side.
+/// Layout of the numbers in a file: row by row, the channels of a pixel side by side.
 struct RawLayout {
   std::size_t width = 0, height = 0, channels = 0;
   bool integers = false;
@@ -29,8 +29,8 @@ struct RawLayout {
 /// Writes all channels of `image`, which must be of one type.
 void write_raw(const Image& image, const RawLayout& layout, OutputFile& file);
 
-/// \throws Error file_malformed where `bytes` are not exactly what the layout asks for, limit_exceeded.
-/// Channels are named by default_channel_names().
+/// \throws Error file_malformed if `bytes` does not have exactly the layout's size; limit_exceeded.
+/// default_channel_names() gives the names of the channels.
 [[nodiscard]] Image read_raw(std::span<const std::byte> bytes, const RawLayout& layout, const std::string& name,
                              const char* format);
 

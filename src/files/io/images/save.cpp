@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which format a file is to have, and writing it whole.
+// Chooses the format of an image file and writes it whole.
 
 #include <algorithm>
 #include <cctype>
@@ -28,7 +28,7 @@ ImageFormat format_of(const std::string& path, const SaveOptions& options) {
               "an image file ends in .png, .exr, .pfm, .npy, .jpg or .webp, not in \"" + suffix + "\"");
 }
 
-/// \returns it. Precondition: a format that has a quality.
+/// Returns options.quality. \throws Error bad_argument unless it is 1 to 100. Precondition: the format has a quality.
 int checked_quality(const SaveOptions& options, const std::string& name) {
   if (options.quality < 1 || options.quality > 100)
     throw Error(ErrorCode::bad_argument, name, "", "the quality is 1 to 100, not " + std::to_string(options.quality));
@@ -45,10 +45,10 @@ detail::PictureRows lossy_rows(const Image& image, const char* format, const std
 template <class Write>
 void write_file(const std::string& path, const Execution& execution, const Write& write) {
   report_progress(execution, "save", 0);
-  // Before the pixels are compressed: a folder that cannot be written to is told of at once.
+  // The file is opened before the pixels are compressed, so that a folder without write access is reported at once.
   OutputFile file(path);
   write(file);
-  // Once more before the file gets its name: whoever ended the work does not expect a new one.
+  // Cancellation is checked once more before the file gets its name, because a cancelled call must leave no new file.
   check_cancelled(execution);
   file.commit();
   report_progress(execution, "save", 1);

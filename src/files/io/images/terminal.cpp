@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures for terminals: two pixels a character, by the upper half block and its background.
+// Pictures for terminals: two pixels a character, drawn as the upper half block and its background.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,10 +15,10 @@ namespace {
 constexpr const char* upper_half = "\xE2\x96\x80";
 constexpr const char* lower_half = "\xE2\x96\x84";
 
-/// One target pixel along one axis: the source pixels that it covers, the first and the last in part.
+/// Source pixels that one target pixel covers along one axis; the first and the last are covered in part.
 struct PixelSpan {
   int first = 0, end = 0;
-  double first_weight = 1, last_weight = 1;  ///< of the ends; the pixels between have weight 1
+  double first_weight = 1, last_weight = 1;  ///< of the end pixels; the pixels between have weight 1
 
   PixelSpan(int target, int target_size, int source_size) {
     const double from = double(target) * source_size / target_size;
@@ -33,7 +33,7 @@ struct PixelSpan {
 
 using TerminalColor = std::array<double, 4>;
 
-/// The mean of a box, in linear light and premultiplied, so that edges keep their brightness.
+/// The mean colour of a box, in linear light and premultiplied, so that edges keep their brightness.
 TerminalColor box_mean(const ColorPlanes& planes, const PixelSpan& columns, const PixelSpan& rows) {
   TerminalColor sum{};
   double weights = 0;
@@ -49,7 +49,7 @@ TerminalColor box_mean(const ColorPlanes& planes, const PixelSpan& columns, cons
   return sum;
 }
 
-/// A target pixel: an sRGB colour, or nothing where the picture is more transparent than not.
+/// A target pixel: an sRGB colour, or nothing if the picture is more transparent than opaque.
 struct Dot {
   bool visible = false;
   std::array<int, 3> srgb{};
@@ -69,7 +69,7 @@ int distance2(const std::array<int, 3>& a, const std::array<int, 3>& b) {
   return sum;
 }
 
-/// The nearest of xterm's 256 colours that every terminal has alike: a cube of 6 levels, and 24 greys.
+/// The nearest of xterm's 256 colours that look alike in every terminal: a cube of 6 levels, and 24 greys.
 int palette_index(const std::array<int, 3>& srgb) {
   constexpr int levels[] = {0, 95, 135, 175, 215, 255};
   std::array<int, 3> step{}, cube{};
@@ -84,7 +84,7 @@ int palette_index(const std::array<int, 3>& srgb) {
   return 16 + 36 * step[0] + 6 * step[1] + step[2];
 }
 
-/// Writes characters, and colours only where they change.
+/// Writes characters, and escape sequences only where a colour changes.
 class Writer {
  public:
   explicit Writer(bool true_color) : true_color_(true_color) {}
@@ -132,7 +132,7 @@ std::string terminal_picture(const Image& image, int columns, int rows, bool tru
   validate(image);
   const std::optional<ColorPlanes> planes = color_planes(image);
   if (!planes) throw Error(ErrorCode::unsupported, "terminal picture", "the image has no colours R, G, B");
-  // Half a character is about as wide as high.
+  // Half a character is about as wide as it is high.
   const double scale = std::min(double(columns) / image.width, 2.0 * rows / image.height);
   const int width = std::clamp(int(std::lround(image.width * scale)), 1, columns);
   const int height = std::clamp(int(std::lround(image.height * scale)), 1, 2 * rows);

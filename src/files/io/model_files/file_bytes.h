@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small pieces of a file brought together, and written when they are many.
+// Collects small pieces of a file and writes them in large blocks.
 #pragma once
 
 #include "base/output_file.h"
@@ -11,9 +11,9 @@ class FileBytes {
  public:
   explicit FileBytes(OutputFile& file) : file_(file) {}
 
-  /// What has come together; may be added to.
+  /// The bytes collected so far; callers may append.
   [[nodiscard]] std::string& bytes() { return bytes_; }
-  /// After each piece.
+  /// Writes the collected bytes if there are enough of them. Call after each piece.
   void pass_on() {
     if (bytes_.size() >= kBytesAtOnce) finish();
   }

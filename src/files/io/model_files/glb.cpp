@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// GLB out: objects that name meshes, meshes of a part for every material, materials with their layers and textures.
+// Writer of GLB: objects that name meshes, one primitive for each material of a mesh, materials with layers and
+// textures.
 #include <cmath>
 
 #include "io/images/png/texture_bytes.h"
@@ -13,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// As glTF numbers them.
+// Numbers of these constants in glTF.
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kVertices = 34962, kIndices = 34963;
 
 Json sampler_json(const Texture& texture) {
@@ -24,7 +25,7 @@ Json sampler_json(const Texture& texture) {
           {"wrapT", wraps[int(texture.wrap_v)]}};
 }
 
-/// One attribute of the vertices of a part.
+/// Adds one attribute of a primitive's vertices. \returns the number of its accessor.
 template <class Value, class Of>
 std::size_t add_values(GlbDocument& document, const WeldedCorners& corners, const char* type, const Of& of) {
   std::string bytes;
@@ -51,14 +52,14 @@ bool is_all_finite(const std::vector<T>& values) {
   return true;
 }
 
-/// Normals of glTF are of unit length. Where one has no direction, none are written: readers make them.
+/// glTF requires normals of unit length. If any normal has no direction, none are written, and readers compute them.
 bool has_normals(const Mesh& mesh) {
   return !mesh.normals.empty() && is_all_finite(mesh.normals.values) &&
          std::all_of(mesh.normals.values.begin(), mesh.normals.values.end(),
                      [](const glm::vec3& n) { return glm::length(glm::dvec3(n)) > 1e-30; });
 }
 
-/// The triangles of one material.
+/// The primitive that holds the triangles of one material.
 Json part_json(GlbDocument& document, const Mesh& mesh, std::uint32_t material,
                const std::vector<std::uint32_t>& triangles) {
   const WeldedCorners corners = weld_corners(mesh, triangles);
@@ -85,7 +86,7 @@ Json part_json(GlbDocument& document, const Mesh& mesh, std::uint32_t material,
   return part;
 }
 
-/// None where nothing of it can be written.
+/// Null if nothing of the mesh can be written.
 Json mesh_json(GlbDocument& document, const Mesh& mesh) {
   std::map<std::uint32_t, std::vector<std::uint32_t>> triangles;  // by material
   const auto is_finite_at = [&](std::uint32_t vertex) { return is_finite(mesh.positions[vertex]); };
@@ -98,12 +99,11 @@ Json mesh_json(GlbDocument& document, const Mesh& mesh) {
   return parts.empty() ? Json() : Json{{"name", utf8_text(mesh.name)}, {"primitives", std::move(parts)}};
 }
 
-/// The axes of glTF's world, in which y is up and z to the front, from those of a scene with another axis up; with the
-/// place of the scene's zero.
+/// The transform from the scene's axes and origin to the axes of glTF's world, in which y is up and z is front.
 Json root_matrix(const Scene& scene) {
   const glm::dvec3 up = direction(scene.up), right = up.x == 0 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 front = glm::cross(right, up);
-  // Rows are what the axes of the result are in the scene.
+  // Each row is an axis of the result in scene coordinates.
   const glm::dvec3 rows[3] = {right, up, front};
   Json matrix = Json::array();
   for (int column = 0; column < 3; ++column) {
@@ -125,9 +125,9 @@ Json node_json(const Instance& instance, const Json& mesh) {
   return node;
 }
 
-/// Objects below one node where the scene's axes or its zero are not the file's.
+/// Writes the objects, below one node if the scene's axes or origin differ from the file's.
 void write_nodes(const Scene& scene, GlbDocument& document) {
-  std::map<std::uint32_t, Json> meshes;  // by number in the scene, the document's number
+  std::map<std::uint32_t, Json> meshes;  // number in the document, by number in the scene
   Json nodes = Json::array();
   for (const Instance& instance : scene.instances) {
     auto found = meshes.find(instance.mesh);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A glTF document while it is put together: JSON that names pieces of one buffer.
+// A glTF document under construction: JSON that names pieces of one buffer.
 #pragma once
 
 #include <map>
@@ -15,20 +15,20 @@ class GlbDocument {
  public:
   explicit GlbDocument(const Scene& scene) : scene_(scene) {}
 
-  /// Everything but the buffer, which the file's second part is.
+  /// The whole JSON part except the buffer, which is the file's second part.
   nlohmann::ordered_json json = {{"asset", {{"version", "2.0"}, {"generator", "Frontmost"}}}};
   std::string buffer;
 
-  /// Puts bytes at the buffer's end, from a multiple of four on. `target`: as glTF numbers what a view is for, or 0.
-  /// \returns the number of the view.
+  /// Appends bytes to the buffer, aligned to four. `target` is glTF's number for the use of the view, or 0. \returns
+  /// the number of the view.
   std::size_t add_view(const std::string& bytes, int target);
   /// \returns the number of the accessor.
   std::size_t add_accessor(nlohmann::ordered_json accessor, const std::string& bytes, int target);
-  /// The number in the document of a texture of the scene, or of a material (no_index: the default one), which is put
-  /// there when it is first asked for.
+  /// The number in the document of the scene's texture or material `number` (no_index: the default material). The first
+  /// request adds it to the document.
   std::size_t texture(std::uint32_t number);
   std::size_t material(std::uint32_t number);
-  /// Says that an extension is used, and gives its name back.
+  /// Notes that an extension is used. \returns its name.
   const char* uses(const char* extension) {
     extensions_.insert(extension);
     return extension;

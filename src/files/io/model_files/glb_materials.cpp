@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials as glTF says them: what is as glTF has it by default is left out, and so are layers that are not there.
+// Materials in glTF. Values that equal glTF's defaults and layers that are absent are left out.
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +16,7 @@ Json color_json(const glm::vec3& color) {
   return Json::array({within(color.x, 0, 1), within(color.y, 0, 1), within(color.z, 0, 1)});
 }
 
-/// Puts the uses of textures into the objects that they belong to.
+/// Writes a material, with each use of a texture in the object that it belongs to.
 class MaterialWriter {
  public:
   explicit MaterialWriter(GlbDocument& document) : document_(document) {}
@@ -63,7 +63,7 @@ class MaterialWriter {
         {"offset", {use.offset.x, use.offset.y}}, {"rotation", use.rotation}, {"scale", {use.scale.x, use.scale.y}}};
     return json;
   }
-  /// Above 1 the strength is told apart.
+  /// The strength is written separately if it is above 1.
   void write_emission(Json& json, const Material& material) {
     const float most = std::max({material.emissive.x, material.emissive.y, material.emissive.z});
     set(json, "emissiveTexture", material.emissive_texture);
@@ -77,7 +77,7 @@ class MaterialWriter {
     };
     if (material.unlit) {
       layer("KHR_materials_unlit");
-      return;  // of such a surface nothing else counts
+      return;  // nothing else counts for an unlit surface
     }
     if (material.ior != 1.5f) layer("KHR_materials_ior")["ior"] = material.ior;
     if (const auto& s = material.specular; s.factor != 1 || s.color != glm::vec3(1)) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vertices as glTF has them: one number for a corner that takes its place, its normal, its colour and all of its
-// texture coordinates.
+// Vertices of glTF: one number for each distinct combination of position, normal, colour and texture coordinates.
 //
-//   Mesh       positions 0 1 2 3      normals 0 1 of their own: a corner is (position, normal, ...)
-//   glTF       vertices (0, 0) (1, 0) (1, 1) ...: every such pair that a corner has, once
+//   Mesh       positions 0 1 2 3      normals 0 1 with indices of their own: a corner is (position, normal, ...)
+//   glTF       vertices (0, 0) (1, 0) (1, 1) ...: each pair that a corner has, once
 #pragma once
 
 #include <algorithm>
@@ -16,7 +15,7 @@
 
 namespace frontmost::detail {
 
-/// Numbers of values: of the position, the normal, the colour, and the texture coordinates by set.
+/// Indices of a corner's values: position, normal, colour, and texture coordinates by set.
 using CornerKey = std::array<std::uint32_t, 3 + max_texcoord_sets>;
 
 inline CornerKey corner_key(const Mesh& mesh, std::uint32_t triangle, int corner) {
@@ -34,7 +33,7 @@ struct WeldedCorners {
   std::vector<std::uint32_t> indices;  ///< three for each triangle
 };
 
-/// The corners of some triangles of a mesh. O(n log n).
+/// Merges equal corners of the given triangles of a mesh. O(n log n).
 inline WeldedCorners weld_corners(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
   std::vector<CornerKey> keys;
   keys.reserve(3 * triangles.size());

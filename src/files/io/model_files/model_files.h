@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models out: what save() asks of every format. The file is empty and stays open.
+// Writers of model files, as save() calls them. The given file is empty and stays open.
 #pragma once
 
 #include "base/output_file.h"
@@ -8,8 +8,8 @@
 
 namespace frontmost::detail {
 
-/// One object's triangles as they lie in the file's coordinates. Those of mirrored objects are wound the other way, so
-/// that what is outside stays outside.
+/// One object's triangles in the file's coordinates. Triangles of mirrored objects get the opposite winding, so that
+/// their outer side stays outside.
 class PlacedMesh {
  public:
   PlacedMesh(const Scene& scene, const Instance& instance)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY out: all objects as one mesh, with further properties of its faces.
+// Writer of PLY: all objects as one mesh, with further properties of its faces.
 #include "io/model_files/file_bytes.h"
 #include "io/model_files/model_files.h"
 
@@ -10,7 +10,7 @@ std::string ply_header(const Scene& scene, const Table& of_triangles) {
   std::uint64_t vertices = 0;
   for (const Instance& instance : scene.instances) vertices += scene.meshes[instance.mesh].positions.size();
   if (vertices >= no_index) throw Error(ErrorCode::limit_exceeded, "PLY", "more than 4294967294 vertices");
-  // Floats where they hold what the model is made of, doubles far from zero.
+  // Floats suffice for a scene about zero; a scene far from zero needs doubles.
   const std::string real = scene.origin == glm::dvec3(0) ? "float" : "double";
   std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices) + "\n";
   for (const char* const axis : {" x\n", " y\n", " z\n"}) text += "property " + real + axis;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binary STL out: nothing but triangles, and the normal of each.
+// Writer of binary STL: triangles and their normals, nothing else.
 #include <cmath>
 
 #include "io/model_files/file_bytes.h"
@@ -9,7 +9,7 @@ namespace frontmost::detail {
 
 void write_stl(const Scene& scene, OutputFile& file) {
   FileBytes sink(file);
-  sink.bytes() = "Frontmost";  // anything but "solid", which begins the other kind of STL
+  sink.bytes() = "Frontmost";  // anything but "solid", which begins the text form of STL
   sink.bytes().resize(80, ' ');
   append_bytes(sink.bytes(), std::uint32_t(triangle_count(scene)));
   for (const Instance& instance : scene.instances) {

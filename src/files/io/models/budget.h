@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a small file may make of memory and time.
+// Limits of the memory and time that a small file may cause.
 //
 //   honest:    1 byte of the file ---> at most 16 bytes of the scene
-//   hostile:   a vertex that is named again and again by indices of a byte, a mesh of two triangles that is placed a
-//              million times, an image of one colour
+//   hostile:   a vertex that one-byte indices name again and again, a mesh of two triangles that is placed a million
+//              times, an image of one colour
 //
-// So every reader that can multiply asks a budget first, which is as large as an honest file of that size could need
-// several times over.
+// Each reader that can multiply elements charges a budget first. The budget is several times what an honest file of
+// that size needs.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@
 
 namespace frontmost {
 
-/// Elements can be repeated, shared and left out, so that a few bytes stand for many. Honest files stay far below the
-/// limit.
+/// Files can repeat, share and omit elements, so a few bytes may stand for many elements. Honest files stay far below
+/// the limit.
 class Budget {
  public:
   explicit Budget(std::uint64_t file_bytes) : left_(base + factor * file_bytes) {}
@@ -29,18 +29,18 @@ class Budget {
   }
 
  private:
-  // The most that an honest byte becomes is 16: an index of one byte makes a triangle of a strip. Four times that
-  // leaves room for posed copies of a mesh; the base lets tiny files repeat what they hold.
+  // An honest byte becomes at most 16 bytes, because a one-byte index makes a triangle of a strip. Four times that
+  // leaves room for posed copies of a mesh; the base lets tiny files repeat their contents.
   static constexpr std::uint64_t base = std::uint64_t(1) << 28, factor = 64;
   std::uint64_t left_;
 };
 
-/// A file of 32 kB can hold an image of a gigabyte, all of one colour. Real ones have some 1 to 30 pixels a byte: every
-/// byte of an image file earns 64, and 8192 x 8192 are free.
+/// Budget of pixels. A file of 32 kB can hold an image of a gigabyte in one colour, but real images have some 1 to 30
+/// pixels a byte. Each byte of an image file allows 64 pixels; 8192 x 8192 more are free.
 class PixelBudget {
  public:
   void add_file(std::uint64_t byte_count) { left_ += pixels_per_byte * byte_count; }
-  /// False: that is too much, and nothing is taken.
+  /// \returns false, without taking any pixels, if they exceed the budget.
   [[nodiscard]] bool take(std::uint64_t pixels) {
     if (pixels > left_) return false;
     left_ -= pixels;

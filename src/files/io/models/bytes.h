@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers out of bytes, in either byte order, at any alignment.
+// Reads numbers from bytes, in either byte order, at any alignment.
 //
-// The formats that are read have both orders, and put numbers wherever they fall: behind a header of any length, in
-// records of 50 bytes. So bytes are copied into the number, and turned round where the machine's order is the other
-// one.
+// Model formats use both byte orders and place numbers at any address: behind headers of any length, in records of 50
+// bytes. So bytes are copied into a number, and reversed if the machine has the other order.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What to say to somebody with a file in a format that is not read: which program makes one of it that is, and the
-// command line. Reading these formats is the work of large libraries; naming the way takes a table.
+// Advice for files in formats that are not read: the program that converts them, and its command line. Reading these
+// formats takes large libraries; the advice takes a table.
 #include <algorithm>
 
 #include "io/models/model_source.h"
@@ -9,7 +9,7 @@
 namespace frontmost {
 namespace {
 
-/// A program, and how it is called: {in} stands for the model, {out} for it without its suffix.
+/// A program and its command line. {in} stands for the model, {out} for the model without its suffix.
 struct Converter {
   std::string_view program, command;
 };
@@ -19,7 +19,7 @@ constexpr Converter assimp{"Debian package assimp-utils", "assimp export {in} {o
 constexpr Converter blender{
     "Debian package blender",
     R"sh(blender -b {in} --python-expr "import bpy; bpy.ops.export_scene.gltf(filepath='{out}.glb')")sh"};
-// glTF Transform writes what it has decoded without the extension, but leaves images as they are unless told otherwise.
+// glTF Transform writes decoded meshes without the extension, but converts images only if told to.
 constexpr std::string_view gltf_transform = "Node.js fetches glTF Transform";
 constexpr Converter decompress{gltf_transform, "npx @gltf-transform/cli copy {in} {out}-plain.glb"};
 constexpr Converter webp_to_png{gltf_transform, "npx @gltf-transform/cli png --formats webp {in} {out}-plain.glb"};
@@ -31,7 +31,7 @@ constexpr Converter blender_usd{
 
 struct Foreign {
   std::string_view name;
-  std::string_view suffixes;  ///< with a blank behind each
+  std::string_view suffixes;  ///< a blank behind each
   const Converter& converter;
 };
 constexpr Foreign step{"STEP", ".step .stp .p21 ", gmsh}, iges{"IGES", ".iges .igs ", gmsh},
@@ -46,7 +46,7 @@ struct ForeignExtension {
   std::string_view name;
   const Converter& converter;
 };
-/// The first of these that a file has chooses the command, which also decodes the later ones.
+/// Table of extensions. The first one that a file has chooses the command, which also decodes the later ones.
 constexpr ForeignExtension foreign_extensions[] = {{"KHR_texture_basisu", ktx_to_png},
                                                    {"EXT_texture_webp", webp_to_png},
                                                    {"KHR_draco_mesh_compression", decompress},
@@ -60,8 +60,8 @@ std::string lower_suffix(const std::string& path) {
   return suffix;
 }
 
-/// As one word of a shell's command line, if it is not that already. Within a text in quotes, quotes of its own
-/// would end that: then a plain name stands for the file.
+/// Quotes `path` for a shell's command line if needed. Further quotes would end a text that is in quotes already, so a
+/// plain name stands for the file there.
 std::string word_of(const std::string& path, bool is_in_quotes) {
   constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/+,:@%";
   if (path.find_first_not_of(plain) == std::string::npos && !path.starts_with('-')) return path;
@@ -80,7 +80,7 @@ std::string filled(std::string_view command, const std::string& path) {
     const bool is_in_quotes = std::count(out.begin(), out.end(), '"') % 2 == 1;
     const std::filesystem::path file(path);
     const std::string name = is_input ? path : (file.parent_path() / file.stem()).string();
-    // The suffix of the output follows the name, inside of its quotes.
+    // The suffix of the output is part of the quoted name.
     const std::size_t end = command.find('}', mark) + 1;
     const std::size_t next = is_input ? end : std::min(command.find_first_of(" '", end), command.size());
     out += word_of(name + std::string(command.substr(end, next - end)), is_in_quotes);
@@ -96,7 +96,7 @@ std::string advice(const Foreign& format, const std::string& path) {
   return std::string(format.name) + " is not read; " + advice(format.converter, path);
 }
 
-/// Lines of 80 columns, of which the first is the first of the start section.
+/// Whether the text is IGES: lines of 80 columns, the first of which begins the start section.
 bool looks_like_iges(std::string_view text) { return text.size() >= 80 && text.substr(72, 8) == "S      1"; }
 
 }  // namespace

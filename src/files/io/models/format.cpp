@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which format a file is in, by its name and by its contents. A name is taken at its word; standard input and memory
-// have none, so the first bytes decide: formats with a magic word first, then those that must be guessed from what they
-// hold.
+// Recognizes a file's format by its name and its contents. The suffix decides if there is one. Standard input and
+// memory have no name, so their first bytes decide: first by magic words, then by typical contents.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -40,7 +39,8 @@ bool looks_like_obj(std::string_view text) {
                      [&](std::string_view word) { return starts_with_word(text, word); });
 }
 
-/// Of JSON. It may stand anywhere, as writers that sort keys put accessors before it.
+/// Whether the text of JSON has the member "asset". Writers that sort keys put it behind the accessors, so all text is
+/// searched.
 bool has_asset(Bytes bytes) { return text_of(bytes).find("\"asset\"") != std::string_view::npos; }
 
 }  // namespace

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// load(): finds the bytes, finds the format, calls its reader, checks what came out.
+// load(): gets the bytes, recognizes the format, calls its reader and checks the result.
 //
 //   path --> bytes (mapped, or all of a pipe) --> format --> reader --> validate() --> an origin, warnings with names
 //            "builtin:" has none                  by name,
 //                                                 else by content
 //
-// Whatever a reader leaves undone is done here, the same for all formats, so that readers stay about their bytes.
+// Work that is the same for all formats is done here, so that readers only parse bytes.
 #include "base/parallel.h"
 #include "io/models/reader.h"
 
 namespace frontmost {
 namespace {
 
-/// Of a scene without triangles.
+/// A remark about the points of a scene without triangles.
 std::string points_told(const Scene& scene) {
   std::size_t points = 0;
   for (const Mesh& mesh : scene.meshes) points += mesh.positions.size();
@@ -53,10 +53,10 @@ Scene read_any(Bytes bytes, ModelSource& source, std::optional<ModelFormat> form
   try {
     validate(scene);
   } catch (const Error& error) {
-    // validate() knows the scene by its short name only.
+    // validate() knows only the scene's short name.
     throw error.within(source.name());
   }
-  // A reader of text has chosen one already.
+  // Readers of text may have chosen an origin already.
   if (scene.origin == glm::dvec3(0)) set_origin(scene, fitting_origin(scene));
   if (triangle_count(scene) == 0) scene.warnings.push_back(no_triangles_warning + points_told(scene));
   for (std::string& warning : scene.warnings) warning = source.with_name(warning);
@@ -103,7 +103,7 @@ Scene load(const std::string& path, const LoadOptions& options, const Execution&
   if (const auto conversion = options.format ? std::nullopt : conversion_by_suffix(path)) refuse(source, *conversion);
   const auto format = options.format ? options.format : format_of_suffix(path);
   Scene scene = read_any(file.bytes(), source, format, options);
-  for (std::filesystem::path& used : scene.source.files) opened->add(std::move(used));  // by the models of a scene file
+  for (std::filesystem::path& used : scene.source.files) opened->add(std::move(used));  // of a scene file's models
   scene.source.files = opened->paths();
   return scene;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps that readers of polygons share. Most files hold triangles alone, so those take the short way: no copy of
-// their corners, no cutting, and no list of faces as long as every polygon so far was one triangle.
+// Helpers for readers of polygons. Most files hold only triangles, which take a short way: their corners are not
+// copied, nothing is cut, and no list of faces is kept while each polygon so far was one triangle.
 #include "io/models/mesh_building.h"
 
 #include <algorithm>
@@ -12,11 +12,11 @@
 namespace frontmost {
 namespace {
 
-/// To [0, 1]; NaN gives 1, so that an undefined colour changes nothing.
+/// Clamps to [0, 1]. NaN gives 1, so that an undefined colour changes nothing.
 float clamped(float value) { return value < 0 ? 0.0f : (value < 1 ? value : 1.0f); }
 
 float linear(float srgb) {
-  // Most files hold multiples of 1/255, for which a table serves.
+  // Most files hold multiples of 1/255, which a table converts.
   const float bytes = clamped(srgb) * 255.0f;
   const auto nearest = std::uint8_t(bytes + 0.5f);
   if (std::abs(bytes - float(nearest)) < 1e-3f) return linear_of_srgb8(nearest);
@@ -59,7 +59,7 @@ std::span<const glm::uvec3> PolygonWriter::add(std::span<const std::uint32_t> co
 }
 
 void PolygonWriter::remember_face(std::size_t before, Mesh& mesh) const {
-  // While every polygon was one triangle, numbers say it all.
+  // Face ids equal triangle numbers while each polygon was one triangle, so no list is kept.
   const bool needed = !mesh.face_ids.empty() || face_ != before || mesh.triangles.size() > before + 1;
   if (!needed || mesh.triangles.size() == before) return;
   if (mesh.face_ids.empty()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files beside a model are opened here, and nowhere else. A name inside a model is untrusted: "../../etc/passwd", an
-// absolute path and a link that leads out of the folder are all refused, by comparing real paths. Scene files are
-// written by users for their own folders of models, which they may allow.
+// All files beside a model are opened here. Names inside a model are untrusted: "../../etc/passwd", absolute paths and
+// links that lead out of the folder are refused, by comparing real paths. Users write scene files for their own folders
+// of models, which they may allow.
 #include "io/models/model_source.h"
 
 #include <algorithm>
@@ -13,14 +13,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether `path` is `folder` or below it. Both canonical.
+/// Whether `path` is `folder` or lies below it. Precondition: both are canonical.
 bool is_within(const fs::path& path, const fs::path& folder) {
   const auto [folder_end, path_end] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
   (void)path_end;
   return folder_end == folder.end();
 }
 
-/// Whether a file name leaves its folder by its wording alone, on any system.
+/// Whether a file name leaves its folder by its text alone, on any system.
 bool leaves_folder(const std::string& reference) {
   const fs::path path(reference);
   if (path.is_absolute() || (reference.size() > 1 && reference[1] == ':')) return true;
@@ -28,7 +28,7 @@ bool leaves_folder(const std::string& reference) {
   return !normal.empty() && *normal.begin() == "..";
 }
 
-/// The start of `text`, of at most `longest` bytes and without a part of a character at its end.
+/// The start of `text`, at most `longest` bytes, cut between UTF-8 characters.
 std::string_view start_of(std::string_view text, std::size_t longest) {
   if (text.size() <= longest) return text;
   const auto continues = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80; };
@@ -73,7 +73,7 @@ fs::path ModelSource::path_of(const std::string& reference) const {
   const auto refuse = [&](const std::string& reason) -> void {
     throw Error(ErrorCode::file_unreadable, name_, printable(reference), reason);
   };
-  constexpr std::size_t longest = 4096;  // as on Linux; taking a longer one apart costs many times its size
+  constexpr std::size_t longest = 4096;  // as on Linux; splitting a longer path costs many times its size
   if (!has_folder()) refuse("files named inside a model are not read when it comes from memory or a stream");
   std::string slashed = reference;
   std::replace(slashed.begin(), slashed.end(), '\\', '/');
@@ -89,13 +89,13 @@ fs::path ModelSource::path_of(const std::string& reference) const {
   const fs::path folder = path_.has_parent_path() ? path_.parent_path() : fs::path(".");
   const fs::path found = fs::canonical(folder / slashed, error);
   if (error) refuse("cannot be found");
-  // A model may itself be a link into a store; then the files beside it are links to the same place.
+  // If the model itself is a link into a store, the files beside it are links to the same place.
   const bool is_inside =
       is_within(found, fs::canonical(folder, error)) || is_within(found, fs::canonical(path_, error).parent_path());
   const bool is_allowed = allowed_ && std::any_of(allowed_->begin(), allowed_->end(),
                                                   [&](const fs::path& other) { return is_within(found, other); });
   if (error || !(is_inside || is_allowed)) refuse(is_outside);
-  // Never a pipe or a device, which could block for ever.
+  // Pipes and devices are refused, because they could block forever.
   if (!fs::is_regular_file(found, error)) refuse("is not an ordinary file");
   return found;
 }

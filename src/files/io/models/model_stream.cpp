@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which files can be read piece by piece, told from their first bytes. Those bytes cannot be read again where they came
-// through a pipe, so they go along to whoever reads on.
+// Recognizes files that can be read piece by piece by their first bytes. A pipe cannot be read again, so these bytes
+// are passed on to the reader.
 
 #include "io/models/model_stream.h"
 
@@ -33,7 +33,7 @@ std::unique_ptr<ModelStream> open(ModelFormat format, StreamStart start, const M
 
 }  // namespace
 
-/// Values go and memory stays: the same few pieces are filled again and again.
+/// Clears the values but keeps the memory, because the same few pieces are filled repeatedly.
 void StreamPiece::clear() {
   const auto clear = [](auto& attribute) {
     attribute.values.clear();
@@ -77,7 +77,7 @@ std::unique_ptr<ModelStream> open_model_stream(const std::string& path, const Lo
     throw Error(ErrorCode::unsupported, name, "", *conversion);
   auto format = options.format ? options.format : path == "-" ? std::nullopt : format_of_suffix(path);
   if (!format) format = format_of_content(start.start);
-  // The start of a binary STL file is no whole number of triangles, so it does not look like one.
+  // A prefix of a binary STL file holds no whole number of triangles, so format_of_content() does not recognize it.
   if (!format && stl_encoding(start.start, start.greatest_size()) == StlEncoding::binary) format = ModelFormat::stl;
   if (!format)
     throw Error(ErrorCode::unsupported, name, "",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OFF, the text form, with the optional colours, normals and texture coordinates of Geomview: [ST][C][N]OFF, with the
-// prefixes in any order, as other programs write them.
+// OFF in text form, with Geomview's optional colours, normals and texture coordinates: [ST][C][N]OFF. Prefixes may come
+// in any order, as other programs write them.
 //
 //   COFF
 //   4 2 0                        vertices, faces, edges (nobody needs the last)
@@ -8,8 +8,8 @@
 //   ...
 //   3 0 1 2   0.5 0.5 0.5        a face: how many corners, which, and perhaps a colour of its own
 //
-// Colours go from 0 to 1 or from 0 to 255, and only the greatest of all tells which. Counts are held against the length
-// of the file before memory is asked for.
+// Colours range from 0 to 1 or from 0 to 255; only the greatest value of all tells which. Counts are checked against
+// the file's length before memory is allocated.
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +20,7 @@
 namespace frontmost {
 namespace {
 
-/// Colours as found, 0 to 255 or 0 to 1. Which of both is seen only when all are read.
+/// Colours as read, 0 to 255 or 0 to 1. The range is known after all were read.
 class RawColors {
  public:
   void add(const glm::vec4& color) {
@@ -33,7 +33,7 @@ class RawColors {
     has_none_ = has_none_ || std::isnan(color.r);
     colors_.push_back(color);
   }
-  /// Whether the numbers can only be colours, also where the keyword does not say so.
+  /// Whether the numbers can only be colours, even if the keyword does not announce them.
   [[nodiscard]] bool are_unmistakable() const { return least_ >= 0 && !may_be_normals_ && !has_none_; }
   [[nodiscard]] std::size_t size() const { return colors_.size(); }
   std::vector<glm::vec4> take_linear() {
@@ -41,7 +41,7 @@ class RawColors {
     for (glm::vec4& color : colors_) color = linear_color(color / range);
     return std::move(colors_);
   }
-  /// Opaque white in the scale that `add` was given so far is not known, so NaN stands for it.
+  /// NaN stands for opaque white, because the scale of the colours is not known yet.
   static glm::vec4 none() { return glm::vec4(std::numeric_limits<float>::quiet_NaN()); }
 
  private:
@@ -68,18 +68,18 @@ class OffReader {
     if (!text_.to_word()) text_.fail("the file ends before the header");
     std::int64_t count = 0;
     TextScanner ahead = text_;
-    // The keyword may be left out, by Geomview's own manual; then the file begins with the number of vertices.
+    // Geomview's manual allows files without a keyword, which begin with the number of vertices.
     const bool has_keyword = !ahead.integer(count) || !ahead.at_blank();
     if (has_keyword) read_keyword();
     if (!text_.to_word() || !text_.integer(count)) text_.fail("the number of vertices was expected");
     vertex_count_ = checked(count, has_normals_ ? 6 : 3, "vertices");
     if (!text_.integer(count)) text_.fail("the number of faces was expected");
     face_count_ = checked(count, 1, "faces");
-    (void)text_.integer(count);  // edges; nobody needs them, and some files leave them out
+    (void)text_.integer(count);  // edges are not used, and some files leave them out
     if (!text_.at_line_end()) text_.fail("the header holds three counts: vertices, faces, edges");
   }
 
-  /// Letter by letter: files of ModelNet have no blank between the keyword and the number of vertices.
+  /// Reads letter by letter, because files of ModelNet have no blank between the keyword and the number of vertices.
   void read_keyword() {
     const std::string word = in_quotes(TextScanner(text_).word());
     bool is_supported = true, is_known = true;
@@ -101,7 +101,8 @@ class OffReader {
                   "four-dimensional and binary OFF files are not supported");
   }
 
-  /// Before memory is asked for: the rest of the file must have room for the rows, at two characters a value.
+  /// Checks a count before memory is allocated: the rest of the file must have room for the rows, at two characters a
+  /// value.
   std::size_t checked(std::int64_t count, std::uint64_t values, const char* what) const {
     if (count < 0) text_.fail(std::string("a negative number of ") + what);
     if (std::uint64_t(count) > (text_.bytes_left() + 1) / (2 * values))
@@ -111,7 +112,7 @@ class OffReader {
     return std::size_t(count);
   }
 
-  /// Of a vertex, as floats.
+  /// Reads the next three numbers of a vertex, as floats and as doubles.
   glm::vec3 three_numbers(glm::dvec3& exact) {
     glm::vec3 rounded(0);
     for (int k = 0; k < 3; ++k) {
@@ -138,7 +139,7 @@ class OffReader {
         count -= 2;
         mesh.texcoords.values.emplace_back(extra[count], 1.0f - extra[count + 1]);
       }
-      // MeshLab's NCOFF has the colour first, with an alpha of 255; others have the normal first.
+      // MeshLab's NCOFF has the colour first, with an alpha of 255; other programs write the normal first.
       const auto is_unit = [](float value) { return std::abs(value) <= 1; };
       if (is_normal_named_first_ && count == 4 && extra[0] > 1 && std::all_of(extra + 1, extra + 4, is_unit)) {
         colors.add({normal, extra[0]});
@@ -155,13 +156,13 @@ class OffReader {
           "vertices: the numbers after the coordinates are not read; C, N or ST before OFF would say what they are");
   }
 
-  /// The numbers that are left on the line, at most six.
+  /// Reads the remaining numbers of the line, at most six. \returns how many there are.
   int rest_of_row(float (&values)[6]) {
     int count = 0;
     while (count < 6 && !text_.at_line_end() && text_.number(values[count])) ++count;
     return count;
   }
-  /// Three or four components. Anything else, such as a number in a colour map, is no colour.
+  /// A colour of three or four components. Other counts, such as an index of a colour map, give no colour.
   static glm::vec4 color(const float (&values)[6], int count) {
     if (count != 3 && count != 4) return RawColors::none();
     return {values[0], values[1], values[2], count == 4 ? values[3] : std::numeric_limits<float>::quiet_NaN()};
@@ -178,9 +179,9 @@ class OffReader {
       read_corners(corners);
       const std::size_t before = mesh.triangles.size();
       polygons.add(corners, mesh.positions, mesh);
-      // Colours of vertices go before those of faces.
+      // Colours of vertices have precedence over those of faces.
       if (!mesh.colors.empty() || (text_.at_line_end() && colors.size() == 0)) continue;
-      // The first face with a colour: those before it get the one that stands for none.
+      // At the first face with a colour, the faces before it get the colour that means none.
       if (colors.size() == 0) {
         colors.add(RawColors::none());
         color_corners.resize(before, glm::uvec3(0));

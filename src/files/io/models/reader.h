@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers, one a format. Each turns bytes into a scene that frontmost::validate() accepts, keeps the order and
-// number of the file's triangles (degenerate ones too), and leaves units alone; load() adds the scene's name and up
-// axis and validates. Bad bytes end in Error "name: place: reason"; what can be passed over is told in
-// Scene::warnings as "place: reason", before which load() puts the file's name.
+// The readers, one a format. Each turns bytes into a scene that frontmost::validate() accepts, keeps order and number
+// of the file's triangles (degenerate ones too), and keeps the file's units. load() validates, and adds the scene's
+// name and up axis. Bad bytes cause an Error "name: place: reason". Tolerable faults go to Scene::warnings as "place:
+// reason"; load() prepends the file's name.
 #pragma once
 
 #include <optional>
@@ -17,34 +17,34 @@ namespace frontmost {
 [[nodiscard]] Scene read_ply(Bytes bytes, const ModelSource& source);
 [[nodiscard]] Scene read_obj(Bytes bytes, const ModelSource& source);
 [[nodiscard]] Scene read_off(Bytes bytes, const ModelSource& source);
-/// This and the next tell SceneSource::metres_per_unit.
+/// The next two readers also set SceneSource::metres_per_unit.
 [[nodiscard]] Scene read_gltf(Bytes bytes, const ModelSource& source);
 [[nodiscard]] Scene read_3mf(Bytes bytes, const ModelSource& source);
-/// A scene file (io/scenes), which names models; it tells SceneSource::metres_per_unit and which way is up.
+/// Reads a scene file (io/scenes), which names models. Sets SceneSource::metres_per_unit and the up axis.
 [[nodiscard]] Scene read_scene_file(Bytes bytes, const ModelSource& source);
 
-/// The model that a scene file names, a built-in scene or a file beside it, as load() gives it.
-/// \throws Error as load() does, and unsupported for what is a scene file itself.
+/// Loads the model that a scene file names, a built-in scene or a file beside it, as load() does.
+/// \throws Error as load() does, and unsupported if the model is a scene file itself.
 [[nodiscard]] Scene load_named(const std::string& reference, const ModelSource& scene_file);
 
-/// What is said of a model that is read, whole or streamed, and holds nothing.
+/// The warning about a model without triangles, whole or streamed.
 inline constexpr const char* no_triangles_warning = "the file holds no triangles";
 
-/// The format that a file's suffix stands for. None: not one of ours.
+/// The format of a file's suffix; empty if no reader has it.
 [[nodiscard]] std::optional<ModelFormat> format_of_suffix(const std::string& path);
-/// Which way is up in files of a format, unless something else is said. Not asked of scene files, which may say it.
+/// The up axis of files in a format, unless the user says otherwise. Precondition: no scene file, which may state it.
 [[nodiscard]] Axis default_up(ModelFormat format);
-/// The format that the contents look like. None: none of ours.
+/// The format that the contents look like; empty if no reader has it.
 [[nodiscard]] std::optional<ModelFormat> format_of_content(Bytes bytes);
 
-// Formats that are not read, and which programs make models of them that are.
+// Formats that are not read, and programs that convert them.
 
-/// What to say of a file in a format that is known but not read, with the command line that converts it: by the suffix
-/// of `path`. None: not one of those.
+/// Advice for a file in a format that is known but not read, with the command line that converts it. The suffix of
+/// `path` decides; empty for other suffixes.
 [[nodiscard]] std::optional<std::string> conversion_by_suffix(const std::string& path);
-/// The same by the first bytes, for what has no suffix, such as standard input.
+/// Advice by the first bytes, for input without a suffix such as standard input.
 [[nodiscard]] std::optional<std::string> conversion_by_content(Bytes bytes);
-/// The same of the glTF file `path`, for extensions that it requires or uses. None: no program is known for any of
+/// Advice for the glTF file `path`, by extensions that it requires or uses. Empty if no program is known for any of
 /// them.
 [[nodiscard]] std::optional<std::string> conversion_of_extensions(const std::vector<std::string>& names,
                                                                   const std::string& path);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each texture is made once, however many materials name it. A model is worth showing without a texture, so whatever is
-// wrong with one becomes a warning that says where it is named and why it was left out.
+// Makes each texture once, however many materials name it. A model is worth showing without a texture, so each fault
+// becomes a warning with its place and the reason.
 #include "io/models/textures.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ constexpr std::uint64_t max_image_file_bytes = std::uint64_t(1) << 30;
 constexpr std::size_t max_textures = 1 << 16;
 constexpr const char* too_many_pixels = ": the textures together have too many pixels";
 
-/// The alpha of an image without any is its brightness.
+/// Sets the alpha of an image without alpha to its brightness.
 void make_alpha(Texture& image) {
   if (std::any_of(image.pixels.begin(), image.pixels.end(), [](const glm::u8vec4& pixel) { return pixel.a != 255; }))
     return;
@@ -24,7 +24,7 @@ void make_alpha(Texture& image) {
 }
 
 Material::Alpha alpha_mode(const Texture& image) {
-  constexpr int noise = 15;  // which JPEG leaves about 0 and 255
+  constexpr int noise = 15;  // deviation that JPEG leaves about 0 and 255
   auto mode = Material::Alpha::opaque;
   for (const glm::u8vec4& pixel : image.pixels) {
     if (pixel.a > noise && pixel.a < 255 - noise) return Material::Alpha::blend;
@@ -33,7 +33,7 @@ Material::Alpha alpha_mode(const Texture& image) {
   return mode;
 }
 
-/// Bilinear, as textures are looked up.
+/// Resizes bilinearly, as textures are looked up.
 void resize(Texture& image, const glm::ivec2& size) {
   if (size == glm::ivec2(image.width, image.height)) return;
   std::vector<glm::u8vec4> pixels;
@@ -64,14 +64,14 @@ MadeTexture TextureFiles::get(const TextureParts& parts, const std::string& plac
   return entry->second;
 }
 
-/// By whatever names: "wood.png" and "./wood.png" are one.
+/// Whether two names mean one file, as "wood.png" and "./wood.png" do.
 bool TextureFiles::is_same_file(const std::string& a, const std::string& b) const {
   if (a == b) return true;
   if (a.empty() || b.empty() || !source_.has_folder()) return false;
   try {
     return source_.path_of(a) == source_.path_of(b);
   } catch (const Error&) {
-    return false;  // reading it tells why
+    return false;  // reading the file reports the reason
   }
 }
 
@@ -108,7 +108,7 @@ std::optional<Texture> TextureFiles::read(const std::string& reference, const st
     const InputFile file = source_.open(reference, max_image_file_bytes);
     const std::string name = source_.name() + ": " + printable(reference);
     const glm::ivec2 size = texture_size(file.bytes(), name, source_.image_decoder());
-    // Once for each file: it may be a part of many textures, and have many names.
+    // Each file adds to the budget once: it may be part of many textures and have many names.
     if (files_.insert(source_.path_of(reference)).second) budget_.add_file(file.bytes().size());
     if (!budget_.take(std::uint64_t(size.x) * std::uint64_t(size.y)))
       throw Error(ErrorCode::limit_exceeded, name + too_many_pixels);
@@ -121,8 +121,8 @@ std::optional<Texture> TextureFiles::read(const std::string& reference, const st
   }
 }
 
-/// Gives the texture, white where there is none, the alpha of another image. The result is as wide as the wider one of
-/// them, and as high as the higher one. False: those are too many pixels, and nothing happens.
+/// Gives the texture, white if there is none, the alpha of another image. Width and height are the greater ones of
+/// both. \returns false, and changes nothing, if there are too many pixels.
 bool TextureFiles::add_alpha(std::optional<Texture>& texture, Texture& alpha) {
   glm::ivec2 size(alpha.width, alpha.height);
   if (texture) size = glm::max(size, glm::ivec2(texture->width, texture->height));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures that a model names as files, for colours and for alpha. A file that cannot be read is told, not fatal. And
-// what becomes of a material whose texture cannot be used.
+// Textures that a model names as files, for colours and for alpha. A file that cannot be read causes a warning, no
+// error. Also adapts materials whose texture cannot be used.
 #pragma once
 
 #include <filesystem>
@@ -16,17 +16,17 @@
 
 namespace frontmost {
 
-/// The files that a texture is made of. An empty name: there is no such file.
+/// The files of a texture. An empty name means that there is no such file.
 struct TextureParts {
   std::string color = {};
-  std::string alpha = {};  ///< the name of the colour file: the alpha of its own pixels
+  std::string alpha = {};  ///< if equal to `color`: the alpha of its own pixels
   Texture::Wrap wrap = Texture::Wrap::repeat;
 };
 
 struct MadeTexture {
-  std::uint32_t texture = no_index;  ///< in the scene; no_index where no file can be read
-  bool has_color = false;            ///< the colour file was read; without it the texture is white
-  /// What the alpha file needs: mask where all values are near 0 or 255, blend where some lie between.
+  std::uint32_t texture = no_index;  ///< number in the scene; no_index if no file can be read
+  bool has_color = false;            ///< whether the colour file was read; otherwise the texture is white
+  /// Alpha mode that the alpha file needs: mask if all values are near 0 or 255, blend if some lie between.
   Material::Alpha alpha = Material::Alpha::opaque;
 };
 
@@ -34,7 +34,7 @@ class TextureFiles {
  public:
   TextureFiles(const ModelSource& source, Scene& scene) : source_(source), scene_(scene) {}
 
-  /// A texture of the scene. Files that cannot be read are left out, with a warning at `place`.
+  /// The number of a texture in the scene. Files that cannot be read are left out, with a warning at `place`.
   MadeTexture get(const TextureParts& parts, const std::string& place);
 
  private:
@@ -46,16 +46,16 @@ class TextureFiles {
   const ModelSource& source_;
   Scene& scene_;
   PixelBudget budget_;
-  std::set<std::filesystem::path> files_;  ///< those that added to the budget
+  std::set<std::filesystem::path> files_;  ///< files that added to the budget
   std::map<std::tuple<std::string, std::string, Texture::Wrap>, MadeTexture> known_;
 };
 
-// A factor is the greatest value that its texture allows, not a mean: where the texture says which parts glow or are of
-// metal, the factor alone would make all of them so.
+// A factor is the greatest value of its texture, not a mean. If the texture says which parts glow or are metal, the
+// factor alone would make all parts so.
 
-/// The material does not glow. `who` names it in the warning.
+/// Makes the material not glow. `who` names the material in the warning.
 void lose_emissive_texture(Material& material, const std::string& who, std::vector<std::string>& warnings);
-/// The material is no metal, as most that are seen. Its roughness stays.
+/// Makes the material a non-metal, as most are. Its roughness stays.
 void lose_metallic_roughness_texture(Material& material, const std::string& who, std::vector<std::string>& warnings);
 
 }  // namespace frontmost

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands for the rest of this folder in builds whose models come one at a time.
+// Stands for the rest of this folder in builds without scene files.
 #include "io/models/reader.h"
 
 namespace frontmost {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models bring their cameras and lights along. A transform may stretch and shear; neither of them can, so their axes
-// are made unit and square again: the viewing direction is kept exactly, and up gives way.
+// Models bring their cameras and lights along. A transform may stretch and shear, but cameras and lights must stay
+// rigid. So their axes are made orthonormal again: the viewing direction is kept exactly, and up is adjusted.
 #include "io/scenes/carried.h"
 
 namespace frontmost {
@@ -8,7 +8,7 @@ namespace {
 
 struct RigidPlace {
   glm::dmat4 world_from_thing;
-  double growth;  ///< of lengths along the direction in which it looks or shines
+  double growth;  ///< factor of lengths along the direction of view or of the light
 };
 
 /// Precondition: the transform is not singular.
@@ -34,7 +34,7 @@ Light carried(Light light, const glm::dmat4& scene_from_model) {
   const RigidPlace place = rigid_place(scene_from_model * light.world_from_light);
   light.world_from_light = place.world_from_thing;
   if (light.range) *light.range *= place.growth;
-  // What shines from a place gets weaker with the square of the distance.
+  // The light of a point or spot falls off with the square of the distance.
   if (light.kind != Light::Kind::sun) light.intensity *= place.growth * place.growth;
   return light;
 }

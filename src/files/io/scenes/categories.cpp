@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Categories of a scene file, and those that a file of their own gives to the objects of a scene.
+// Categories of a scene file, and of separate files that assign categories to the objects of a scene.
 #include "io/scenes/categories.h"
 
 #include <set>

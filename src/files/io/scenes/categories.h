@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Categories by name, as scene files and files of categories list them, or as objects name them.
+// Categories by name, as listed in scene files and category files, or as named by objects.
 #pragma once
 
 #include <map>
@@ -9,18 +9,19 @@
 
 namespace frontmost {
 
-/// A name of the file for the scene. \throws Error file_malformed where it is empty.
+/// Reads a name for the scene. \throws Error file_malformed if the name is empty.
 [[nodiscard]] std::string read_name(const gltf::JsonValue& value);
-/// \throws Error limit_exceeded for a list of more elements than a scene may have objects.
+/// \throws Error limit_exceeded if the list has more elements than a scene may have objects.
 void check_count(const gltf::JsonValue& array);
 
-/// Categories by name: those of the list "categories" of the file, or, without one, as objects name them.
+/// Categories by name. The names come from the file's list "categories" or, without such a list, from the names that
+/// objects use.
 class CategoryNames {
  public:
-  /// Fills `categories`, which is borrowed. \throws Error file_malformed for a name or a number that is there twice.
+  /// Fills `categories`, which is borrowed. \throws Error file_malformed if a name or a number occurs twice.
   CategoryNames(const gltf::JsonValue& root, std::vector<Category>& categories);
 
-  /// Its place among the categories. \throws Error file_malformed where there is a list without it.
+  /// The index of a category. \throws Error file_malformed if the file has a list that lacks it.
   [[nodiscard]] std::uint32_t get(const gltf::JsonValue& value);
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keys that a scene file should not have: unknown ones, which are mostly typing mistakes, and those that are there
-// twice. A JSON library forgets all but the last of the latter, so the text is gone through once more for them.
+// Errors for keys that a scene file must not have: unknown keys, which are mostly typing mistakes, and repeated keys.
+// The JSON library silently drops all but the last of a repeated key, so the text is parsed once more to find them.
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -9,7 +9,7 @@
 namespace frontmost {
 namespace {
 
-/// Is told of every value in turn, and knows which objects and arrays are open.
+/// Receives each value in turn and keeps the stack of open objects and arrays.
 class RepeatedKeyCheck final : public nlohmann::json_sax<nlohmann::json> {
  public:
   explicit RepeatedKeyCheck(const ModelSource& source) : source_(source) {}
@@ -35,9 +35,9 @@ class RepeatedKeyCheck final : public nlohmann::json_sax<nlohmann::json> {
  private:
   struct Open {
     bool is_array;
-    std::size_t values = 0;      ///< so far, of an array
-    std::string key;             ///< the last one of an object
-    std::set<std::string> keys;  ///< all of them
+    std::size_t values = 0;      ///< so far, in an array
+    std::string key;             ///< the last key, in an object
+    std::set<std::string> keys;  ///< all keys so far
   };
 
   bool step() {
@@ -53,7 +53,7 @@ class RepeatedKeyCheck final : public nlohmann::json_sax<nlohmann::json> {
     open_.pop_back();
     return true;
   }
-  /// Of the innermost object, as JsonValue writes it.
+  /// The place of the innermost object, written as JsonValue writes places.
   [[nodiscard]] std::string place() const {
     std::string place;
     for (std::size_t i = 0; i + 1 < open_.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials of a scene file, which replace those of models: colours as people write them, and the factors of glTF.
+// Materials of a scene file, which replace those of models: colours in hexadecimal or as numbers, and glTF's factors.
 #include <cmath>
 
 #include "base/srgb.h"
@@ -11,7 +11,7 @@ namespace {
 
 using gltf::JsonValue;
 
-/// "#rgb" or "#rrggbb".
+/// Reads "#rgb" or "#rrggbb".
 glm::vec4 color_of_hex(const JsonValue& value) {
   const std::string text = value.to_string();
   const auto digit = [&](std::size_t i) -> int {
@@ -31,7 +31,7 @@ glm::vec4 color_of_hex(const JsonValue& value) {
   return linear_color(srgb);
 }
 
-/// sRGB as a text or three numbers, to linear light.
+/// Reads sRGB, as text or as three numbers. \returns linear light.
 glm::vec3 read_color(const JsonValue& value) {
   if (value.is_string()) return glm::vec3(color_of_hex(value));
   double numbers[3];
@@ -41,7 +41,7 @@ glm::vec3 read_color(const JsonValue& value) {
   return glm::vec3(linear_color(glm::vec4(float(numbers[0]), float(numbers[1]), float(numbers[2]), 1)));
 }
 
-/// A number from 0 to 1.
+/// Reads a number from 0 to 1. \returns `absent` if the key is absent.
 float part_or(const JsonValue& material, const char* key, float absent) {
   const std::optional<JsonValue> value = material.find(key);
   if (!value) return absent;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every object brings its vertices, moved to where it stands, and its triangles, counted on:
+// Joins the objects of a model. Each object adds its transformed vertices, and its triangles with shifted indices:
 //
 //   positions   a b c d | e f g          triangles   0 1 2, 0 2 3 | 4 5 6
 //
-// So do normals, colours and texture coordinates. They stay told by vertex unless a mesh tells them by corner. Mirrors
-// turn triangles around: then their last two corners change places, as those of mirrored objects do everywhere.
+// Normals, colours and texture coordinates are joined likewise. Attributes stay indexed by vertex unless a mesh indexes
+// them by corner. A mirrored object swaps the last two corners of its triangles, as elsewhere, to keep their outer
+// side.
 #include "io/scenes/one_mesh.h"
 
 #include <algorithm>
@@ -32,8 +33,8 @@ void append_triangles(const std::vector<glm::uvec3>& triangles, std::uint32_t fi
   for (const glm::uvec3& t : triangles) all.push_back(is_mirrored ? glm::uvec3(t.x, t.z, t.y) + first : t + first);
 }
 
-/// What `find` finds in the meshes, a pointer to an attribute or null, turned by `turn(value, part)`; `missing` where a
-/// mesh has none, and nothing where no mesh has any.
+/// Joins one attribute of all meshes. `find(mesh)` returns a pointer to the attribute or null, and `turn(value, part)`
+/// transforms a value. A mesh without the attribute gets `missing`; the result is empty if no mesh has it.
 template <class T, class Find, class Turn>
 Attribute<T> joined(const std::vector<PartOfModel>& parts, const Find& find, const T& missing, const Turn& turn) {
   const auto has = [&](const PartOfModel& part) { return find(part.mesh) && !find(part.mesh)->empty(); };
@@ -58,7 +59,7 @@ Attribute<T> joined(const std::vector<PartOfModel>& parts, const Find& find, con
 
 Attribute<glm::vec3> joined_normals(const std::vector<PartOfModel>& parts) {
   const auto turned = [](const glm::vec3& normal, const PartOfModel& part) {
-    // The cofactors are the inverse transpose but for a factor, and exist where a matrix is singular.
+    // The matrix of cofactors is a multiple of the inverse transpose and also exists for singular matrices.
     const glm::dmat3 m(part.model_from_mesh);
     const glm::dvec3 n = glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])) *
                          glm::dvec3(normal) * (part.is_mirrored ? -1.0 : 1.0);
@@ -75,7 +76,7 @@ Attribute<glm::vec2> joined_texcoords(const std::vector<PartOfModel>& parts, std
       [](const glm::vec2& value, const PartOfModel&) { return value; });
 }
 
-/// One a triangle, or one where all are the same.
+/// One material a triangle, or a single one if all are the same.
 std::vector<std::uint32_t> joined_materials(const std::vector<PartOfModel>& parts) {
   std::vector<std::uint32_t> ids;
   for (const PartOfModel& part : parts)

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The objects of a model as one mesh, so that what a scene file places is one object, whatever it is made of.
+// Joins the objects of a model into one mesh, so that a scene file places any model as a single object.
 #pragma once
 
 #include "frontmost/scene.h"
 
 namespace frontmost {
 
-/// All objects of a model, in their order, in its own space: about its origin, rounded to floats. What some of the
-/// meshes have (normals, colours, texture coordinates) all have then, with what counts as missing in the others.
+/// All objects of a model as one mesh, in their order, in the model's space: relative to its origin, rounded to floats.
+/// If some meshes have normals, colours or texture coordinates, the others get the values that count as missing.
 /// Preconditions: the model is valid and has no curved meshes. O(triangles).
 [[nodiscard]] Mesh one_mesh(const Scene& model);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where an object of a scene file stands: a matrix by rows, as the poses of cameras are written, or what glTF and data
-// sets write in its place.
+// The pose of an object of a scene file: a matrix by rows, as in pose files of cameras, or the separate parts that glTF
+// and data sets use.
 //
 //   "pose": 16 or 12 numbers, or rows of four, or the name of a file that holds them
 //   "translation": 3 numbers    "rotation": 4 (a quaternion x, y, z, w) or 9 (a matrix by rows)    "scale": 1 or 3
@@ -15,7 +15,7 @@ namespace {
 
 using gltf::JsonValue;
 
-/// Beyond, nothing that is placed fits into floats.
+/// Limit of numbers: beyond it, placed vertices do not fit into floats.
 constexpr double largest = 1e30;
 
 void append_number(const JsonValue& value, std::vector<double>& numbers) {
@@ -24,7 +24,7 @@ void append_number(const JsonValue& value, std::vector<double>& numbers) {
   numbers.push_back(number);
 }
 
-/// Of a list, or of a list of rows.
+/// The numbers of a list, or of a list of rows.
 std::vector<double> numbers_in(const JsonValue& value) {
   constexpr std::size_t most = 16;
   std::vector<double> numbers;
@@ -41,7 +41,7 @@ std::vector<double> numbers_in(const JsonValue& value) {
   return numbers;
 }
 
-/// However they are separated, as in the pose files of cameras.
+/// The numbers in the file `name`, with any of the separators that pose files of cameras allow.
 std::vector<double> numbers_in_file(const JsonValue& name) {
   constexpr std::uint64_t most_bytes = 1 << 16;
   constexpr std::string_view separators = " \t\r\n,;[]()";
@@ -94,7 +94,7 @@ glm::dmat4 read_matrix(const JsonValue& object, const JsonValue& value) {
   object.require("pose_convention").fail("must be model-to-world or world-to-model");
 }
 
-/// A rotation by nine numbers, which must be one to what data sets round.
+/// A rotation by nine numbers, orthonormal within the rounding errors of data sets.
 glm::dmat4 rotation_by_rows(const JsonValue& place, const std::vector<double>& numbers) {
   constexpr double tolerance = 1e-4;
   glm::dmat3 rotation;

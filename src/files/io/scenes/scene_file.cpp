@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the text of a scene file to what it says. Names of categories and materials become numbers here, so that what
-// follows has nothing left to look up or refuse but models.
+// Parses the text of a scene file. Names of categories and materials become numbers here, so that only models are left
+// to be found.
 #include "io/scenes/scene_file.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ double read_unit(const JsonValue& value) {
   return metres;
 }
 
-/// Materials by the names that the file gives them.
+/// Materials by their names in the file.
 class LookNames {
  public:
   LookNames(const JsonValue& root, std::vector<Material>& materials) {
@@ -46,7 +46,7 @@ class LookNames {
     }
   }
 
-  /// A name for all of the model, or an object of names by those of the model's materials.
+  /// Reads one name for the whole model, or an object that maps names of the model's materials to names of the file's.
   [[nodiscard]] Replacement read(const JsonValue& value) const {
     if (value.is_string()) return {get(value), {}};
     Replacement replacement;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene file says, before any model is read: JSON that places models.
+// Contents of a scene file before any model is read. The file is JSON that places models:
 //
 //   {"up": "z", "metres_per_unit": 0.001,
 //    "objects": [{"model": "cup.ply", "name": "left cup", "category": "cup", "pose": [16 numbers], "material": "red"},
 //                {"model": "cup.ply", "translation": [80, 0, 0]}, ...],
 //    "materials": {"red": {"color": "#c02010"}}}
 //
-// docs/formats.md says what every key means.
+// docs/formats.md documents all keys.
 #pragma once
 
 #include <map>
@@ -16,12 +16,12 @@
 
 namespace frontmost {
 
-/// Which of SceneFile::materials a model's materials become.
+/// Replaces materials of a model by materials of SceneFile::materials.
 struct Replacement {
-  std::uint32_t of_all = no_index;             ///< no_index: those that are named, and no others
+  std::uint32_t of_all = no_index;             ///< no_index: only the materials in `named` are replaced
   std::map<std::string, std::uint32_t> named;  ///< by the names of the model's materials
   [[nodiscard]] bool is_none() const { return of_all == no_index && named.empty(); }
-  // Not by <=>, which maps do not have in every standard library (WebAssembly).
+  // Compared without <=>, which std::map lacks in some standard libraries (WebAssembly).
   friend bool operator==(const Replacement& a, const Replacement& b) {
     return a.of_all == b.of_all && a.named == b.named;
   }
@@ -32,15 +32,15 @@ struct Replacement {
 
 /// One of the objects of a scene file.
 struct PlacedModel {
-  std::string place;  ///< in the file, for messages: "objects[3]"
+  std::string place;  ///< place in the file, for messages: "objects[3]"
   std::string model;  ///< as the file names it
-  std::string name;   ///< empty: the model's own
+  std::string name;   ///< empty: the model's own name
   std::uint32_t category = no_index;
   glm::dmat4 scene_from_model{1.0};
-  std::optional<Axis> up;                 ///< of the model, which is turned to that of the scene
-  std::optional<double> metres_per_unit;  ///< of the model, in place of what its file says
+  std::optional<Axis> up;                 ///< up axis of the model, which is turned to that of the scene
+  std::optional<double> metres_per_unit;  ///< unit of the model; overrides the model's file
   Replacement replacement;
-  bool has_parts = false;  ///< the model's objects stay objects
+  bool has_parts = false;  ///< the model's objects stay separate
 };
 
 struct SceneFile {
@@ -54,15 +54,15 @@ struct SceneFile {
 /// \throws Error file_malformed or limit_exceeded: "name: place: reason".
 [[nodiscard]] SceneFile parse_scene_file(std::string_view text, const ModelSource& source);
 
-// Its parts.
+// Parsers for parts of a scene file.
 
-/// The pose of an object: "pose", or "translation", "rotation" and "scale", or neither, which is the identity.
+/// The pose of an object by "pose", or by "translation", "rotation" and "scale"; the identity if all are absent.
 [[nodiscard]] glm::dmat4 read_pose(const gltf::JsonValue& object);
 [[nodiscard]] Material read_look(const gltf::JsonValue& material, const std::string& name);
 
-/// Refuses an object that has one key twice, of which a JSON library keeps the last one without a word.
+/// Refuses objects with a repeated key, of which a JSON library silently keeps only the last value.
 void refuse_repeated_keys(std::string_view text, const ModelSource& source);
-/// Refuses keys that are not known.
+/// Refuses unknown keys.
 void check_keys(const gltf::JsonValue& object, std::initializer_list<std::string_view> known);
 [[nodiscard]] bool has(const gltf::JsonValue& object, const char* key);
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene file becomes a scene. Models are read one after the other, each once, and what it holds goes to all objects
-// that are it:
+// Turns a scene file into a scene. Models are read one after the other, each once, and a model's meshes serve all
+// objects that use it:
 //
 //   objects   cup  plate  cup  cup in red          models   cup --> mesh 0 (twice), mesh 1 (with other materials)
 //                                                           plate --> mesh 2
 //
-// So meshes are shared, and beside the result there is one model in memory at a time.
+// So objects share meshes, and only one model is in memory at a time beside the result.
 #include <algorithm>
 #include <iterator>
 
@@ -18,7 +18,7 @@
 namespace frontmost {
 namespace {
 
-/// The shortest turn that takes one axis to another; half a turn about x, or about y where both are along x.
+/// The smallest rotation that takes one axis to another. A half turn is about x, or about y if both axes lie along x.
 glm::dmat4 turn_between(Axis from, Axis to) {
   const glm::dvec3 a = direction(from), b = direction(to), c = glm::cross(a, b);
   if (a == b) return glm::dmat4(1.0);
@@ -28,7 +28,7 @@ glm::dmat4 turn_between(Axis from, Axis to) {
     for (int i = 0; i < 3; ++i) half[i][i] = about[i] == 0 ? -1 : 1;
     return half;
   }
-  // a goes to b, b to -a, and c stays.
+  // The rotation takes a to b and b to -a, and keeps c.
   return glm::dmat4(glm::outerProduct(b, a) - glm::outerProduct(a, b) + glm::outerProduct(c, c));
 }
 
@@ -37,7 +37,7 @@ std::uint64_t bytes_of(const Attribute<T>& attribute) {
   return attribute.values.size() * sizeof(T) + attribute.triangles.size() * sizeof(glm::uvec3);
 }
 
-/// What a copy of a mesh takes; those of attributes by corner too, which one_mesh() may add.
+/// Memory of a copy of a mesh, with room for the corner indices that one_mesh() may add to attributes.
 std::uint64_t bytes_of(const Mesh& mesh) {
   constexpr std::uint64_t corner_lists = 2 + max_texcoord_sets;
   std::uint64_t bytes = mesh.positions.size() * sizeof(glm::vec3) + bytes_of(mesh.normals) + bytes_of(mesh.texcoords) +
@@ -46,7 +46,7 @@ std::uint64_t bytes_of(const Mesh& mesh) {
   return bytes;
 }
 
-/// Of the files that a model was read from.
+/// Total size of the files that a model was read from.
 std::uint64_t file_bytes(const SceneSource& source) {
   std::uint64_t bytes = 0;
   for (const std::filesystem::path& path : source.files) {
@@ -57,10 +57,10 @@ std::uint64_t file_bytes(const SceneSource& source) {
   return bytes;
 }
 
-/// One model, as it comes from its file, and what of it is in the scene already.
+/// One model as read from its file, and those of its meshes that are in the scene already.
 class PlacedMeshes {
  public:
-  /// The model's materials and textures go to the scene at once.
+  /// Moves the model's materials and textures to the scene.
   PlacedMeshes(Scene model, std::uint64_t bytes, const ModelSource& source, Scene& scene)
       : model_(std::move(model)), source_(source), scene_(scene), budget_(bytes) {
     Scene looks;
@@ -76,11 +76,13 @@ class PlacedMeshes {
 
   [[nodiscard]] const Scene& model() const { return model_; }
 
-  /// The objects that one of the scene file becomes. `scene_from_model` places what the model's file says.
+  /// The objects of the scene that one object of the scene file makes. `scene_from_model` applies to the model's
+  /// coordinates.
   std::vector<Instance> place(const PlacedModel& object, const glm::dmat4& scene_from_model) {
     const bool is_one = !object.has_parts && model_.instances.size() > 1;
     const std::vector<std::uint32_t>& meshes = meshes_of(object, is_one);
-    // No memory here, but ten times as much in whatever looks at the triangles in the world.
+    // Triangles are charged although they take no memory here: code that transforms them to world space needs ten times
+    // as much.
     constexpr std::uint64_t least_cost = 4;
     budget_.charge(triangle_count(model_), least_cost, object.place, source_);
     const std::string name = object.name.empty() ? model_.name : object.name;
@@ -96,7 +98,7 @@ class PlacedMeshes {
     return instances;
   }
 
-  /// The model's cameras and lights, placed with the object.
+  /// Adds the model's cameras and lights to the scene, placed with the object.
   void carry(const PlacedModel& object, const glm::dmat4& scene_from_model) {
     budget_.charge(model_.cameras.size() + model_.lights.size(), sizeof(Light) + longest_name, object.place, source_);
     for (const Camera& camera : model_.cameras) scene_.cameras.push_back(carried(camera, scene_from_model));
@@ -104,7 +106,7 @@ class PlacedMeshes {
   }
 
  private:
-  /// By the model's own numbers or, where all are one, that alone.
+  /// Meshes by the model's own numbers, or a single one if the objects are joined.
   const std::vector<std::uint32_t>& meshes_of(const PlacedModel& object, bool is_one) {
     const auto [found, is_new] = known_.emplace(std::pair(is_one, object.replacement), std::vector<std::uint32_t>());
     if (!is_new) return found->second;
@@ -175,7 +177,8 @@ class SceneReader {
   }
 
  private:
-  /// Which objects are of one model, by where its file is. Models are in the order of their first objects.
+  /// Groups the objects by their model, as told by the path of its file. Models are in the order of their first
+  /// objects.
   void find_models() {
     std::map<std::string, std::size_t> by_reference, by_path;
     for (std::size_t i = 0; i < file_.objects.size(); ++i) {
@@ -195,7 +198,7 @@ class SceneReader {
     return at_model(object, [&] { return source_.path_of(object.model).string(); });
   }
 
-  /// What `read` gives, or its error with the place of the object that asked.
+  /// Returns read(), or throws its error with the place of the object that uses the model.
   template <class Read>
   auto at_model(const PlacedModel& object, const Read& read) const -> decltype(read()) {
     try {
@@ -224,7 +227,7 @@ class SceneReader {
     }
   }
 
-  /// From world space of the model, which is about its origin, to the coordinates of the scene file.
+  /// The transform from the model's world space, which is relative to its origin, to the coordinates of the scene file.
   [[nodiscard]] glm::dmat4 place_of(const PlacedModel& object, const Scene& model) const {
     glm::dmat4 from_origin(1.0), scaled(1.0);
     from_origin[3] = glm::dvec4(model.origin, 1);
@@ -235,7 +238,8 @@ class SceneReader {
     return object.scene_from_model * turned * scaled * from_origin;
   }
 
-  /// What the scene takes from its models: warnings, files and, where the file says neither, up and unit of the first.
+  /// Adds the model's warnings and files to the scene. If the file states no up axis or unit, those of the first model
+  /// hold.
   void tell_of(Scene& model, const PlacedModel& object) {
     std::move(model.warnings.begin(), model.warnings.end(), std::back_inserter(scene_.warnings));
     std::copy(model.source.files.begin(), model.source.files.end(), std::back_inserter(scene_.source.files));
@@ -257,7 +261,7 @@ class SceneReader {
   std::uint64_t text_bytes_;
   Scene scene_;
   std::vector<std::vector<std::size_t>> objects_of_models_;
-  std::optional<double> unit_;  ///< of the first model
+  std::optional<double> unit_;  ///< unit of the first model
   std::size_t object_count_ = 0;
   bool is_first_ = true, has_told_of_units_ = false;
 };

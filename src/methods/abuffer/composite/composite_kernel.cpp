@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compositing sorted lists, nearest first: what shows through is multiplied down, so nothing is ever re-read.
+// Composites sorted lists, nearest first: transmittance is multiplied down, so nothing is ever read again.
 //
 // T. Porter, T. Duff. Compositing Digital Images. 1984 (over); L. Carpenter. The A-buffer. 1984.
 //
-// The sixteen pixels of a group are composited at once. Those in which fragments change places are then taken again one
-// by one.
+// The sixteen pixels of a group are composited at once. Pixels in which fragments change places are then composited
+// again one by one.
 
 #include "abuffer/composite/composite_kernel.h"
 
@@ -12,7 +12,7 @@
 #define HWY_TARGET_INCLUDE "abuffer/composite/composite_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After Highway: a block of its own.
+// The include follows Highway in a block of its own.
 #include "abuffer/composite/conflicts-inl.h"
 #include "abuffer/composite/group_composite-inl.h"
 #include "abuffer/composite/pixel_composite-inl.h"
@@ -57,7 +57,7 @@ class TileCompositor {
   }
 
  private:
-  /// The group whose first pixel is (x, y) of the rectangle, which may end within the group.
+  /// Writes the group whose first pixel is (x, y) of the rectangle, which may end within the group.
   HWY_INLINE void Write(const GroupColors& colors, int x, int y) {
     for (int row = 0; row < HWY_MIN(4, rectangle_.height - y); ++row)
       for (int column = 0; column < HWY_MIN(4, rectangle_.width - x); ++column) {
@@ -77,7 +77,8 @@ class TileCompositor {
 std::vector<glm::vec4> CompositeTile(const CompositeInput& input, const Rectangle& pixels,
                                      const GatherScratch& fragments, const std::vector<glm::vec4>& colors) {
   TileCompositor compositor(input, pixels, fragments, colors);
-  // By count when compiled, so that loops over sub-samples are written out and what shows through has registers.
+  // The count is a compile-time constant, so that loops over sub-samples are unrolled and transmittance stays in
+  // registers.
   switch (input.pattern.count) {
     case 1: return compositor.Run<1>();
     case 2: return compositor.Run<2>();

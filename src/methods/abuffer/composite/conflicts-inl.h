@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fragments of a group laid out beside each other, and the pixels in which two of them may change places.
+// Lays out the fragments of a group side by side, and finds the pixels in which two of them may change places.
 //
-// Lists are in the order of keys at the centre. Two fragments can be in another order elsewhere in the pixel only if
-// they share a sub-sample, the ranges of their keys overlap, and their keys at the centre differ by no more than the
-// difference of their slopes makes up for. The last holds only of planes that are not clamped within the pixel. On
+// Lists are in the order of keys at the centre. Two fragments can have another order elsewhere in the pixel only if
+// they share a sub-sample, the ranges of their keys overlap, and the difference of their slopes can make up for the
+// difference of their keys at the centre. The last condition needs planes that are not clamped within the pixel. On
 // finely tessellated models it leaves a seventh of the pixels that ranges alone would.
 //
-// Whoever lies between two that may change places is in their run (pixel_composite-inl.h), so partners are looked for
-// beyond the end of the run so far alone: the same triangle a thousand times is one run as soon as its first copy has
-// been held against the others. Long lists have a limit to how many pairs are looked at. Beyond it ranges alone decide,
-// which make the runs longer and the picture no worse.
+// A fragment between two that may change places is in their run (pixel_composite-inl.h). So partners are only looked
+// for beyond the end of the run so far: a thousand copies of a triangle are one run once the first copy has been
+// compared with the others. Long lists have a limit to the pairs that are compared. Beyond the limit ranges alone
+// decide, which makes the runs longer and the picture no worse.
 
 // Included once for every target.
 #if defined(FRONTMOST_ABUFFER_CONFLICTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -27,7 +27,7 @@ namespace frontmost::abuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Sixteen words of a slot: 64 bits each, the key above the number.
+/// Sixteen words of a slot, split: 64 bits each, the key above the number.
 struct SlotHalves {
   VU low, high;
 };
@@ -42,16 +42,16 @@ HWY_INLINE SlotHalves HalvesOf(const std::uint64_t* words) {
 #endif
 }
 
-/// kWide: more than 32 sub-samples.
+/// kWide: there are more than 32 sub-samples.
 template <bool kWide>
 class GroupReader {
  public:
-  /// `all`: the mask of all sub-samples.
+  /// `all` is the mask of all sub-samples.
   GroupReader(const GatherScratch& scratch, GroupFragments& fragments, std::uint64_t all)
       : s_(scratch), g_(fragments), all_(all) {}
 
   /// Fills GroupFragments. \returns the pixels, as bits, in which fragments may change places: none at a single sample.
-  /// In these `reach` holds, for every fragment, the last slot that one up to it may change places with.
+  /// In these pixels `reach` holds, for every fragment, the last slot that a fragment up to it may change places with.
   HWY_NOINLINE std::uint64_t Read(std::size_t group) {
     group_ = group;
     length_ = s_.length(group);
@@ -64,11 +64,11 @@ class GroupReader {
 
  private:
   static constexpr std::size_t kLastBit = 63;
-  /// Lists that are longer are gone through pixel by pixel, up to so many pairs a fragment.
+  /// Longer lists are searched pixel by pixel, up to so many pairs a fragment.
   static constexpr std::size_t kLong = 256, kMostPairs = 64;
 
-  /// From behind. \returns, as bits, the slots whose ranges of keys meet others behind them; the last bit stands for
-  /// all slots from there.
+  /// Reads slots from the last to the first. \returns, as bits, the slots whose key ranges overlap those of slots
+  /// behind; the last bit stands for all slots from there.
   HWY_INLINE std::uint64_t ReadLanes(std::size_t lane) {
     const DI d;
     const DU du;
@@ -97,7 +97,7 @@ class GroupReader {
       hn::Store(farthest, df, g_.farthest.data() + at);
       hn::Store(hn::BitCast(du, triangle), du, g_.triangle.data() + at);
       hn::Store(hn::BitCast(du, number), du, g_.number.data() + at);
-      // Where there is no fragment, nothing is covered in part.
+      // An empty slot covers all samples, so nothing is covered in part.
       const auto mask_of = [&](const std::int32_t* masks, std::uint32_t all) HWY_ATTR {
         return hn::IfThenElse(valid, hn::BitCast(du, hn::GatherIndex(d, masks, number)), hn::Set(du, all));
       };
@@ -122,7 +122,7 @@ class GroupReader {
       for (std::size_t i = kLastBit + 1; i + 1 < length_; ++i) FindPairsOf(i, lane);
   }
 
-  /// Of slot i with those beyond the last that one up to it may change places with.
+  /// Finds pairs of slot i with slots beyond the last that a slot up to i may change places with.
   HWY_INLINE void FindPairsOf(std::size_t i, std::size_t lane) {
     const DF d;
     const DU du;
@@ -158,7 +158,8 @@ class GroupReader {
     in_conflict_ |= std::uint64_t(1) << pixel;
   }
 
-  /// \returns false where these are too many pairs. Counted by pixel, so that nothing depends on the width of vectors.
+  /// \returns false if there are too many pairs. Pairs are counted by pixel, so the result does not depend on the width
+  /// of vectors.
   [[nodiscard]] bool FindLongPairs(std::size_t pixel) {
     std::size_t pairs = length_ * kMostPairs;
     for (std::size_t i = 0, end = 0; i < length_; ++i) {
@@ -180,7 +181,7 @@ class GroupReader {
     return (g_.mask_low[a] & g_.mask_low[b]) != 0 || (kWide && (g_.mask_high[a] & g_.mask_high[b]) != 0);
   }
 
-  /// The runs of ranges that overlap.
+  /// Finds the runs of overlapping ranges.
   void FindOverlaps(std::size_t pixel) {
     float farthest = std::numeric_limits<float>::max();
     for (std::size_t i = 0; i + 1 < length_; ++i) {
@@ -214,7 +215,7 @@ class GroupReader {
   const std::uint64_t all_;
   std::size_t group_ = 0, length_ = 0;
   std::uint64_t in_conflict_ = 0;
-  HWY_ALIGN_MAX std::int32_t run_end_[kGroup] = {};  ///< by pixel, the last slot of the run that is looked at
+  HWY_ALIGN_MAX std::int32_t run_end_[kGroup] = {};  ///< by pixel, last slot of the current run
 };
 
 }  // namespace HWY_NAMESPACE

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pixels of a group side by side, slot by slot: what shows through is multiplied down, so nothing is ever re-read.
+// The pixels of a group side by side, slot by slot: transmittance is multiplied down, so nothing is ever read again.
 //
-// For every sub-sample only that is kept: a fragment's weight is its opacity times the mean, over the sub-samples that
-// it covers, of what shows through, and the picture the sum of colours by weight. As long as all fragments cover their
-// pixels wholly, all sub-samples are the same.
+// Only transmittance is kept for every sub-sample. A fragment's weight is its opacity times the mean transmittance over
+// the sub-samples that it covers, and the picture is the sum of colours by weight. All sub-samples are equal as long as
+// all fragments cover their pixels wholly.
 //
-// Sums over sub-samples are trees that add those half of them apart; pixel_composite-inl.h does the same. Equal values
-// sum up exactly, so a pixel's bits depend neither on what other pixels hold nor on the width of vectors.
+// Sums over sub-samples are trees that first add values half the count apart; pixel_composite-inl.h does the same. Sums
+// of equal values are exact, so a pixel's bits depend neither on other pixels nor on the width of vectors.
 
 // Included once for every target.
 #if defined(FRONTMOST_ABUFFER_GROUP_COMPOSITE_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -29,13 +29,13 @@ struct GroupColors {
   HWY_ALIGN_MAX float channel[4][kGroup];
 };
 
-/// Of a vector of pixels; straight alpha.
+/// Colours of a vector of pixels, with straight alpha.
 struct LaneColors {
   VF red, green, blue, alpha;
 };
 
 #if HWY_TARGET != HWY_SCALAR
-/// In every block of four lanes one colour: those numbered numbers[0], [4], [8] and so on.
+/// One colour in every block of four lanes: the colours numbers[0], [4], [8] and so on.
 template <class D>
 HWY_INLINE hn::Vec<D> ColorsBeside(D d, const float* table, const std::uint32_t* numbers) {
   if constexpr (hn::MaxLanes(D()) == 4) {
@@ -47,8 +47,8 @@ HWY_INLINE hn::Vec<D> ColorsBeside(D d, const float* table, const std::uint32_t*
 }
 #endif
 
-/// Colours by their numbers in a table. Each is loaded whole, and all are turned: on SSE4 and AVX2 pictures take 4 %
-/// less than with channels gathered one by one, on AVX-512 1 to 2 %.
+/// Colours by their numbers in a table. Each colour is loaded whole, and all are transposed: on SSE4 and AVX2 pictures
+/// take 4 % less time than with channels gathered one by one, on AVX-512 1 to 2 %.
 HWY_INLINE LaneColors ColorsOf(const float* table, const std::uint32_t* numbers) {
   const DF d;
 #if HWY_TARGET == HWY_SCALAR
@@ -64,7 +64,7 @@ HWY_INLINE LaneColors ColorsOf(const float* table, const std::uint32_t* numbers)
 #endif
 }
 
-/// What shows through at every sub-sample of a vector of pixels.
+/// Transmittance at every sub-sample of a vector of pixels.
 template <int kSamples>
 class ShownThrough {
  public:
@@ -72,7 +72,7 @@ class ShownThrough {
     for (VF& left : left_) left = all;
   }
 
-  /// The sum of the sub-samples that the masks name, or of all; lets only so much of them pass.
+  /// The sum over the sub-samples that the masks name, or over all; then multiplies these sub-samples by `passes`.
   template <bool kOfAll>
   HWY_INLINE VF Cover(VU low, VU high, VF passes) {
     VF sum[kStride];
@@ -88,10 +88,10 @@ class ShownThrough {
   }
 
  private:
-  /// Sub-samples so far apart are written out, the others are a loop: all written out, the compiler takes minutes.
+  /// Sub-samples at this distance are unrolled, the others are a loop: if all are unrolled, the compiler takes minutes.
   static constexpr std::size_t kStride = kSamples < 8 ? kSamples : 8, kCount = kSamples / kStride;
 
-  /// Sub-samples kFirst * kStride on, in steps, as seen from `left`.
+  /// Handles the sub-samples from kFirst * kStride on, in steps of kStep, relative to `left`.
   template <bool kOfAll, std::size_t kFirst, std::size_t kStep>
   static HWY_INLINE VF CoverFrom(VF* left, VU low, VU high, VF passes) {
     if constexpr (kStep < kCount) {
@@ -120,7 +120,7 @@ class GroupCompositor {
   GroupCompositor(const GroupFragments& fragments, const glm::vec4* table, float opacity)
       : g_(fragments), table_(reinterpret_cast<const float*>(table)), opacity_(opacity) {}
 
-  /// `length` slots in the order of depth.
+  /// Composites `length` slots in the order of depth.
   HWY_NOINLINE void Composite(std::size_t length, GroupColors& colors) {
     for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(DF())) CompositeLanes(lane, length, colors);
   }
@@ -146,7 +146,7 @@ class GroupCompositor {
     hn::Store(hn::Sub(hn::Set(d, 1.0f), left), d, colors.channel[3] + lane);
   }
 
-  /// From where sub-samples differ. \returns the mean of what shows through all.
+  /// Continues from the slot at which sub-samples differ. \returns the mean transmittance through all slots.
   HWY_INLINE VF CompositeApart(std::size_t lane, std::size_t slot, std::size_t length, VF before) {
     const DF d;
     const DU du;
@@ -172,7 +172,7 @@ class GroupCompositor {
     return hn::AllTrue(d, hn::Eq(covered, hn::Zero(d)));
   }
 
-  /// The colours of a slot. \returns opacities: 0 where there is no fragment.
+  /// Loads the colours of a slot. \returns opacities, 0 for no fragment.
   HWY_INLINE VF Fetch(std::size_t at) {
     const DF d;
     slot_ = ColorsOf(table_, g_.number.data() + at);

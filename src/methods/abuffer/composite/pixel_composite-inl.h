@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // One pixel in which fragments change places: sub-samples side by side, each in its own order.
 //
-// Weights, their sums and the order in which colours are added are those of group_composite-inl.h. So the bits are the
-// same where the fragments do not change places after all.
+// Weights, their sums and the order of adding colours are those of group_composite-inl.h. So the bits are the same if
+// fragments do not change places after all.
 //
 //    list        a   b   c   d            b and c cross in the pixel: they are a run, and each sub-sample sorts the run
-//    run             [b   c]              by its own keys. What lies before and behind a run has one order everywhere.
+//    run             [b   c]              by its own keys. Fragments before and behind a run have one order everywhere.
 //    samples     b c | c b | b c ...
 
 // Included once for every target.
@@ -25,7 +25,7 @@ namespace frontmost::abuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The sum of all lanes by halves: those half of them apart are added first.
+/// The sum of all lanes by halves: lanes half the count apart are added first.
 template <class D>
 HWY_INLINE float AddHalves(D /*tag*/, hn::Vec<D> v) {
 #if HWY_TARGET == HWY_SCALAR
@@ -48,7 +48,7 @@ class PixelCompositor {
                   const glm::vec4* colors)
       : pattern_(input.pattern), s_(scratch), g_(fragments), table_(colors), opacity_(input.opacity) {}
 
-  /// Premultiplied. Precondition: GroupFragments are those of the group, with `reach` for this pixel.
+  /// The pixel, premultiplied. Precondition: GroupFragments belong to the group, with `reach` for this pixel.
   HWY_NOINLINE glm::vec4 Composite(std::size_t group, std::size_t pixel) {
     for (VF& left : left_) left = hn::Set(DF(), 1.0f);
     color_ = glm::vec3(0);
@@ -59,7 +59,8 @@ class PixelCompositor {
     const std::uint64_t* words = s_.slot(group, 0) + pixel;
     for (std::size_t i = 0; i < length && words[i * kGroup] != 0;) {
       std::size_t end = i + 1;
-      // A run is closed under changing places: whoever may change with one of it is in it too.
+      // A run is closed under changing places: it contains every fragment that one of its fragments may change places
+      // with.
       for (std::size_t k = i; k < end; ++k) end = HWY_MAX(end, std::size_t(g_.reach[At(k)]) + 1);
       if (end - i == 1)
         Add(i);
@@ -78,7 +79,7 @@ class PixelCompositor {
   static constexpr std::size_t kLanes = kMaxLanes < kSamples ? kMaxLanes : kSamples;
   static constexpr std::size_t kVectors = kSamples / kLanes;
   static constexpr float kScale = 1.0f / kSamples;
-  /// Up to so many fragments are compared each with each.
+  /// Runs of up to so many fragments compare each fragment with each.
   static constexpr std::size_t kMostInRun = 16;
 
   [[nodiscard]] HWY_INLINE std::size_t At(std::size_t slot) const { return slot * kGroup + pixel_; }
@@ -120,7 +121,7 @@ class PixelCompositor {
     AddWeighted(color, shown);
   }
 
-  /// Bits of the keys at a vector of sub-samples; -1, behind all, where the fragment is not.
+  /// Bits of the keys at a vector of sub-samples; -1, behind all keys, if the fragment does not cover the sub-sample.
   [[nodiscard]] HWY_INLINE VI KeysAt(std::size_t slot, std::size_t v) const {
     const DI d;
     const DF df;
@@ -143,7 +144,7 @@ class PixelCompositor {
     return hn::IfThenElse(covered, hn::BitCast(d, key), hn::Set(d, -1));
   }
 
-  /// Every fragment is seen through those that are before it at that sub-sample: nothing needs to be sorted.
+  /// Weights every fragment by the fragments before it at each sub-sample: nothing needs to be sorted.
   void AddShortRun(std::size_t begin, std::size_t end) {
     const DI d;
     const DF df;
@@ -175,7 +176,7 @@ class PixelCompositor {
       }
   }
 
-  /// Sorted at every sub-sample.
+  /// Sorts the run at every sub-sample.
   void AddLongRun(std::size_t begin, std::size_t end) {
     const DF d;
     HWY_ALIGN_MAX float left[kSamples + kMaxLanes];
@@ -188,7 +189,7 @@ class PixelCompositor {
       for (std::size_t slot = begin; slot < end; ++slot)
         if (MaskAt(slot) >> sample & 1)
           order_.push_back({-s_.triangles.key_at(g_.triangle[At(slot)], x, y), IdAt(slot), slot});
-      // Mostly the order is that of the list: copies of one triangle stay as they are.
+      // The order is mostly that of the list: copies of one triangle stay as they are.
       if (!std::is_sorted(order_.begin(), order_.end())) std::sort(order_.begin(), order_.end());
       for (const auto& [key, id, slot] : order_) {
         const glm::vec4& color = ColorAt(slot);

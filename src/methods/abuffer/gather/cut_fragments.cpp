@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Holes in fragments: sub-samples that look through are taken out of their masks.
+// Holes in fragments: sub-samples that look through holes are taken out of the masks.
 //
-// Holes are asked for after sorting, fragment by fragment and sample by sample, in doubles and by the code that all
-// methods share (view/screen_cutout.h). Only scenes with cutouts pay for that, and the kernels that gather know nothing
-// of textures. A mask that becomes empty stays in its list: removing it would move all that follow.
+// Holes are tested after sorting, fragment by fragment and sample by sample, in doubles and by the code that all
+// methods share (view/screen_cutout.h). Only scenes with cutouts pay for these tests, and the kernels that gather know
+// nothing of textures. A fragment whose mask becomes empty stays in its list: removing it would move all that follow.
 
 #include <bit>
 #include <optional>
@@ -15,7 +15,7 @@
 namespace frontmost::abuffer_detail {
 namespace {
 
-/// Where a pixel lies in its tile: pixel_number() undone.
+/// A pixel's place in its tile: the inverse of pixel_number().
 glm::ivec2 place_of(std::uint32_t pixel) {
   const int group = int(pixel / kGroup), lane = int(pixel % kGroup);
   return {group % kBlocksAcross * 4 + lane % 4, group / kBlocksAcross * 4 + lane / 4};
@@ -34,7 +34,7 @@ void cut_fragments(const GatherInput& frame, const Rectangle& pixels, GatherScra
   for (std::size_t i = Arrived::first; i < arrived.count; ++i) {
     const PrimitiveId id = scratch.triangles.id[arrived.triangle[i]];
     if (!cutouts->has(id)) continue;
-    // Fragments arrive triangle by triangle, so the plane is set up once for all of its pixels.
+    // Fragments arrive triangle by triangle, so the plane is set up once for all pixels of a triangle.
     if (id != last) cutout.emplace((*cutouts)[id], rays);
     last = id;
     const glm::ivec2 pixel = glm::ivec2(pixels.x, pixels.y) + place_of(arrived.place[i] >> kRankBits);

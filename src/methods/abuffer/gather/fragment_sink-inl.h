@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coverage masks, and appending fragments to a tile.
+// Computes coverage masks, and appends fragments to a tile.
 //
 // J. Pineda. A Parallel Algorithm for Polygon Rasterization. 1988 (edge functions).
 //
-// Coordinates are relative to the tile, in 1/256 pixel. Coverage: E >= 0 for three edge functions, biased by the
-// top-left rule (y down, area positive: an edge is left where it goes up, top where it is level and goes right).
+// Coordinates are relative to the tile, in 1/256 pixel. A sample is covered if E >= 0 for three edge functions, biased
+// by the top-left rule (y down, area positive: an edge is left if it goes up, top if it is level and goes right).
 // Samples lie on multiples of 16 units from a pixel's corner, so an edge value at a corner may be shifted right by 4
 // before stepping: a step is then a multiple of dx or -dy, and the sign is still exact.
 
@@ -38,7 +38,7 @@ struct FragmentBounds {
   VI x0, x1, y0, y1;  // both ends included
 };
 
-/// For one triangle: by how much each edge function differs at each sample from the pixel's corner.
+/// The differences of a triangle's edge functions between each sample and the pixel's corner.
 struct SampleSteps {
   HWY_ALIGN_MAX std::int32_t step[3][SamplePattern::max_count];
 };
@@ -60,7 +60,7 @@ class SampleTable {
                 steps.step[k] + i);
   }
 
-  /// e: edge functions at the pixel's corner.
+  /// Mask of covered samples; e0, e1 and e2 are the edge functions at the pixel's corner.
   [[nodiscard]] HWY_INLINE std::uint64_t MaskOf(const SampleSteps& steps, std::int32_t e0, std::int32_t e1,
                                                 std::int32_t e2) const {
     const DI d;
@@ -83,11 +83,11 @@ class SampleTable {
   std::uint64_t full_;
 };
 
-/// Keys are those of view/triangle_keys.h. In a pixel they differ from the centre's by at most 128 units of slope and
-/// the rounding of both.
+/// Keys are those of view/triangle_keys.h. Within a pixel, a key differs from the centre's by at most 128 units of
+/// slope and the rounding of both.
 constexpr float kHalfPixel = kSubPixels / 2;
-/// Three roundings, each of at most 2^-24 of the sum of absolute terms, twice, and some to spare; keys so small that
-/// roundings are not relative have the second.
+/// Bound of three roundings, each of at most 2^-24 of the sum of absolute terms, twice, with a margin. The second
+/// constant covers keys so small that roundings are not relative.
 constexpr float kKeyRounding = 16.0f / 16777216.0f, kLeastRounding = 1e-42f;
 
 class FragmentSink {
@@ -101,49 +101,50 @@ class FragmentSink {
         arrived(scratch.arrived),
         counts(scratch.counts.data()) {}
 
-  /// The pixels of the tile whose samples may lie between corners.
+  /// The pixels of the tile whose samples may lie within these bounds of vertices.
   [[nodiscard]] HWY_INLINE FragmentBounds BoundsOf(VI x_min, VI x_max, VI y_min, VI y_max) const {
     return {First(x_min, pattern.high_x), Last(x_max, pattern.low_x, width), First(y_min, pattern.high_y),
             Last(y_max, pattern.low_y, height)};
   }
 
-  /// False when the tile is to be taken apart. In tiles of one pixel there is always room, up to the limit.
+  /// False if the tile must be divided. Tiles of one pixel always have room, up to the limit.
   [[nodiscard]] bool HasRoom() {
     if (HWY_LIKELY(arrived.count <= kMostOfTile)) return true;
     if (width * height > 1) return false;
-    // Number 0 is no fragment.
+    // Number 0 stands for no fragment.
     if (arrived.count - Arrived::first > kMostOfPixel)
       throw Error(ErrorCode::limit_exceeded, "abuffer", "more than 1,048,575 fragments in one pixel");
     arrived.grow(arrived.count + kMostAtOnce);
     return true;
   }
 
-  /// One fragment of a pixel, unless its mask is empty; the key's bits.
+  /// Appends one fragment of a pixel, unless its mask is empty; `key` holds the key's bits.
   HWY_INLINE void Append(std::uint32_t pixel, std::uint32_t key, std::uint32_t triangle, std::uint64_t mask) {
     const std::size_t n = arrived.count;
     arrived.key[n] = key;
     arrived.triangle[n] = triangle;
     arrived.mask_low[n] = std::uint32_t(mask);
     arrived.mask_high[n] = std::uint32_t(mask >> 32);
-    // Written in any case and counted only where something is covered: a branch would be wrong half of the time.
+    // The entry is always written, but counted only if something is covered: a branch would be mispredicted half of the
+    // time.
     const std::uint32_t covered = mask != 0;
     arrived.place[n] = pixel << kRankBits | counts[pixel];
     counts[pixel] += covered;
     arrived.count += covered;
   }
 
-  /// A vector of fragments that cover all samples.
+  /// Appends a vector of fragments that cover all samples.
   HWY_INLINE void AppendVector(VU key, VU place, std::uint32_t triangle) {
     const DU d;
     const std::size_t n = arrived.count;
-    // Whole vectors, without a look at the room: kMostAtOnce has been set aside for what one step may add.
+    // Stores whole vectors without checking the room: kMostAtOnce is reserved for what one step may add.
     hn::StoreU(key, d, arrived.key.data() + n);
     hn::StoreU(place, d, arrived.place.data() + n);
     FillIn(n, triangle);
     arrived.count += hn::Lanes(d);
   }
 
-  /// Those of a vector that a mask names.
+  /// Appends the fragments of a vector that a mask names.
   HWY_INLINE void AppendSome(VU key, VU place, std::uint32_t triangle, hn::Mask<DU> some) {
     const Compactor<DU> compact(some);
     const std::size_t n = arrived.count;
@@ -161,7 +162,7 @@ class FragmentSink {
   std::uint32_t* const counts;
 
  private:
-  /// What a vector of fragments from number n on shares.
+  /// Fills in the triangle and the full masks of a vector of fragments from number n on.
   HWY_INLINE void FillIn(std::size_t n, std::uint32_t triangle) {
     const DU d;
     hn::StoreU(hn::Set(d, triangle), d, arrived.triangle.data() + n);

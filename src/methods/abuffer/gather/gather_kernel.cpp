@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fragments of one tile: rasterised, counted and appended in one go; then placed into lists and sorted.
+// The fragments of one tile: rasterised, counted and appended in one go, then placed into lists and sorted.
 //
 //    singles of the tile ------------------------> LargeFragments --+
 //    clusters --fetch, bounds, facing--> small --> SmallFragments --+--> FragmentSink: masks, keys, numbers of arrival
 //                                        large --> LargeFragments --+
 //
-// After every vector the sink is asked whether it has room. When it has none the tile is given back as too much, and
-// the caller halves it: so the memory of a thread is bounded whatever the scene is.
+// The sink is asked for room after every vector. If it has none, the tile is returned as too much, and the caller
+// halves it. So the memory of a thread is bounded for every scene.
 
 #include "abuffer/gather/gather_kernel.h"
 
@@ -14,7 +14,7 @@
 #define HWY_TARGET_INCLUDE "abuffer/gather/gather_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After Highway: a block of its own.
+// The include follows Highway in a block of its own.
 #include "abuffer/gather/fragment_sink-inl.h"
 #include "abuffer/gather/large_triangles-inl.h"
 #include "abuffer/gather/list_sort-inl.h"
@@ -31,7 +31,7 @@ class TileGatherer {
   TileGatherer(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch)
       : frame_(frame), job_(job), sink_(frame, job, scratch), large_(sink_), small_(sink_, scratch, large_) {}
 
-  /// False: too much.
+  /// \returns false if there are too many fragments.
   bool Run() {
     if (!DrawSingles()) return false;
     for (const std::uint32_t cluster : frame_.plan.clusters(job_.tile))
@@ -83,7 +83,7 @@ class TileGatherer {
             hn::Add(y, hn::Set(d, t.centre_y - job_.pixels.y * kSubPixels))};
   }
 
-  /// Queues the triangles that may cover a sample of this tile; large ones are drawn at once.
+  /// Queues the triangles that may cover a sample of this tile; draws large ones at once.
   HWY_INLINE void Queue(const Cluster& cluster, std::size_t at) {
     const DI d;
     const ClusterSet& set = frame_.plan.set();
@@ -94,7 +94,7 @@ class TileGatherer {
     MI keep = hn::And(hn::Not(hn::Gt(p.x0, p.x1)), hn::Not(hn::Gt(p.y0, p.y1)));
     if (hn::AllFalse(d, keep)) return;
 
-    // Small ones alone have products that fit 32 bits, in the area below as in the edge functions of their batch.
+    // Only small triangles have products that fit 32 bits, in the area below and in the edge functions of their batch.
     const VI extent = hn::Max(hn::Sub(x_max, x_min), hn::Sub(y_max, y_min));
     const MI large = hn::And(keep, hn::Gt(extent, hn::Set(d, kSmallExtent)));
     if (!hn::AllFalse(d, large)) {
@@ -109,7 +109,7 @@ class TileGatherer {
     keep = hn::And(keep, view_detail::HWY_NAMESPACE::Kept(d, frame_.plan.facing(), front, back, ids));
     if (hn::AllFalse(d, keep)) return;
 
-    // Turn the area positive: swap the last two corners of front faces.
+    // Swapping the last two vertices of front faces makes the area positive.
     const float* key = frame_.plan.screen().key.data() + cluster.first_vertex;
     const auto key_of = [&](VI number) HWY_ATTR { return hn::BitCast(d, hn::GatherIndex(DF(), key, number)); };
     const VI bn = hn::IfThenElse(front, c.number, b.number), cn = hn::IfThenElse(front, b.number, c.number);
@@ -142,7 +142,7 @@ class TileGatherer {
         triangle.key[k] = screen.key[v];
       }
       if (!orient(triangle, frame_.plan.facing())) continue;
-      // A vector of large triangles may hold more than there is room for at once.
+      // A vector of large triangles may add more fragments than there is room for at once.
       if (!sink_.HasRoom()) return;
       large_.Draw(triangle);
     }

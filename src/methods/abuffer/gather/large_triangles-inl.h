@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles of more than a few pixels, one at a time, in blocks of 4 x 4 pixels.
 //
-// A triangle is held against blocks of 4 x 4 pixels: a block is wholly outside of an edge, wholly inside of all three,
-// or neither, which the least and greatest edge value over all of its samples tell. Pixels that are covered wholly get
-// full masks; of the others the samples are asked, many pixels together.
+// The least and greatest edge value over all samples of a block tell whether it is wholly outside of an edge, wholly
+// inside of all three, or neither. Pixels that are covered wholly get full masks. In all other pixels samples are
+// tested, many pixels together.
 //
-// Edge values of triangles of up to 128 pixels fit 32 bits all over the tile, so that whole rows of blocks are
-// classified together. Those of larger ones are worked out in 64 bits at the corner of each block and clamped there:
+// Edge values of triangles of up to 128 pixels fit 32 bits all over the tile, so whole rows of blocks are classified
+// together. Edge values of larger triangles are computed in 64 bits at the corner of each block and clamped there:
 // within a block their signs stay right.
 
 // Included once for every target.
@@ -25,7 +25,7 @@ namespace frontmost::abuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// An edge value at a block's corner is clamped to this. Within the block it changes by at most 2^29 + 2^27, so its sign
+// Clamp of an edge value at a block's corner. Within the block the value changes by at most 2^29 + 2^27, so its sign
 // stays right and its sums stay within 32 bits.
 constexpr std::int64_t kEdgeLimit = std::int64_t(1) << 30;
 
@@ -40,7 +40,7 @@ class LargeFragments {
     }
   }
 
-  /// Precondition: oriented; corners relative to the tile.
+  /// Precondition: the triangle is oriented, with vertices relative to the tile.
   void Draw(const ScreenTriangle& t) {
     const Bounds rect = BoundsOf(t);
     if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
@@ -83,7 +83,7 @@ class LargeFragments {
       const int n = k == 2 ? 0 : k + 1;
       const std::int32_t dx = t.x[n] - t.x[k], dy = t.y[n] - t.y[k];
       Edge& e = edge_[k];
-      // In 64 bits: corners may be as far away as the guard band, whose products are beyond 32.
+      // In 64 bits: vertices may be as far away as the guard band, where products exceed 32 bits.
       e.first = (std::int64_t(dy) * t.x[k] - std::int64_t(dx) * t.y[k] - (IsTopLeft(dx, dy) ? 0 : 1)) >> 4;
       e.step_x = -dy * kStepsOfPixel;
       e.step_y = dx * kStepsOfPixel;
@@ -115,11 +115,11 @@ class LargeFragments {
     const float slope = std::abs(gx_) + std::abs(gy_);
     const auto [x_min, x_max] = std::minmax({t.x[0], t.x[1], t.x[2]});
     const auto [y_min, y_max] = std::minmax({t.y[0], t.y[1], t.y[2]});
-    // Keys of steep triangles are good to a rounding; what is left is that of their gradients over a pixel.
+    // Keys of steep triangles are accurate to a rounding; the rounding of their gradients over a pixel remains.
     const float reach_x = is_steep_ ? kHalfPixel : float(x_max - x_min) + 2 * kSubPixels;
     const float reach_y = is_steep_ ? kHalfPixel : float(y_max - y_min) + 2 * kSubPixels;
     slack_ = (high_ + (reach_x * std::abs(gx_) + reach_y * std::abs(gy_))) * kKeyRounding + kLeastRounding;
-    // However steep, no key leaves the triangle's range.
+    // Even in steep triangles, no key leaves the range of the vertices' keys.
     half_ = std::min(slope * kHalfPixel, high_ - low_) + slack_;
     triangle_ = std::uint32_t(sink_.triangles.count);
   }
@@ -142,7 +142,7 @@ class LargeFragments {
     if (is_steep_) t.steep_keys.push_back(steep_);
   }
 
-  /// Edge functions of triangles up to 128 pixels wide and high stay below 2^28 all over the tile.
+  /// Whether edge functions stay below 2^28 all over the tile: true up to 128 pixels of width and height.
   [[nodiscard]] static bool IsNarrow(const ScreenTriangle& t) {
     constexpr std::int32_t most = 128 * kSubPixels;
     const auto [x_min, x_max] = std::minmax({t.x[0], t.x[1], t.x[2]});
@@ -150,7 +150,7 @@ class LargeFragments {
     return x_max - x_min <= most && y_max - y_min <= most;
   }
 
-  /// A row of blocks at a time.
+  /// Draws a row of blocks at a time.
   HWY_INLINE void DrawNarrow(const Bounds& rect) {
     std::int32_t row[3];
     for (int k = 0; k < 3; ++k) {
@@ -173,7 +173,7 @@ class LargeFragments {
   struct BlockRow {
     std::uint64_t touched = 0, full = 0;
   };
-  /// `row`: edge functions at the corner of the row's first block.
+  /// Classifies a row of blocks. `row`: edge functions at the corner of the row's first block.
   HWY_INLINE BlockRow FindBlocks(const Bounds& rect, const std::int32_t (&row)[3]) const {
     const DI d;
     BlockRow result;
@@ -248,7 +248,7 @@ class LargeFragments {
     AppendParts(pixel, key, BitsOf(d, hn::AndNot(covered, touched)));
   }
 
-  /// Distances are whole numbers below 2^24, so that floats add them up exactly.
+  /// Keys of a block's pixels. Distances are whole numbers below 2^24, so floats add them exactly.
   [[nodiscard]] HWY_INLINE VF KeysOf(std::int32_t bx, std::int32_t by, std::int32_t first) const {
     const DF d;
     constexpr std::int32_t size = 4 * kSubPixels, half = kSubPixels / 2;
@@ -266,7 +266,7 @@ class LargeFragments {
     return hn::Min(hn::Max(key, hn::Set(d, low_)), hn::Set(d, high_));
   }
 
-  /// A vector of pixels that are covered wholly.
+  /// Appends a vector of pixels that are covered wholly.
   HWY_INLINE void AppendFull(std::uint32_t pixel, VF key) {
     const DU du;
     const VU count = hn::Load(du, sink_.counts + pixel);
@@ -274,7 +274,7 @@ class LargeFragments {
     sink_.AppendVector(hn::BitCast(du, key), PlaceOf(pixel, count), triangle_);
   }
 
-  /// Those pixels of a vector that are covered wholly.
+  /// Appends the pixels of a vector that are covered wholly.
   HWY_INLINE void AppendWhole(std::uint32_t pixel, VF key, MI covered) {
     const DU du;
     const auto mask = hn::RebindMask(du, covered);
@@ -287,7 +287,7 @@ class LargeFragments {
     return hn::Or(hn::ShiftLeft<kRankBits>(CountFrom(DU(), pixel)), count);
   }
 
-  /// Pixels that are covered in part, or not at all.
+  /// Appends pixels that are covered partly, or not at all.
   HWY_INLINE void AppendParts(std::uint32_t pixel, VF key, std::uint64_t touched) {
     HWY_ALIGN_MAX std::uint32_t keys[kMaxLanes];
     hn::Store(hn::BitCast(DU(), key), DU(), keys);
@@ -298,7 +298,7 @@ class LargeFragments {
   }
 
   FragmentSink& sink_;
-  // Of a block's pixels: place in the block, in pixels and in 1/256 pixel.
+  // Places of a block's pixels in the block, in pixels and in 1/256 pixel.
   HWY_ALIGN_MAX std::int32_t column_[16], row_[16];
   HWY_ALIGN_MAX float centre_x_[16], centre_y_[16];
   HWY_ALIGN_MAX std::int32_t corner_[3][kMaxLanes];

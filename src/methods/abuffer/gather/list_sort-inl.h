@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// From fragments in the order of arrival to sorted lists: sixteen neighbouring pixels share the length of their longest
-// list, so that one sorting network sorts all of theirs at once.
+// From fragments in the order of arrival to sorted lists. The lists of sixteen neighbouring pixels take the length of
+// the longest, so that one sorting network sorts all sixteen at once.
 //
 // K. Batcher. Sorting Networks and Their Applications. 1968; as algorithm M of D. Knuth, The Art of Computer
 // Programming 3, 5.2.2, which takes any length.
 //
-// Measured against lists one behind the other: insertion takes 7 to 8 times as long, std::sort 9 times.
+// Measured against separate lists one after the other: insertion sort takes 7 to 8 times as long, std::sort 9 times.
 
 // Included once for every target.
 #if defined(FRONTMOST_ABUFFER_LIST_SORT_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -44,7 +44,7 @@ HWY_INLINE void SortGroup(std::uint64_t* slots, std::size_t length) {
   for (std::size_t p = top; p > 0; p /= 2) {
     std::size_t q = top, r = 0, d = p;
     for (;;) {
-      // Those i with (i & p) == r: every other p of them.
+      // All i with (i & p) == r: every other block of p.
       for (std::size_t begin = r; begin + d < length; begin += 2 * p)
         for (std::size_t i = begin; i < HWY_MIN(begin + p, length - d); ++i)
           CompareExchange(words + i * kGroup, words + (i + d) * kGroup);
@@ -56,7 +56,7 @@ HWY_INLINE void SortGroup(std::uint64_t* slots, std::size_t length) {
   }
 }
 
-/// Fragments of equal keys were put into the order of arrival: into that of ids.
+/// Sorts fragments of equal keys, which are in the order of arrival, by id.
 inline void OrderTies(GatherScratch& s, std::size_t group, std::size_t lane) {
   const auto length = s.length(group);
   const auto at = [&](std::size_t i) -> std::uint64_t& { return s.slot(group, i)[lane]; };
@@ -69,7 +69,7 @@ inline void OrderTies(GatherScratch& s, std::size_t group, std::size_t lane) {
       std::vector<std::uint64_t>& run = s.run;
       run.clear();
       for (std::size_t i = begin; i < end; ++i) run.push_back(at(i));
-      // Pieces of one clipped triangle have one id; their masks are disjoint and put them into an order of their own.
+      // Pieces of one clipped triangle have one id; their masks are disjoint, and so give a definite order.
       std::sort(run.begin(), run.end(), [&](std::uint64_t a, std::uint64_t b) {
         const PrimitiveId ia = id(a), ib = id(b);
         if (ia != ib) return ia < ib;
@@ -89,7 +89,7 @@ inline void FindTies(GatherScratch& s, std::size_t group) {
     for (std::size_t i = 0; i + 1 < length; ++i) {
       const auto a = hn::Load(d, reinterpret_cast<std::int64_t*>(s.slot(group, i)) + lane);
       const auto b = hn::Load(d, reinterpret_cast<std::int64_t*>(s.slot(group, i + 1)) + lane);
-      // Empty slots are 0 and tie with each other: b of a tie is not.
+      // Empty slots are 0 and tie with each other, but b of a real tie is not 0.
       const auto equal = hn::Eq(hn::ShiftRight<32>(a), hn::ShiftRight<32>(b));
       tied = hn::Or(tied, hn::And(equal, hn::Ne(b, hn::Zero(d))));
     }
@@ -98,7 +98,7 @@ inline void FindTies(GatherScratch& s, std::size_t group) {
   }
 }
 
-/// Makes room for the lists. Counts of pixels become the places where their lists begin, in words.
+/// Makes room for the lists. Counts of pixels become the beginnings of their lists, in words.
 HWY_INLINE void MakeRoom(GatherScratch& s) {
   const DU d;
   std::uint32_t base = 0;
@@ -125,7 +125,7 @@ HWY_INLINE void Place(GatherScratch& s) {
   for (std::size_t n = Arrived::first; n < count; ++n) {
     const std::size_t rank = place[n] & kMostOfPixel;
     const std::uint64_t word = std::uint64_t(key[n]) << 32 | ~std::uint32_t(n);
-    // As bytes, which may be those of any other array: g++ would make a scatter of it that takes longer.
+    // The pointer is to bytes, which may alias any other array: otherwise g++ makes a scatter, which takes longer.
     std::memcpy(slots + (begin[place[n] >> kRankBits] + rank * kGroup) * sizeof word, &word, sizeof word);
   }
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the sub-samples of a pixel are.
+// Places of a pixel's sub-samples.
 //
 //    grid 0: the view's own samples        grid 2, 4, 8: that many rows and columns, in the middles of equal squares
 //
-// A pattern also knows how far its samples reach: triangles that lie between the outermost samples of neighbouring
-// pixels cover nothing, and are left out by their boxes.
+// A pattern also knows how far its samples reach: triangles between the outermost samples of neighbouring pixels cover
+// nothing, and their boxes show it.
 
 #include <algorithm>
 #include <string>
@@ -39,7 +39,7 @@ SamplePattern sample_pattern(const View& view, int grid) {
   const int spacing = grid ? SamplePattern::unit / grid : 0;
   for (int y = 0; y < grid; ++y)
     for (int x = 0; x < grid; ++x) add(pattern, x * spacing + spacing / 2, y * spacing + spacing / 2);
-  // What no sample of a pixel reaches need not be looked at: triangles between the samples have no pixel at all.
+  // Reach of the samples: triangles that lie between the samples of pixels touch no pixel.
   const auto xs = std::minmax_element(pattern.x.begin(), pattern.x.begin() + pattern.count);
   const auto ys = std::minmax_element(pattern.y.begin(), pattern.y.begin() + pattern.count);
   pattern.low_x = *xs.first;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of a few pixels, as many at once as the vector holds: all of a batch are walked pixel by pixel in step, and
-// the pixels found are then given keys and masks together.
+// Triangles of a few pixels, as many at once as the vector holds. All triangles of a batch are walked pixel by pixel in
+// step; the found pixels then get keys and masks together.
 //
 //    queue     a vector of triangles, set up together: edges, planes of depth
-//    walk      pixel 0 of each, pixel 1 of each, ...: which are touched at all
+//    walk      pixel 0 of each, pixel 1 of each, ...: which of them are touched
 //    found     (triangle, pixel) pairs, a vector at a time: masks over all samples, keys, appended together
 //
-// The walk keeps only pairs, because most pixels of a small triangle's box are not covered; masks are worked out where
-// there is something to be masked, in vectors that are full again.
+// The walk keeps only pairs, because most pixels of a small triangle's box are not covered. Masks are computed for
+// touched pixels only, in vectors that are full again.
 
 // Included once for every target.
 #if defined(FRONTMOST_ABUFFER_SMALL_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -28,7 +28,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Triangles no wider and higher than this touch at most 16 x 16 pixels.
 constexpr std::int32_t kSmallExtent = 15 * kSubPixels;
 
-/// Small triangles waiting to be drawn: x, y, bits of the key of three corners, and the id. Room for one vector more
+/// Small triangles that wait to be drawn: x, y and key bits of three vertices, and the id. Has room for one vector more
 /// than is drawn at a time.
 struct FragmentQueue {
   static constexpr int kFields = 10;
@@ -52,7 +52,7 @@ class SmallFragments {
     while (queue_.count > 0 && sink_.HasRoom()) DrawQueued();
   }
 
-  /// Draws a vector of triangles, or what there is.
+  /// Draws a vector of triangles, or as many as there are.
   void DrawQueued() {
     const DI d;
     const std::size_t drawn = HWY_MIN(queue_.count, hn::Lanes(d));
@@ -100,7 +100,7 @@ class SmallFragments {
     py_ = p.y0;
     for (int k = 0; k < 3; ++k) SetUpEdge(k, x, y);
     SetUpPlane(x, y, live);
-    // Drawn one by one.
+    // Steep triangles are drawn one by one.
     width_ = hn::IfThenZeroElse(plane_.steep, width_);
   }
 
@@ -109,8 +109,8 @@ class SmallFragments {
     const SamplePattern& p = sink_.pattern;
     const int n = k == 2 ? 0 : k + 1;
     const VI dx = hn::Sub(x[n], x[k]), dy = hn::Sub(y[n], y[k]);
-    // Top-left edges include their own points: bias 0, the others -1. Top-left is dy < 0, or dy = 0 and dx > 0; that is
-    // dy * 2^16 - dx < 0, as both are within 15 bits.
+    // Top-left edges include their own points, with bias 0; other edges have bias -1. An edge is top-left if dy < 0, or
+    // dy = 0 and dx > 0. The test is dy * 2^16 - dx < 0, as both are within 15 bits.
     const VI bias = hn::Not(hn::ShiftRight<31>(hn::Sub(hn::ShiftLeft<16>(dy), dx)));
     const VI sx = hn::Sub(hn::ShiftLeft<8>(px_), x[k]), sy = hn::Sub(hn::ShiftLeft<8>(py_), y[k]);
     const VI e = hn::Add(hn::Sub(hn::Mul(dx, sy), hn::Mul(dy, sx)), bias);
@@ -131,7 +131,7 @@ class SmallFragments {
     const VF reach = hn::Set(df, float(kSmallExtent + 2 * kSubPixels));
     slack_ = hn::Add(hn::Mul(hn::Add(plane_.k_max, hn::Mul(slope, reach)), hn::Set(df, kKeyRounding)),
                      hn::Set(df, kLeastRounding));
-    // However steep, no key leaves the triangle's range.
+    // Even in steep triangles, no key leaves the range of the vertices' keys.
     half_ = hn::Add(hn::Min(hn::Mul(slope, hn::Set(df, kHalfPixel)), hn::Sub(plane_.k_max, plane_.k_min)), slack_);
   }
 
@@ -162,8 +162,8 @@ class SmallFragments {
     }
   }
 
-  /// Notes (triangle, pixel) pairs of which a sample may be covered as y << 8 | x << 4 | lane. \returns how many. With
-  /// one sample that sample is.
+  /// Notes (triangle, pixel) pairs that may cover a sample, as y << 8 | x << 4 | lane. \returns how many. With one
+  /// sample, every noted pair covers it.
   HWY_INLINE std::size_t Walk() {
     const DI d;
     const DU du;
@@ -199,7 +199,7 @@ class SmallFragments {
     const VI from_y = hn::Sub(hn::Add(hn::ShiftLeft<8>(py_), hn::Set(d, kSubPixels / 2)), plane_.y0);
     for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
       const VI reference = hn::BitCast(d, hn::LoadU(du, references_ + i));
-      // Beyond the last there may be anything: lanes stay within the vector.
+      // References beyond the last may hold anything, so lanes are limited to the vector.
       const VI lane = hn::And(reference, hn::Set(d, std::int32_t(hn::Lanes(d)) - 1));
       const auto of = hn::IndicesFromVec(d, lane);
       const auto of_f = hn::IndicesFromVec(df, lane);
@@ -244,13 +244,13 @@ class SmallFragments {
   LargeFragments& large_;
   std::uint32_t* references_;
   FragmentQueue queue_;
-  // One batch. Edge functions are at the corner of the first pixel of each triangle's rectangle.
+  // State of one batch. Edge functions are at the corner of the first pixel of each triangle's rectangle.
   VI px_, py_, width_, height_, edge_[3], dx_[3], dy_[3], sample_max_[3];
   view_detail::HWY_NAMESPACE::KeyPlanes plane_;
   VF slack_, half_;
   SampleSteps steps_[kMaxLanes];
-  std::size_t first_ = 0;  // of the batch, in LocalTriangles
-  // One vector of pairs.
+  std::size_t first_ = 0;  // first triangle of the batch, in LocalTriangles
+  // State of one vector of pairs.
   HWY_ALIGN_MAX std::int32_t pixel_[kMaxLanes], lane_[kMaxLanes], corner_[3][kMaxLanes];
   HWY_ALIGN_MAX std::uint32_t key_[kMaxLanes];
 };

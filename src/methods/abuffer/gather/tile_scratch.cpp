@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Buffers grow to twice their size and never shrink, so that after the first tiles nothing is allocated any more. The
-// number of fragments at which a tile is given back, not the size of a buffer, is what bounds them. Fragment 0 stands
-// for none, so that empty slots may be read like others.
+// Buffers at least double when they grow and never shrink, so nothing is allocated after the first tiles. Their bound
+// is the number of fragments at which a tile is returned, not a buffer size. Fragment 0 stands for none, so that empty
+// slots may be read like others.
 #include "abuffer/gather/tile_scratch.h"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ GatherScratch::GatherScratch()
     : counts(kTilePixels), group_base(kGroups + 1), references(16 * 16 * 16 + 64) {
   arrived.grow(kMostOfTile + kMostAtOnce);
   arrived.count = Arrived::first;
-  // Empty slots are gathered from as if they were fragments: number 0 must be a place that may be read.
+  // Empty slots are gathered from like fragments, so number 0 must be readable.
   arrived.key[0] = arrived.triangle[0] = arrived.place[0] = arrived.mask_low[0] = arrived.mask_high[0] = 0;
 }
 

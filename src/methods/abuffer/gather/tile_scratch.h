@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The private memory of one thread: the fragments of one tile, as they arrive and sorted.
 //
-//    counts      pixel 0   1   2  ...                   how many fragments each pixel has so far
+//    counts      pixel 0   1   2  ...                   fragments of each pixel so far
 //    arrived     key | place | triangle | mask          one entry a fragment, in the order of arrival
-//    slots       group 0: slot 0 of 16 pixels, slot 1 of 16 pixels, ... | group 1: ...       once they are sorted
+//    slots       group 0: slot 0 of 16 pixels, slot 1 of 16 pixels, ... | group 1: ...       after sorting
 //
-// A slot is 64 bits: the bits of the key above the complement of the fragment's number. So sorting by key is a
-// comparison of integers; equal keys are put into the order of ids afterwards.
+// A slot is 64 bits: the bits of the key above the complement of the fragment's number. So integer comparison sorts by
+// key; equal keys are sorted by id afterwards.
 #pragma once
 
 #include <cstring>
@@ -21,23 +21,23 @@ inline constexpr std::size_t kTilePixels = std::size_t(kTileSize) * kTileSize;
 inline constexpr std::size_t kGroup = 16, kGroups = kTilePixels / kGroup;
 inline constexpr int kBlocksAcross = kTileSize / 4;
 
-/// A fragment's pixel and how many its pixel had before, in one word.
+/// A fragment's pixel and its rank in the pixel share one word.
 inline constexpr int kRankBits = 20;
 inline constexpr std::uint32_t kMostOfPixel = (1u << kRankBits) - 1;
 
-/// A tile that holds more is taken apart. At 28 bytes and up to 16 for the sorted lists, 14 MB.
+/// A tile that holds more is divided. At 28 bytes a fragment, and up to 16 for the sorted lists, the limit is 14 MB.
 inline constexpr std::size_t kMostOfTile = std::size_t(1) << 18;
-/// What one step of gathering may add before fullness is looked at again.
+/// The most fragments that one step of gathering may add before the room is checked again.
 inline constexpr std::size_t kMostAtOnce = kTilePixels + 64;
 
 [[nodiscard]] inline std::uint32_t pixel_number(std::uint32_t x, std::uint32_t y) {
   return ((y >> 2) * kBlocksAcross + (x >> 2)) * 16 + (y & 3) * 4 + (x & 3);
 }
 
-/// Depth planes of the triangles of a tile, as in view/triangle_keys.h: the key at a point is (k0 + dx*gx) + dy*gy from
-/// (x0, y0), in 1/256 pixel from the tile's corner, then limited to [low, high]; of a steep one that of SteepKeys.
-/// `slack` bounds the rounding of the difference of two such keys of one pixel, `half` how far the keys of a pixel are
-/// from its centre's.
+/// Key planes of the triangles of a tile, as in view/triangle_keys.h. The key at a point is (k0 + dx*gx) + dy*gy from
+/// (x0, y0), in 1/256 pixel from the tile's corner, limited to [low, high]; SteepKeys give the keys of steep triangles.
+/// `slack` bounds the rounding of the difference of two keys of one pixel. `half` bounds the difference of a pixel's
+/// keys from the centre's key.
 struct LocalTriangles {
   std::size_t count = 0;
   Buffer<std::int32_t> x0, y0;
@@ -50,7 +50,7 @@ struct LocalTriangles {
     count = 0;
     steep_keys.clear();
   }
-  /// Room for `more`.
+  /// Makes room for `more` triangles.
   void reserve(std::size_t more);
   [[nodiscard]] float key_at(std::size_t t, std::int32_t x, std::int32_t y) const {
     if (steep[t] != no_index) return steep_keys[steep[t]].at(x, y);
@@ -59,7 +59,7 @@ struct LocalTriangles {
   }
 };
 
-/// In the order of arrival. Number 0 stands for no fragment: it covers nothing and lies behind everything.
+/// Fragments in the order of arrival. Number 0 stands for no fragment: it covers nothing and lies behind everything.
 struct Arrived {
   static constexpr std::size_t first = 1;
   std::size_t count = 0, capacity = 0;
@@ -82,16 +82,16 @@ struct GatherScratch {
 
   LocalTriangles triangles;
   Arrived arrived;
-  Buffer<std::uint32_t> counts;      ///< by pixel; once the lists are sorted, where they begin
-  Buffer<std::uint32_t> group_base;  ///< by group, in slots; and the end of the last
-  /// Slot-major: slot s of pixel p of a group at (base + s) * 16 + p. Each is key bits << 32 | ~number of the
-  /// fragment, descending; 0 is empty.
+  Buffer<std::uint32_t> counts;      ///< by pixel; the beginnings of the lists once they are sorted
+  Buffer<std::uint32_t> group_base;  ///< by group, in slots; then the end of the last group
+  /// Slot-major: slot s of pixel p of a group is at (base + s) * 16 + p. A slot is key bits << 32 | ~number of the
+  /// fragment, in descending order; 0 is empty.
   Buffer<std::uint64_t> slots;
   std::vector<std::uint64_t> run;    ///< equal keys of one pixel
   Buffer<std::uint32_t> references;  ///< covered (triangle, pixel) pairs of one batch
 
   [[nodiscard]] std::size_t length(std::size_t group) const { return group_base[group + 1] - group_base[group]; }
-  /// The keys of a fragment within its pixel.
+  /// The nearest and the farthest key of a fragment within its pixel.
   [[nodiscard]] float nearest_of(std::size_t number) const {
     const std::size_t t = arrived.triangle[number];
     return std::min(arrived.key_of(number) + triangles.half[t], triangles.high[t]);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles that cover much are the ones whose copies cost, so only those of 16 pixels and more are compared. Their
-// places on the screen are hashed, whichever corner comes first, and equal hashes are sorted by id; places are then
-// compared themselves.
+// Only copies of large triangles cost much time, so only triangles of at least 16 pixels are compared. Their places on
+// the screen are hashed, whichever vertex comes first, and equal hashes are sorted by id. The places themselves are
+// then compared.
 //
-//    same place     id 3 (opaque)   id 8   id 9         8 and 9 are hidden by 3 wherever they are: left out
-//    same place     id 4 (clear)    id 5   id 6 ...     all count, or as many as layers are asked for
+//    same place     id 3 (opaque)   id 8   id 9         3 hides 8 and 9 everywhere: they are left out
+//    same place     id 4 (clear)    id 5   id 6 ...     all count, or as many as there are layers
 //
-// The areas of what is left add up to the number of fragments. A frame with too many is refused before it is gathered.
+// The areas of the remaining triangles add up to the number of fragments. A frame with too many is refused before it is
+// gathered.
 #include "abuffer/plan/crowd.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@
 namespace frontmost::abuffer_detail {
 namespace {
 
-/// Copies of smaller ones, in pixels, are drawn in the time that it takes to find them.
+/// Pixels. Copies of smaller triangles are drawn in the time that it takes to find them.
 constexpr double kLeastArea = 16;
 
 using PixelPolygon = std::vector<glm::dvec2>;
@@ -38,7 +39,7 @@ PixelPolygon cut_off(const PixelPolygon& polygon, int axis, double sign, double 
   return part;
 }
 
-/// Of what lies within the picture, in pixels.
+/// Area of the part within the picture, in pixels.
 double area_in_picture(const ScreenTriangle& t, const View& view) {
   const double width = view.width * kSubPixels, height = view.height * kSubPixels;
   const auto [x_min, x_max] = std::minmax({t.x[0], t.x[1], t.x[2]});
@@ -57,7 +58,7 @@ double area_in_picture(const ScreenTriangle& t, const View& view) {
   return std::abs(doubled) / unit;
 }
 
-/// Where a triangle is, whichever of its corners comes first.
+/// A triangle's place, whichever of its vertices comes first.
 using CornerPlaces = std::array<std::uint32_t, 9>;
 
 CornerPlaces place_of(const ScreenTriangle& t) {
@@ -76,13 +77,13 @@ CornerPlaces place_of(const ScreenTriangle& t) {
 }
 
 std::uint64_t hash_of(const CornerPlaces& place) {
-  // Fowler, Noll, Vo, by words.
+  // The hash of Fowler, Noll and Vo, by words.
   std::uint64_t hash = 0xcbf29ce484222325;
   for (const std::uint32_t word : place) hash = (hash ^ word) * 0x100000001b3;
   return hash;
 }
 
-/// A triangle of the frame that may be there again.
+/// A triangle of the frame that may have copies.
 struct Candidate {
   std::uint64_t hash;
   PrimitiveId id;
@@ -93,7 +94,7 @@ class CopyFinder {
  public:
   CopyFinder(const FragmentPlan& plan, const CopyRule& rule) : plan_(plan), rule_(rule) {}
 
-  /// Those that nobody sees. Afterwards area() is that of all others.
+  /// Finds the copies that nobody sees. Afterwards area() is the area of all others.
   std::vector<TriangleNumber> find() {
     std::vector<Candidate> candidates;
     plan_.for_each([&](const ScreenTriangle& t, const TriangleNumber& number) {
@@ -101,7 +102,7 @@ class CopyFinder {
       area_ += area;
       if (area >= kLeastArea) candidates.push_back({hash_of(place_of(t)), t.id, number});
     });
-    // By id where the place is the same: the lowest hide the others.
+    // Equal places are sorted by id: the lowest hide the others.
     std::sort(candidates.begin(), candidates.end(),
               [](const Candidate& a, const Candidate& b) { return a.hash != b.hash ? a.hash < b.hash : a.id < b.id; });
     for (std::size_t begin = 0, end; begin < candidates.size(); begin = end) {
@@ -113,7 +114,7 @@ class CopyFinder {
   [[nodiscard]] double area() const { return area_; }
 
  private:
-  /// Of the same hash, ids ascending.
+  /// Finds hidden copies in a group of the same hash, ids ascending.
   void look_at(std::span<const Candidate> group) {
     const CornerPlaces place = place_of(plan_.triangle(group.front().number));
     std::size_t kept = 0;
@@ -126,7 +127,7 @@ class CopyFinder {
         area_ -= area_in_picture(t, plan_.view());
         continue;
       }
-      if (plan_.may_have_holes(c.id)) continue;  // another is seen through them
+      if (plan_.may_have_holes(c.id)) continue;  // other triangles are seen through the holes
       ++kept;
       is_hidden = rule_.is_opaque && rule_.is_opaque(c.id);
     }
@@ -142,7 +143,7 @@ class CopyFinder {
 
 const FragmentPlan& CrowdedFrame::thinned() {
   const std::lock_guard lock(mutex_);
-  // Threads that wait here are told what the first one found.
+  // Waiting threads get the first one's result or error.
   if (error_) std::rethrow_exception(error_);
   if (thinned_) return *thinned_;
   try {

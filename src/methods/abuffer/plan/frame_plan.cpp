@@ -4,7 +4,7 @@
 //                              to be clipped   taken apart, triangle by triangle, and clipped
 //    triangles of the last two are "singles", listed in the tiles that they touch themselves
 //
-// Lists are counted first and then filled, into one array for all tiles. Where the singles' lists would be too long,
+// Lists are counted first and then filled, into one array for all tiles. If the lists of singles would be too long,
 // tiles go through all singles instead.
 #include "abuffer/plan/frame_plan.h"
 
@@ -19,7 +19,7 @@ namespace {
 
 // A cluster on more tiles than this is taken apart: every tile would look at all of its triangles.
 constexpr int kMaxTilesOfCluster = 16;
-// 256 MiB of numbers. Beyond that tiles look through all single triangles instead of through a list of theirs.
+// 256 MiB of numbers. Beyond this limit tiles look through all single triangles instead of a list of their own.
 constexpr std::size_t kMostSingleItems = std::size_t(1) << 26;
 
 struct TileSpan {
@@ -29,7 +29,7 @@ struct TileSpan {
   }
 };
 
-/// The tiles that bounds in 1/256 pixel from the image's top left corner touch.
+/// The tiles that bounds, in 1/256 pixel from the image's top left, touch.
 TileSpan tiles_of(std::int32_t x0, std::int32_t y0, std::int32_t x1, std::int32_t y1, const View& view) {
   constexpr int shift = 8 + 6;
   static_assert(1 << shift == kTileSize * kSubPixels);
@@ -46,14 +46,14 @@ TileSpan tiles_of(const ScreenTriangle& s, const View& view) {
                   std::max({s.x[0], s.x[1], s.x[2]}), std::max({s.y[0], s.y[1], s.y[2]}), view);
 }
 
-/// True when the whole tile is outside of one edge.
-// Bounding boxes of long thin triangles that lie askew are mostly empty: a list of them would be read for nothing.
+/// True if the whole tile is outside of one edge. Bounding boxes of long, thin, diagonal triangles are mostly empty,
+/// and listing them in all tiles of the box would be wasted.
 bool misses(const ScreenTriangle& t, int tile_x, int tile_y) {
   constexpr std::int64_t size = kTileSize * kSubPixels;
   for (int a = 0; a < 3; ++a) {
     const int b = (a + 1) % 3;
     const std::int64_t dx = t.x[b] - t.x[a], dy = t.y[b] - t.y[a];
-    // The corner of the tile where the edge function is greatest; if even that is outside, all of the tile is.
+    // The corner of the tile at which the edge function is greatest; if it is outside, all of the tile is outside.
     const std::int64_t x = (tile_x + (dy < 0 ? 1 : 0)) * size, y = (tile_y + (dx > 0 ? 1 : 0)) * size;
     if (dx * (y - t.y[a]) - dy * (x - t.x[a]) < 0) return true;
   }
@@ -64,7 +64,7 @@ bool misses(const ScreenTriangle& t, int tile_x, int tile_y) {
 template <class Visit>
 TileNumbers lists_of(std::size_t tile_count, std::size_t item_count, const Visit& visit) {
   TileNumbers lists;
-  // One place behind, so that filling a list moves its beginning to where it belongs.
+  // Filling a list advances its beginning, so beginnings are stored one place further on at first.
   lists.begin.assign(tile_count + 2, 0);
   for (std::size_t i = 0; i < item_count; ++i) visit(i, [&](std::size_t tile) { ++lists.begin[tile + 2]; });
   for (std::size_t tile = 0; tile < tile_count; ++tile) lists.begin[tile + 2] += lists.begin[tile + 1];
@@ -177,7 +177,7 @@ void FragmentPlan::append_clipped(const Cluster& cluster, std::vector<ScreenTria
     return glm::vec3(set().x[v], set().y[v], set().z[v]);
   };
   for (std::size_t c = cluster.first_triangle; c < cluster.first_triangle + cluster.triangle_count; ++c) {
-    if (set().i0[c] == set().i1[c]) continue;  // has a corner that is not finite, or no area
+    if (set().i0[c] == set().i1[c]) continue;  // has a vertex that is not finite, or no area
     const ClippedPolygon polygon =
         clip_triangle(transform(), {position(set().i0[c]), position(set().i1[c]), position(set().i2[c])});
     for (int k = 2; k < polygon.count; ++k) {
@@ -198,7 +198,7 @@ void FragmentPlan::append_clipped(const Cluster& cluster, std::vector<ScreenTria
 ScreenTriangle FragmentPlan::triangle(const TriangleNumber& number) const {
   if (number.cluster == no_index) return singles_[number.index];
   ScreenTriangle t = snapped(set().clusters[number.cluster], number.index);
-  (void)is_drawn(t);  // turns it
+  (void)is_drawn(t);  // makes its area positive
   return t;
 }
 
@@ -222,7 +222,7 @@ FragmentPlan FragmentPlan::without(std::span<const TriangleNumber> hidden) const
       ScreenTriangle t = snapped(set().clusters[c], i);
       if (is_drawn(t) && !is_hidden(c, i)) plan.singles_.push_back(t);
     }
-  // Singles have the highest number of a cluster, and so come last.
+  // Singles have the highest cluster number, no_index, and so come last.
   for (std::uint32_t i = 0; i < singles_.size(); ++i)
     if (!is_hidden(no_index, i)) plan.singles_.push_back(singles_[i]);
   plan.make_lists(left_out);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is drawn where: clusters put on the screen, and the clusters and single triangles of every tile.
+// The plan of a frame: clusters on the screen, and the clusters and single triangles of every tile.
 //
-// Nothing is culled by depth here, as the z-buffer does: what is behind counts, too. So vertices of all clusters in the
-// picture are put on the screen at once, before any tile begins, and tiles read them by their numbers.
+// Unlike in the z-buffer, nothing is culled by depth, as hidden triangles count, too. So vertices of all clusters in
+// the picture are placed on the screen at once, before any tile begins, and tiles read them by their numbers.
 #pragma once
 
 #include <memory>
@@ -19,26 +19,25 @@ namespace frontmost::abuffer_detail {
 enum class ScreenFate : std::uint8_t {
   outside,  ///< no pixel can see it
   whole,    ///< every vertex is snapped
-  spread,   ///< likewise, but over so many tiles that it is taken apart
-  apart,    ///< some triangle may need clipping
+  spread,   ///< every vertex is snapped, but the cluster is taken apart, as it covers many tiles
+  apart,    ///< taken apart, as some triangle may need clipping
 };
 
-/// Where a cluster is; the bounds, in 1/256 pixel from the image's centre, hold unless it is to be taken apart.
+/// A cluster's place. The bounds, in 1/256 pixel from the image's centre, are valid unless the fate is `apart`.
 struct ClusterPlace {
   ScreenFate fate = ScreenFate::outside;
   std::int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
-/// Snapped vertices, from the image's centre, at the places where ClusterSet has them. Those of vertices that cannot be
-/// snapped are 0.
+/// Snapped vertices, from the image's centre, at their indices in ClusterSet. Vertices that cannot be snapped are 0.
 struct ScreenClusters {
   Buffer<std::int32_t> x, y;
   Buffer<float> key;
   std::vector<ClusterPlace> places;
 };
 
-/// Transforms the vertices of clusters [begin, end) and says where the clusters are. Exact: bounds are those of the
-/// snapped vertices, so no margin for rounding is needed.
+/// Transforms the vertices of clusters [begin, end) and sets the places of the clusters. Bounds are those of the
+/// snapped vertices, and so need no margin for rounding.
 void transform_clusters(const ClusterSet& set, const ScreenTransform& transform, Isa isa, std::size_t begin,
                         std::size_t end, ScreenClusters& screen);
 
@@ -49,20 +48,20 @@ struct Rectangle {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// A triangle on the screen, corners in 1/256 pixel from the image's top left corner, so turned that its area is
-/// positive (clockwise to the eye, y being down).
+/// A triangle on the screen, vertices in 1/256 pixel from the image's top left, so ordered that its area is positive
+/// (clockwise to the eye, y being down).
 struct ScreenTriangle {
   std::int32_t x[3], y[3];
   float key[3];
   PrimitiveId id;
 };
 
-/// Turns the area positive. \returns false when the triangle is culled, or has no area and so covers nothing.
+/// Makes the area positive. \returns false if the triangle is culled, or has no area and so covers nothing.
 [[nodiscard]] bool orient(ScreenTriangle& triangle, const FacingRule& facing);
 
-/// For every tile a list of numbers, one after another in one array.
+/// A list of numbers for every tile, one after another in one array.
 struct TileNumbers {
-  std::vector<std::size_t> begin;  ///< by tile, and the end of the last
+  std::vector<std::size_t> begin;  ///< first item of each tile, then the end of the last tile
   std::vector<std::uint32_t> items;
 
   [[nodiscard]] std::span<const std::uint32_t> of(std::size_t tile) const {
@@ -73,7 +72,7 @@ struct TileNumbers {
 /// A triangle of a plan: one of a cluster, or a single.
 struct TriangleNumber {
   std::uint32_t cluster;  ///< no_index: a single
-  std::uint32_t index;    ///< in the cluster, or of singles()
+  std::uint32_t index;    ///< in the cluster, or in singles()
 };
 
 /// The plan of a frame: 12 bytes a vertex, and 40 for every triangle that is large or had to be clipped.
@@ -91,24 +90,24 @@ class FragmentPlan {
 
   [[nodiscard]] std::span<const std::uint32_t> clusters(std::size_t tile) const { return cluster_lists_.of(tile); }
   [[nodiscard]] std::span<const ScreenTriangle> singles() const { return singles_; }
-  /// The singles of a tile; none: any of them may be in it, as lists of all would be too long.
+  /// The singles of a tile. None if lists were too long to make: then any single may be in the tile.
   [[nodiscard]] std::optional<std::span<const std::uint32_t>> singles(std::size_t tile) const {
     if (!single_lists_) return std::nullopt;
     return single_lists_->of(tile);
   }
 
-  /// Calls visit(triangle, number) for everything that may cover a sample.
+  /// Calls visit(triangle, number) for every triangle that may cover a sample.
   template <class Visit>
   void for_each(const Visit& visit) const;
-  /// Precondition: for_each() has it.
+  /// Precondition: for_each() visits this number.
   [[nodiscard]] ScreenTriangle triangle(const TriangleNumber& number) const;
-  /// Whether a texture may cut holes into it.
+  /// Whether a texture may cut holes into the primitive.
   [[nodiscard]] bool may_have_holes(PrimitiveId id) const { return set().cutouts && set().cutouts->has(id); }
-  /// The same frame without some triangles, of which there is none twice.
+  /// The plan of the same frame without some triangles. Precondition: `hidden` has no duplicates.
   [[nodiscard]] FragmentPlan without(std::span<const TriangleNumber> hidden) const;
 
  private:
-  /// What all plans of a frame share, whichever of its triangles they leave out.
+  /// The data that all plans of a frame share, whatever triangles they leave out.
   struct Frame {
     const ClusterSet& set;
     ScreenTransform transform;
@@ -123,9 +122,9 @@ class FragmentPlan {
   void append_clipped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const;
   void append_snapped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const;
   [[nodiscard]] ScreenTriangle snapped(const Cluster& cluster, std::size_t triangle) const;
-  /// Turns its area positive. \returns false for what covers nothing of the picture.
+  /// Makes the triangle's area positive. \returns false if the triangle covers nothing of the picture.
   [[nodiscard]] bool is_drawn(ScreenTriangle& triangle) const;
-  /// `left_out`: clusters whose triangles are among the singles, or empty.
+  /// `left_out` marks clusters whose triangles are among the singles; it may be empty.
   void make_lists(const std::vector<bool>& left_out);
 
   std::shared_ptr<Frame> frame_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// All vertices of clusters put on the screen, and what their clusters cover there.
+// Places all vertices of clusters on the screen, and finds the bounds of their clusters.
 //
-// A cluster's box is that of its snapped vertices, so it needs no margin. Vertices beyond the guard band, or too near
-// to the eye to be snapped, make their cluster one that is taken apart; their places are never read.
+// A cluster's box is that of its snapped vertices, so it needs no margin. A vertex beyond the guard band, or too near
+// to the eye to be snapped, makes its cluster one that is taken apart; the vertex's place is never read.
 
 #include "abuffer/plan/frame_plan.h"
 
@@ -10,7 +10,7 @@
 #define HWY_TARGET_INCLUDE "abuffer/plan/screen_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After Highway: a block of its own.
+// The include follows Highway in a block of its own.
 #include "view/snap-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -31,10 +31,10 @@ class Transformer {
   void Place(std::size_t index) {
     const DI di;
     const Cluster& cluster = set_.clusters[index];
-    // The guard band bounds all that is snapped, so these are less and greater than any vertex.
+    // The guard band bounds all snapped vertices, so these values are beyond any vertex.
     VI low_x = hn::Set(di, kGuardBand), low_y = low_x, high_x = hn::Neg(low_x), high_y = high_x;
     auto plain = hn::Eq(low_x, low_x);
-    // Vertices past the last repeat it, up to a multiple of 16.
+    // Entries past the last vertex repeat it, up to a multiple of 16.
     for (std::size_t i = 0; i < cluster.vertex_count; i += hn::Lanes(di)) {
       const auto is_plain = Snap(cluster.first_vertex + i);
       plain = hn::And(plain, is_plain);
@@ -66,8 +66,8 @@ class Transformer {
     const auto plain = screen::IsPlain(t_, vertices);
     const auto is_snapped = hn::RebindMask(di, plain);
     const screen::ScreenVertices snapped = screen::Snap(t_, vertices);
-    // Zeros for what is not snapped: conversion of numbers out of range differs from target to target, and nobody reads
-    // it.
+    // Vertices that are not snapped become zeros, and are never read: converting numbers out of range differs from
+    // target to target.
     hn::Store(hn::IfThenElseZero(plain, snapped.key), d, screen_.key.data() + v);
     hn::Store(hn::IfThenElseZero(is_snapped, snapped.x), di, screen_.x.data() + v);
     hn::Store(hn::IfThenElseZero(is_snapped, snapped.y), di, screen_.y.data() + v);

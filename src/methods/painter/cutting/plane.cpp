@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A question about a side is asked again, by numbers that cost more, until the answer is certain:
+// The side of a point is computed with ever costlier numbers until the answer is certain:
 //
 //    doubles with a bound on their error     nearly always enough
 //    numbers of twice the length (Twice)     for points where three planes meet
-//    expansions, which are never rounded     for what lies in the plane, or next to it
+//    expansions, which are never rounded     for points in the plane, or next to it
 //
-// A plane is n.x = d with n = u x v, where u and v are differences of given points: n has degree 2 in what was given.
-// Where three planes meet is a quotient by Cramer's rule, of degree 7 above and 6 below; its side of a fourth plane is
-// the sign of a polynomial of degree 9. All coordinates are taken about a point of the first plane, so that its d is 0.
+// A plane is n.x = d with n = u x v, where u and v are differences of given points: n has degree 2 in the input. The
+// meeting point of three planes is a quotient by Cramer's rule, of degree 7 above and 6 below. Its side of a fourth
+// plane is the sign of a polynomial of degree 9. All coordinates are relative to a point of the first plane, so its d
+// is 0.
 #include "painter/cutting/plane.h"
 
 #include <algorithm>
@@ -17,7 +18,7 @@
 namespace frontmost::painter_detail {
 
 int Plane::side_by_hand(const glm::dvec3& x) const {
-  // Corners that triangles share are nearly all that rounding leaves open.
+  // Rounding leaves little open but vertices that triangles share.
   if (x == anchor_ || (x == u_.to && u_.from == anchor_) || (x == v_.to && v_.from == anchor_)) return 0;
   return sign_of_determinant(u_, v_, {x, anchor_});
 }
@@ -39,8 +40,8 @@ Bounded Plane::least_height(const glm::dvec3& centre, const std::array<glm::dvec
   return least;
 }
 
-/// By Cramer's rule about a point of the first plane. The same sums of absolute values bound what is rounded: three
-/// normals and a distance, each wrong by at most kRounding of its own terms, and a dozen roundings more.
+/// Cramer's rule about a point of the first plane. The same sums of absolute values bound the rounding: three normals
+/// and a distance, each wrong by at most kRounding of its own terms, and a dozen roundings more.
 Approximate Plane::meeting(const std::array<const Plane*, 3>& planes) {
   const Plane &a = *planes[0], &b = *planes[1], &c = *planes[2];
   const auto size = [](const Plane& plane) { return plane.normal_.error / kRounding; };
@@ -72,14 +73,14 @@ int sign_of(const Expansion& number) { return number.sign(); }
 Bounded bounded_of(const Twice& number) { return number.bounded(); }
 Bounded bounded_of(const Expansion& number) { return {number.rounded(), 0}; }
 
-/// A plane n.x = d about a point.
+/// A plane n.x = d, relative to a point.
 template <class Number>
 struct LongPlane {
   LongVector<Number> n;
   Number d;
 };
 
-/// Through `anchor`, along u and v, about `centre`.
+/// The plane through `anchor` along u and v, relative to `centre`.
 template <class Number>
 LongPlane<Number> long_plane(const glm::dvec3& anchor, const Leg& u, const Leg& v, const glm::dvec3& centre) {
   LongPlane<Number> plane{cross_of(difference_of<Number>(u.to, u.from), difference_of<Number>(v.to, v.from)), {}};
@@ -87,7 +88,8 @@ LongPlane<Number> long_plane(const glm::dvec3& anchor, const Leg& u, const Leg& 
   return plane;
 }
 
-/// Where three planes meet, by Cramer's rule: at `times` / determinant about a point of the first, whose d is 0.
+/// The meeting point of three planes by Cramer's rule: `times` / determinant, relative to a point of the first plane,
+/// whose d is 0.
 template <class Number>
 struct Meeting {
   LongVector<Number> times;
@@ -101,7 +103,7 @@ struct Meeting {
   }
 };
 
-/// A quotient of what is rounded, with a bound on its error; infinite where the sign of the denominator is open.
+/// A quotient of rounded numbers, with an error bound; infinite if the sign of the denominator is open.
 Bounded quotient(const Bounded& above, const Bounded& below) {
   const double least = std::abs(below.value) - below.error, value = above.value / below.value;
   if (!(least > 0)) return {0, std::numeric_limits<double>::infinity()};

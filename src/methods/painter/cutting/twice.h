@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of twice the length of doubles, with a bound on their error: the middle way between doubles, which leave the
+// Numbers of twice the length of doubles, with a bound on their error. They stand between doubles, which leave the
 // sides of many corners open, and expansions, which are much slower.
 //
 // A number is kept as a sum of two doubles, together with the sum of the absolute values of its terms. Its error is at
-// most a share of that sum, whatever cancels in the number itself. So the sign of a polynomial is certain as soon as
-// its value exceeds the share; only where it does not are expansions asked.
+// most a share of that sum, whatever cancels in the number itself. So the sign of a polynomial is certain if its value
+// exceeds the share; only otherwise are expansions needed.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 
 namespace frontmost::painter_detail {
 
-/// A number, and what was added up for it, each term positive: its error is a share of that. For polynomials of up to
+/// A number, and the sum of the absolute values of its terms, of which its error is a share. For polynomials of up to
 /// the ninth degree in differences of doubles.
 class Twice {
  public:
@@ -23,15 +23,15 @@ class Twice {
     return {value, std::abs(value.high) * (1 + 1e-15)};
   }
 
-  /// A product or sum errs by less than 2^-100 of its size, and shares of factors add up: to less than 2^-95 after nine
-  /// factors, their sums and those of the products. Beyond 10^+-250 doubles may have lost something to the ends of
-  /// their range: then anything is possible.
+  /// A product or sum errs by less than 2^-100 of its size, and shares of factors add up to less than 2^-95 after nine
+  /// factors, their sums and the sums of the products. Beyond 10^+-250 doubles may have underflowed or overflowed, so
+  /// the error is unbounded.
   [[nodiscard]] Bounded bounded() const {
     const bool is_within_range = size_ > 1e-250 && size_ < 1e250;
     return {value_.high + value_.low,
             is_within_range ? size_ * 1.6e-28 : std::numeric_limits<double>::infinity()};  // 2^-92
   }
-  /// 2 where the error leaves it open.
+  /// The sign, or 2 if the error leaves it open.
   [[nodiscard]] int certain_sign() const {
     const Bounded rounded = bounded();
     return rounded.value > rounded.error ? 1 : rounded.value < -rounded.error ? -1 : 2;

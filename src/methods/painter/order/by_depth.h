@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lists of pieces by depth, the farthest first.
 //
-// Depths are floats. Their bits are turned into integers that rise where depths fall, so that a radix sort of (depth,
-// piece) needs no comparison. Runs of equal depths, which are short in most scenes, are then sorted by id, so that the
-// order is the same for any number of threads and for any order in which the pieces came.
+// Bits of depths are turned into integers that rise as depths fall, so a radix sort of (depth, piece) needs no
+// comparison. Runs of equal depths, which are short in most scenes, are then sorted by id. So the order depends neither
+// on the number of threads nor on the order in which the pieces came.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace frontmost::painter_detail {
 
-/// As numbers that rise where depths fall.
+/// An integer that rises as depths fall.
 [[nodiscard]] inline std::uint32_t falling_key(float depth) {
   depth += 0.0f;  // no -0
   std::uint32_t bits;
@@ -22,7 +22,7 @@ namespace frontmost::painter_detail {
   return bits >> 31 ? bits : ~bits & 0x7fffffff;
 }
 
-/// By a depth of each piece, the greatest first; equal ones by id, the greatest first, then by number.
+/// Sorts by a depth of each piece, the greatest first; equal depths by id, the greatest first, then by number.
 template <class Depth>
 void sort_by_depth(const Pieces& pieces, std::vector<std::uint32_t>& members, const Depth& depth,
                    const Execution& execution) {

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Newell's exchange, made to end: P is to be painted when everything that it covers is; what it covers and is not
-// painted yet goes first. That is a depth-first search, and where it comes back to a piece that is still waiting, all
-// between the two have no order: Tarjan's strongly connected components. Pieces come from far to near, so that almost
-// everything that one covers is painted already and needs no test; and neighbours are looked for when a piece's turn
-// comes, so that no pair is ever stored.
+// Newell's exchange, made to end. A piece P is painted once everything that it covers is painted; covered pieces that
+// are not painted yet go first. This is a depth-first search: if it comes back to a waiting piece, all pieces in
+// between have no order (Tarjan's strongly connected components). Pieces come from far to near, so almost everything
+// that one covers is painted already and needs no test. Neighbours are looked for when a piece's turn comes, so no pair
+// is ever stored.
 //
 //    far                                         near
 //    [painted ......][ P waits -> Q waits -> R ][ not found yet ...]
 //                         ^                |
 //                         +---- covers ----+       R covers P, which is waiting: P, Q and R have no order
 //
-// The search keeps its own stack, because chains of pieces that cover one another may be as long as there are pieces.
-// In each cell the pieces at the beginning that are painted already are skipped at once, and the search ends where
-// pieces are wholly nearer.
+// The search has its own stack, because chains of covering pieces may be as long as there are pieces. Painted pieces at
+// the beginning of a cell are skipped at once, and the search in a cell ends where pieces are wholly nearer.
 #include <algorithm>
 #include <optional>
 #include <unordered_map>
@@ -26,12 +25,12 @@ namespace frontmost::painter_detail {
 namespace {
 
 constexpr std::uint32_t kReportEvery = 1 << 14;
-/// Cells with more pieces have boxes around many at a time.
+/// Cells with more pieces have boxes around many pieces at a time.
 constexpr std::size_t kManyPieces = 256;
 
 class Search {
  public:
-  /// `members` from far to near.
+  /// `members` are sorted from far to near.
   Search(const Pieces& pieces, const std::vector<std::uint32_t>& members, PaintSteps& steps, Poll& poll)
       : pieces_(pieces),
         members_(members),
@@ -57,7 +56,7 @@ class Search {
  private:
   static constexpr std::uint32_t kNotFound = no_index, kPainted = no_index - 1;
 
-  /// A piece whose neighbours are being looked at, and how far that is.
+  /// A piece whose neighbours are being looked at, and the progress in them.
   struct Waiting {
     std::uint32_t member;
     PieceGrid::Range cells;
@@ -96,7 +95,7 @@ class Search {
     waiting_.push_back({member, cells, cells.first_x, cells.first_y, 0});
   }
 
-  /// The next piece that has to be painted before w.member and was not found yet; no_index: there are no more.
+  /// The next piece that must be painted before w.member and was not found yet; no_index: there are no more.
   std::uint32_t next_covered(Waiting& w) {
     std::optional<NewellTests> tests;
     for (; w.y <= w.cells.last_y; ++w.y, w.x = w.cells.first_x)
@@ -135,14 +134,14 @@ class Search {
     return no_index;
   }
 
-  /// Made when first asked for; none for a few pieces.
+  /// Boxes of a cell, made when first needed; null for a few pieces.
   const PieceBoxes* boxes_of(std::size_t cell) {
     const std::span<const std::uint32_t> pieces = grid_.cell(cell);
     if (pieces.size() <= kManyPieces) return nullptr;
     return &boxes_.try_emplace(cell, pieces_, members_, pieces).first->second;
   }
 
-  /// How many next ones this piece cannot cover, for they lie before its plane.
+  /// How many of the next pieces this piece cannot cover, because they lie before its plane.
   std::size_t pass_over(const PieceBoxes& boxes, const Waiting& w, std::optional<NewellTests>& tests) {
     if (!tests) tests.emplace(pieces_, members_[w.member]);
     std::size_t passed = 0;
@@ -165,7 +164,7 @@ class Search {
     return tests->covers(members_[other], steps_);
   }
 
-  /// The pieces that were found since `first`, and are not painted, are a group.
+  /// Paints the pieces found since `first` that are not painted yet as one group.
   void paint_from(std::uint32_t first) {
     const std::size_t begin = groups_.pieces.size();
     for (;;) {
@@ -188,10 +187,11 @@ class Search {
   const PieceGrid grid_;
   PaintSteps& steps_;
   Poll& poll_;
-  std::vector<std::uint32_t> unpainted_;               ///< by cell: how many entries at its beginning are painted
+  std::vector<std::uint32_t> unpainted_;               ///< by cell: number of painted entries at its beginning
   std::vector<std::uint32_t> found_;                   ///< by member: when it was found, or kPainted
-  std::vector<std::uint32_t> lowest_;                  ///< of all that was found from it
-  std::vector<std::uint32_t> asked_by_;                ///< most pairs meet in several cells
+  std::vector<std::uint32_t> lowest_;                  ///< by member: the lowest of all that were found from it
+  std::vector<std::uint32_t> asked_by_;                ///< by member: avoids repeated tests, as most pairs meet in
+                                                       ///< several cells
   std::unordered_map<std::size_t, PieceBoxes> boxes_;  ///< by cell
   std::vector<std::uint32_t> open_;
   std::vector<Waiting> waiting_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every two triangles that pass through each other take a cut of their own: along the line where they meet, and other
-// planes have other lines. So their number tells whether cutting will come to its limit, before it begins. Where the
-// planes of m triangles go through the same line, as of two in one plane or of blades around an axis, m - 1 cuts may do
-// for all their m * (m - 1) / 2 pairs.
+// Every two triangles that pass through each other take a cut of their own, along the line where they meet; other
+// planes have other lines. So the number of such pairs tells before cutting begins whether it would reach its limit. If
+// the planes of m triangles share a line, as two in one plane or blades around an axis do, m - 1 cuts may suffice for
+// all their m * (m - 1) / 2 pairs.
 #include <algorithm>
 #include <cmath>
 
@@ -11,11 +11,12 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// And so many others are asked whether they share a line; all, where there are no more.
+/// Pairs that are tested, and other triangles that are then tested for sharing their line; all of them if there are
+/// fewer.
 constexpr std::size_t kPairs = 512, kOthers = 4096;
-/// So many more than were found may share it, of those asked, once in fifty times.
+/// Once in fifty times, so many more than were found among the tested triangles share the line.
 constexpr double kUnseen = 4;
-/// Of the spread of such a sample.
+/// Margin of the estimate, in standard deviations of such a sample.
 constexpr double kDeviations = 4;
 
 bool pierces(const glm::dvec3& from, const glm::dvec3& to, const std::array<glm::dvec3, 3>& corners) {
@@ -26,7 +27,7 @@ bool pierces(const glm::dvec3& from, const glm::dvec3& to, const std::array<glm:
   return std::abs(turns) == 3;
 }
 
-/// An edge of one pierces the other.
+/// Whether an edge of one triangle pierces the other.
 bool pass_through(const Face& a, const Face& b) {
   const auto corners_of = [](const Face& face) {
     return std::array<glm::dvec3, 3>{glm::dvec3(face.corners[0]), glm::dvec3(face.corners[1]),
@@ -45,7 +46,7 @@ glm::dvec3 normal_of(const Face& face) {
   return glm::cross(b - a, c - a);
 }
 
-/// Where the planes of two triangles meet, to ask whether others' go through there, too.
+/// The line where the planes of two triangles meet, to test whether other planes contain it, too.
 class SharedLine {
  public:
   SharedLine(const Face& a, const Face& b) {
@@ -55,7 +56,7 @@ class SharedLine {
     at_ = from + glm::cross(along_, p) * (glm::dot(q, glm::dvec3(b.corners[0]) - from) / square);
     rounding_ = 1e-12 * sizes / square;
   }
-  /// True also where rounding leaves it open.
+  /// Also true if rounding leaves the answer open.
   [[nodiscard]] bool may_be_in_plane_of(const Face& face) const {
     const glm::dvec3 normal = normal_of(face), way = at_ - glm::dvec3(face.corners[0]);
     const double allowed = rounding_ * glm::length(normal);
@@ -69,7 +70,7 @@ class SharedLine {
   double rounding_;
 };
 
-/// Numbers below a limit, the same on every run.
+/// Numbers below a limit, the same in every run.
 class Picker {
  public:
   explicit Picker(std::size_t count) : count_(count) {}
@@ -83,7 +84,7 @@ class Picker {
   std::uint64_t state_ = 1;
 };
 
-/// The share of a cut that falls to one of the pairs that meet in a line; not too great.
+/// The share of a cut that falls to one of the pairs that meet in a line, estimated low.
 double cuts_of_pair(const Pieces& pieces, const std::vector<std::uint32_t>& members, const SharedLine& line,
                     Picker& picker) {
   const std::size_t count = members.size();

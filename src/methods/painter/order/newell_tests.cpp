@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tests from the cheapest to the dearest, each of which may end the question:
+// The tests from the cheapest to the dearest, each of which may decide:
 //
-//    is all of this piece behind the plane of the other?      it cannot cover it
-//    is all of the other before the plane of this one?        likewise
-//    does a side of either part them on the screen?           they do not overlap
-//    (two whole triangles) which is nearer where they do?     by corners within, then by sides that cross
+//    is all of this piece behind the plane of the other?      it cannot cover the other
+//    is all of the other before the plane of this one?        it cannot cover the other
+//    does a side of either separate them on the screen?       they do not overlap
+//    (two whole triangles) which is nearer in the overlap?    by vertices within, then by sides that cross
 //
-// The first two decide most pairs. Signs of corners beside sides are kept from the third test for the fourth, so that
-// no sign is worked out twice. All signs are exact: a pair that is asked about in two cells, or from both sides, gets
-// one answer.
+// The first two tests decide most pairs. The fourth test reuses the signs of the third, so no sign is computed twice.
+// All signs are exact: a pair that is tested in two cells, or from both sides, gets one answer.
 #include "painter/order/newell_tests.h"
 
 #include <algorithm>
@@ -52,8 +51,8 @@ bool NewellTests::covers(std::uint32_t other, PaintSteps& steps) {
   return is_over(face, other_plane);
 }
 
-/// Convex polygons are apart if and only if an edge of either parts them. Pieces that were cut are asked by the edges
-/// of their triangles alone.
+/// Convex polygons are apart if and only if an edge of either separates them. For pieces that were cut, only the edges
+/// of their triangles are tested.
 bool NewellTests::is_apart(std::uint32_t other) {
   if (!edges_) edges_.emplace(edges_of(face_));
   if (is_outside(*edges_, other, other_turns_)) return true;
@@ -71,8 +70,8 @@ bool NewellTests::is_outside(const std::array<Plane, 3>& edges, std::uint32_t pi
   return false;
 }
 
-/// Where two triangles overlap on the screen, which of them is nearer changes only along a line. So the corners of what
-/// they have in common there tell whether this one is anywhere.
+/// In the overlap of two triangles on the screen, the nearer one changes only along a line. So the corners of the
+/// overlap tell whether this triangle is nearer anywhere.
 bool NewellTests::is_over(const Face& other, const Plane& other_plane) const {
   for (std::size_t i = 0; i < 3; ++i) {
     if (is_within(turns_, i) && other_plane.side(glm::dvec3(face_.corners[i])) > 0) return true;
@@ -81,7 +80,7 @@ bool NewellTests::is_over(const Face& other, const Plane& other_plane) const {
   return crosses_over(other);
 }
 
-/// Whether an edge of this triangle passes before one of the other.
+/// Whether an edge of this triangle passes before an edge of the other.
 bool NewellTests::crosses_over(const Face& other) const {
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < 3; ++i) {

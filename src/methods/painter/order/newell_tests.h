@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether one piece may cover another: the tests of Newell, Newell and Sancha.
 //
-//    eye                  P covers Q at a point of the screen where both are and P is nearer. It is
+//    eye                  P covers Q at a point of the screen if both are there and P is nearer. P is
 //     .                   then painted after Q. If neither covers the other, their order does not
-//     . .   P ____        matter; if each covers the other somewhere, one of them has to be cut.
+//     . .   P ____        matter. If each covers the other somewhere, one of them must be cut.
 //     .   .    Q ____
 #pragma once
 
@@ -14,18 +14,18 @@
 
 namespace frontmost::painter_detail {
 
-/// One piece, made ready to be held against others.
+/// One piece, prepared for tests against others.
 class NewellTests {
  public:
   NewellTests(const Pieces& pieces, std::uint32_t piece);
 
   [[nodiscard]] const Plane& plane() const { return plane_; }
-  /// Whether the piece covers a point of `other`, by any of the tests but those of the extents. True also where one of
-  /// the two was cut and no test tells: then they may have no order.
+  /// Whether the piece covers a point of `other`, by all tests except those of the extents. Also true if one of the two
+  /// was cut and no test decides: they may then have no order.
   [[nodiscard]] bool covers(std::uint32_t other, PaintSteps& steps);
 
  private:
-  /// turns[k][i]: on which side of edge k of one triangle the other one's corner i is.
+  /// turns[k][i]: the side of edge k of one triangle on which vertex i of the other triangle lies.
   using Turns = std::array<std::array<int, 3>, 3>;
 
   [[nodiscard]] bool is_apart(std::uint32_t other);
@@ -39,7 +39,7 @@ class NewellTests {
   const Face& face_;
   const Plane plane_;
   std::optional<std::array<Plane, 3>> edges_;  ///< made when first needed
-  Turns other_turns_{}, turns_{};              ///< by this piece's edges, by the other one's
+  Turns other_turns_{}, turns_{};              ///< by this piece's edges, and by the other's edges
 };
 
 }  // namespace frontmost::painter_detail

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pieces parted by the plane of one of them.
+// Parts pieces by the plane of one of them.
 //
 // H. Fuchs, Z. Kedem, B. Naylor. On Visible Surface Generation by A Priori Tree Structures. 1980.
 //
 //    planes of a few members are tried against a few others, spread evenly over the list
 //    the best one cuts few of them and leaves both sides about as large
 //
-// What lies in the plane needs no order but that of ids, and the plane's own triangle is always among it: so neither
-// side is as large as the whole, and parting comes to an end.
+// Pieces in the plane are only ordered by id, and the plane's own triangle is always among them. So neither side is as
+// large as the whole, and parting ends.
 #include <algorithm>
 
 #include "painter/stages.h"
@@ -15,18 +15,19 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// Twice and four times as many find planes that cut 5 % less, and take twice and five times as long.
+/// Two and four times as many find planes that cut 5 % less, and take two and five times as long.
 constexpr std::size_t kMostCandidates = 8, kMostWitnesses = 64;
 constexpr std::size_t kStepsPerCut = 16;
 
-/// Numbers spread evenly over `count`.
+/// Numbers spread evenly over [0, count).
 std::vector<std::size_t> spread(std::size_t count, std::size_t most) {
   std::vector<std::size_t> numbers(std::min(count, most));
   for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = i * count / numbers.size();
   return numbers;
 }
 
-/// A cut costs one piece more for all that follows, and may be cut again; an uneven split costs as little as a level.
+/// Cost of a candidate: a cut costs one more piece in all later steps, and may be cut again; an uneven split costs as
+/// little as a level of the tree.
 std::size_t cost(const Pieces& pieces, const std::vector<std::uint32_t>& members, std::uint32_t candidate) {
   const Plane plane = pieces.face(candidate).plane();
   std::size_t cuts = 0, before = 0, behind = 0;

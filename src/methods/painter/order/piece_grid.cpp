@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cells are chosen so that a piece is listed about four times and a cell lists about two pieces. Where boxes are large
-// that is not possible, and cells grow until the lists fit: more entries would cost more than they spare.
+// Cells are chosen so that a piece is listed about four times and a cell lists about two pieces. Large boxes make that
+// impossible; cells then grow until the lists fit, as more entries would cost more than they save.
 //
-// Boxes in space lie along the plane of one of their pieces. A stack of parallel sheets overlaps on the screen
-// everywhere, so the grid tells nothing apart there; but every box of 64 sheets is flat, and one question about its
-// nearest corner passes over all of them.
+// Boxes in space lie along the plane of one of their pieces. In a stack of parallel sheets, all sheets overlap on the
+// screen, so the grid separates nothing. But every box of 64 sheets is flat, and one test of its nearest corner passes
+// over all of them.
 #include "painter/order/piece_grid.h"
 
 #include <algorithm>
@@ -13,24 +13,24 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// Finer cells hold fewer pieces that do not overlap, and list each piece more often: at most so many times on average.
+/// Finer cells hold fewer pieces that do not overlap, but list each piece more often: at most this often on average.
 constexpr double kEntriesPerPiece = 4;
 constexpr double kPiecesPerCell = 2;
 constexpr std::size_t kFewPieces = 16;
 constexpr double kMostColumns = 4096;
 
 constexpr std::size_t kFanout = 64;
-/// Of coordinates: more than rounding moves them.
+/// Relative margin of coordinates: more than rounding moves them.
 constexpr double kBoxMargin = 1e-12;
 
-/// Three directions at right angles, the first that of a triangle's normal.
+/// Three orthogonal directions, the first along a triangle's normal.
 std::array<glm::dvec3, 3> axes_of(const Face& face) {
   const glm::dvec3 a(face.corners[0]), b(face.corners[1]), c(face.corners[2]);
   const glm::dvec3 normal = glm::cross(b - a, c - a), along = b - a;
   const double length = glm::length(normal), reach = glm::length(along);
   const std::array<glm::dvec3, 3> axes{glm::dvec3(1, 0, 0), {0, 1, 0}, {0, 0, 1}};
   if (!(length > 0 && reach > 0 && length < 1e150)) return axes;
-  // The normal of a needle may be rounded to anything, also to what is not at right angles to its side.
+  // Rounding may give the normal of a needle any direction, even one that is not orthogonal to its side.
   const glm::dvec3 first = normal / length, side = along / reach, across = side - first * glm::dot(first, side);
   if (glm::length(across) < 0.5) return axes;
   const glm::dvec3 second = glm::normalize(across);
@@ -56,12 +56,12 @@ PieceGrid::PieceGrid(const std::vector<PolygonExtent>& extents) {
   for_each([&](std::size_t cell, std::uint32_t i) { entries_[next[cell]++] = i; });
 }
 
-/// Square cells, as small as the number of pieces asks for and the size of their boxes allows: a box of w x h pixels
-/// touches about (1 + w s) (1 + h s) cells of size 1 / s.
+/// Chooses square cells, as small as the number of pieces suggests and the size of their boxes allows: a box of w x h
+/// pixels touches about (1 + w s) (1 + h s) cells of size 1 / s.
 void PieceGrid::choose_cells(const std::vector<PolygonExtent>& extents) {
   if (extents.size() <= kFewPieces) return;
   glm::vec2 low(std::numeric_limits<float>::infinity()), high(-low);
-  // Pieces may reach far beyond the picture; the grid covers where the middle of most is.
+  // Pieces may reach far beyond the picture, so the grid covers the middles of their boxes.
   for (const PolygonExtent& e : extents) {
     const glm::vec2 middle = (e.low + e.high) * 0.5f;
     if (!(middle.x - middle.x == 0 && middle.y - middle.y == 0)) continue;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pieces by place, to find those that may cover another: by the parts of the screen that their boxes touch, and by
-// boxes in space around many at a time, where a part of the screen holds too many.
+// Pieces by place, to find pieces that may cover another: by the cells of the screen that their boxes touch, and, if a
+// cell holds too many pieces, by boxes in space around many pieces at a time.
 //
 //    +---+---+---+       cell: the pieces whose boxes touch it, in the order of their list. Two pieces that overlap on
-//    | 1 |1 4|   |       the screen share a cell, because the same rounding puts both into it; they may share several,
-//    +---+---+---+       and whoever asks has to ask only once.
+//    | 1 |1 4|   |       the screen share a cell, because the same rounding puts both into it. They may share several
+//    +---+---+---+       cells, and need to be compared in only one.
 //    |   |4 7| 7 |
 //    +---+---+---+
 #pragma once
@@ -16,18 +16,18 @@
 
 namespace frontmost::painter_detail {
 
-/// A grid over the boxes of a list of pieces. Each cell lists those that touch it, by their place in that list, in its
-/// order.
+/// A grid over the boxes of a list of pieces. Each cell lists the pieces that touch it as places in that list, in the
+/// list's order.
 class PieceGrid {
  public:
   PieceGrid() = default;
   explicit PieceGrid(const std::vector<PolygonExtent>& extents);
-  /// Lists numbers[i] for the place i from now on.
+  /// Replaces each place i in the lists by numbers[i].
   void renumber(const std::vector<std::uint32_t>& numbers) {
     for (std::uint32_t& entry : entries_) entry = numbers[entry];
   }
 
-  /// The cells that a box touches, from the first to the last of each axis.
+  /// The cells that a box touches, from the first to the last on each axis.
   struct Range {
     int first_x, last_x, first_y, last_y;
   };
@@ -40,7 +40,7 @@ class PieceGrid {
   [[nodiscard]] std::span<const std::uint32_t> cell(std::size_t number) const {
     return {entries_.data() + first_[number], first_[number + 1] - first_[number]};
   }
-  /// Pixels. Cells at the rim of the grid reach on without end.
+  /// In pixels. Cells at the rim of the grid extend to infinity.
   struct Box {
     glm::dvec2 low, high;
   };
@@ -55,34 +55,34 @@ class PieceGrid {
 
  private:
   void choose_cells(const std::vector<PolygonExtent>& extents);
-  /// Rounding is monotonic: boxes that overlap meet in a cell.
+  /// Rounding is monotonic, so boxes that overlap share a cell.
   [[nodiscard]] int index(float place, int axis) const {
     const float cell = (place - low_[axis]) * scale_[axis];
     return cell > 0 ? int(std::min(cell, float(columns_[axis] - 1))) : 0;
   }
 
-  glm::vec2 low_{0}, scale_{0};  ///< of the grid, and cells a pixel
+  glm::vec2 low_{0}, scale_{0};  ///< corner of the grid, and cells a pixel
   glm::ivec2 columns_{1};
   std::vector<std::size_t> first_;
   std::vector<std::uint32_t> entries_;
 };
 
-/// A list of pieces, in boxes around 64, around 64 of those, and so on. A box lies along the plane of one of its
-/// pieces, so that parallel ones, which overlap everywhere, have flat boxes one behind the other.
+/// A list of pieces, in boxes around 64 pieces, around 64 of those boxes, and so on. A box lies along the plane of one
+/// of its pieces, so parallel pieces, which overlap everywhere, get flat boxes one behind the other.
 class PieceBoxes {
  public:
-  /// `pieces` by their places in `members`.
+  /// `pieces` are places in `members`.
   PieceBoxes(const Pieces& all, const std::vector<std::uint32_t>& members, std::span<const std::uint32_t> pieces);
 
-  /// How many from the `first` on surely lie wholly on the positive side of a plane. Fewer than there are: only boxes
-  /// that begin there are asked.
+  /// How many pieces from `first` on surely lie wholly on the positive side of a plane. A lower bound, as only boxes
+  /// that begin there are tested.
   [[nodiscard]] std::size_t count_before(std::size_t first, const Plane& plane) const;
 
  private:
   struct Box {
     glm::dvec3 centre;
-    std::array<glm::dvec3, 3> halves;  ///< from the centre to a side
-    double slack;                      ///< by which any coordinate of its pieces may be farther
+    std::array<glm::dvec3, 3> halves;  ///< vectors from the centre to the sides
+    double slack;                      ///< by which coordinates of its pieces may exceed the box
   };
   static Box box_of(const Pieces& all, const std::vector<std::uint32_t>& members,
                     std::span<const std::uint32_t> pieces);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A side and its reverse have the same hash, so a side that comes looks for its reverse in a table and takes it out
-// again. In meshes whose triangles are near each other in memory few sides wait at a time, and the table stays in the
+// A side and its reverse have the same hash. Each side looks for its reverse in a table, and takes it out if it is
+// there. In meshes whose triangles are near each other in memory, few sides wait at a time, and the table stays in the
 // cache.
 //
-// Sides are equal only to the bit. That suffices, because polygons of a mesh got their corners from the same vertices
-// by the same arithmetic. Where the same side is there many times, as in a stack of equal sheets, a few dozen wait and
-// the rest count as open: comparing all with all would take the square of their number.
+// Sides must be equal to the bit. This suffices, because polygons of a mesh got their corners from the same vertices by
+// the same arithmetic. If the same side occurs many times, as in a stack of equal sheets, a few dozen wait and the rest
+// count as open: comparing all with all would take the square of their number.
 #include "painter/seen/adjacency.h"
 
 #include <cstring>
@@ -19,8 +19,8 @@ std::uint64_t bits_of(double value) {
   return bits;
 }
 
-/// So many times the same side waits for a neighbour; more are taken to have none. A stack of n sheets seen from above
-/// would take n * n.
+/// At most so many equal sides wait for a neighbour; further ones count as open. A stack of n sheets seen from above
+/// would take n * n comparisons.
 constexpr int kMostSame = 64;
 
 /// Odd numbers without a pattern.
@@ -31,8 +31,8 @@ std::uint64_t hash_of(const glm::dvec3& at) {
   return mixed ^ (mixed >> 29);
 }
 
-/// Sides that have no neighbour yet, in a table in which a side and its reverse have the same place. What has found its
-/// neighbour leaves: in meshes that lie in the order of the screen few are there at a time.
+/// Sides that have no neighbour yet, in a table in which a side and its reverse have the same place. A side leaves once
+/// it has found its neighbour: in meshes that lie in the order of the screen, few sides are there at a time.
 class OpenSides {
  public:
   OpenSides(const ScreenPolygons& screen, std::vector<std::uint32_t>& across) : screen_(screen), across_(across) {
@@ -40,7 +40,7 @@ class OpenSides {
     entries_.assign(std::size_t(1) << bits_, {0, no_index});
   }
 
-  /// The side that begins at a corner of a slot's polygon.
+  /// Adds the side that begins at a corner of a slot's polygon.
   void add(std::uint32_t slot, std::uint32_t corner, std::uint64_t hash) {
     const auto tag = std::uint32_t((hash * kMixSum) >> 32);
     std::size_t i = home(tag);
@@ -52,13 +52,13 @@ class OpenSides {
         alone_.push_back(corner);
         return;
       }
-      // Until then, each side has its own slot across.
+      // Before this swap, each side has its own slot across.
       std::swap(across_[entries_[i].corner], across_[corner]);
       return remove(i);
     }
     entries_[i] = {tag, corner};
   }
-  /// No side is across what is still there.
+  /// Marks sides that still wait as having no neighbour.
   void finish() {
     for (const std::uint32_t corner : alone_) across_[corner] = no_index;
     for (const Entry& entry : entries_)
@@ -73,7 +73,7 @@ class OpenSides {
   [[nodiscard]] std::size_t home(std::uint32_t tag) const { return std::size_t(tag) >> (32 - bits_); }
   [[nodiscard]] std::size_t following(std::size_t i) const { return i + 1 == entries_.size() ? 0 : i + 1; }
 
-  /// Closes up, so that no search ends too early.
+  /// Closes the gap, so that no search ends too early.
   void remove(std::size_t gap) {
     for (std::size_t i = following(gap); entries_[i].corner != no_index; i = following(i)) {
       const std::size_t mask = entries_.size() - 1, from_home = (i - home(entries_[i].tag)) & mask;

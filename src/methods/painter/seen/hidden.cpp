@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Inside of a machine nearly everything is hidden. It would take most of the time to put that into order, because parts
-// pass through each other there. A plane test of Newell's often tells which of two pieces is before the other wherever
-// they overlap, and then no order is needed. A hidden piece may count as an occluder of others: at any point of the
-// screen the foremost piece is hidden by nothing, so never all of them go.
+// Inside a machine nearly everything is hidden. Ordering the hidden parts would take most of the time, because parts
+// pass through each other there. One of Newell's plane tests often tells which of two pieces is before the other
+// wherever they overlap, so that no order is needed. A hidden piece may count as an occluder of others: at any point of
+// the screen the foremost piece is hidden by nothing, so not all pieces are left out.
 #include <algorithm>
 
 #include "base/pool.h"
@@ -30,7 +30,7 @@ bool is_before(const Pieces& pieces, std::uint32_t piece, std::uint32_t other) {
 Unhidden without_hidden(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view,
                         const Occluders& occluders, PaintEffort& effort) {
   const Execution& execution = effort.execution();
-  // The nearest last: what is before another is mostly after it here.
+  // The nearest piece comes last, so a piece that is before another mostly comes after it.
   std::vector<std::uint32_t> sorted = members;
   sort_by_depth(
       pieces, sorted, [&](std::uint32_t piece) { return pieces.extent(piece).nearest; }, execution);

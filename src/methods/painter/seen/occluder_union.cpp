@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The geometry that the walk over a union asks for: how deep a side runs through an outline, which of the occluders
-// found so far lies over a place, and where a way leaves an occluder. All of it has the same slack: what reaches less
-// than OutlineClipper::thin into an outline does not count as within, and what ends less than that beside a side counts
-// as at it. So hairlines between neighbours, which rounding leaves, do not open a union.
+// The geometry of the walk over a union: how deep a side runs through an outline, which of the found occluders lies
+// over a place, and where a way leaves an occluder. All use the same slack: less than OutlineClipper::thin within an
+// outline does not count as within, and less than that beside a side counts as on it. So hairlines between neighbours,
+// which rounding leaves, do not open a union.
 #include "painter/seen/occluder_union.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ void CoveredOutline::set(Outline outline) {
   low_ = high_ = glm::dvec2(outline[0].at);
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const glm::dvec2 from(outline[i].at), way = glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at) - from;
-    // Cuts at a corner leave it twice; nothing would be within such a side.
+    // Cuts at a corner leave the corner twice, and nothing would be within a side of no length.
     if (const double length = glm::length(way); length >= shortest_side) sides_.push_back({from, way, kThin * length});
     low_ = glm::min(low_, from);
     high_ = glm::max(high_, from);

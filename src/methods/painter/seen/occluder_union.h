@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the union of adjacent occluders hides an outline, told without any clipping.
+// Whether the union of adjacent occluders hides an outline, found without any clipping.
 //
-// Clipping would tell the same, but it makes parts and their corners for every occluder. Most polygons that are hidden
-// at all are hidden by a piece of one mesh, whose sides lead from triangle to triangle; then nothing has to be cut.
+// Clipping would also tell, but it makes parts and corners for every occluder. Most hidden polygons are hidden by a
+// piece of one mesh, whose sides lead from triangle to triangle; then nothing needs to be cut.
 //
-//        +---------------+       The outline is hidden at one point by the occluder 1. Its sides lead to 2, from
-//        |  1  / 2 \ 3   |       there to 3, and so on, as long as they cross the outline. Where a side that
-//        |    / ..... \  |       crosses has no occluder beyond it, that is a place at which the outline shows.
+//        +---------------+       Occluder 1 hides a point of the outline. Its sides lead to 2, from there to 3,
+//        |  1  / 2 \ 3   |       and so on, as long as they cross the outline. If a side that crosses has no
+//        |    / ..... \  |       occluder beyond it, the outline shows there.
 //        |   / outline \ |
 //        +---------------+
 #pragma once
@@ -18,23 +18,23 @@
 
 namespace frontmost::painter_detail {
 
-/// A convex outline, made ready to ask which sides of others cross it.
+/// A convex outline, prepared for finding the sides of others that cross it.
 class CoveredOutline {
  public:
   void set(Outline outline);
 
-  /// How much of the way from a to b is within the outline.
+  /// The part of the way from a to b that lies within the outline.
   struct Crossing {
     double from, to;
     [[nodiscard]] bool is_any() const { return from < to; }
   };
-  /// None where the way is less deep in there than OutlineClipper::thin.
+  /// Empty if the way goes less deep into the outline than OutlineClipper::thin.
   [[nodiscard]] Crossing crossing(const glm::dvec2& a, const glm::dvec2& b) const;
 
  private:
   struct Side {
     glm::dvec2 from, way;
-    double slack;  ///< of turns: where a point is OutlineClipper::thin away
+    double slack;  ///< turn of a point that is OutlineClipper::thin away
   };
   [[nodiscard]] bool is_beside_box(const glm::dvec2& a, const glm::dvec2& b) const {
     return (a.x <= low_.x && b.x <= low_.x) || (a.x >= high_.x && b.x >= high_.x) || (a.y <= low_.y && b.y <= low_.y) ||
@@ -45,9 +45,9 @@ class CoveredOutline {
   glm::dvec2 low_{0}, high_{0};
 };
 
-/// Grows a union of occluders, from one that lies over a point of an outline, across those of its sides that cross the
-/// outline. Where an occluder lies beyond each such side, the union hides all of the outline: whatever it left open
-/// would have a border, and that would be a side with no occluder beyond it. Not for several threads at once.
+/// Grows a union of occluders, from one that lies over a point of an outline, across the sides that cross the outline.
+/// If an occluder lies beyond each such side, the union hides all of the outline: an open part would have a border,
+/// which would be a side without an occluder beyond it. Not for several threads at once.
 class OccluderUnion {
  public:
   OccluderUnion(const ScreenPolygons& screen, const Adjacency& adjacency)
@@ -56,12 +56,12 @@ class OccluderUnion {
   enum class Found : std::uint8_t {
     hidden,
     open,     ///< but at open_at()
-    unknown,  ///< there are too many
+    unknown,  ///< there are too many occluders
   };
-  /// The outline that is asked about from now on.
+  /// Selects the outline to test.
   void set(Outline outline) { outline_.set(outline); }
   /// Grows from the slot `first`, which hides a point of the outline. hiders.may_hide(slot) says whether a polygon is
-  /// an occluder of it, and hiders.at(place) gives the slot of one that lies there; no_index: none does.
+  /// an occluder of the outline. hiders.at(place) gives the slot of an occluder at a place, or no_index.
   template <class Hiders>
   Found spread(std::uint32_t first, const Hiders& hiders) {
     begin(first);
@@ -87,12 +87,12 @@ class OccluderUnion {
   [[nodiscard]] const glm::dvec2& open_at() const { return open_at_; }
 
  private:
-  /// Polygons, and steps along their sides.
+  /// Limit of polygons, and of steps along their sides.
   static constexpr std::size_t most = 256;
 
   struct Reached {
     std::uint32_t slot;
-    std::size_t from;  ///< the number of the one before it; the first one's own
+    std::size_t from;  ///< number of the one before it; of the first one its own
   };
 
   void begin(std::uint32_t first);
@@ -102,8 +102,8 @@ class OccluderUnion {
     found_.push_back({slot, from});
   }
 
-  /// Looks for what hides beyond a side of found_[number] that is not another's, one after the other: meshes that were
-  /// cut have sides that lie beside two.
+  /// Looks for occluders beyond a side of found_[number] without a neighbour, step by step: meshes that were cut have
+  /// sides that lie beside two others.
   template <class Hiders>
   Found step_along(const glm::dvec2& a, const glm::dvec2& b, std::size_t number, const Hiders& hiders) {
     const glm::dvec2 way = b - a, out = beyond(way), from = a + out;
@@ -124,18 +124,19 @@ class OccluderUnion {
     }
     return Found::hidden;
   }
-  /// From a side to what is certainly not on it: polygons hide what is up to OutlineClipper::thin beside them.
+  /// Offset from a side to points that are certainly not on it: polygons hide points up to OutlineClipper::thin beside
+  /// them.
   static glm::dvec2 beyond(const glm::dvec2& way);
-  /// Of those found so far, one that lies over a place, most likely this one.
+  /// An occluder among those found that lies over a place; `likely` is tried first.
   [[nodiscard]] std::uint32_t found_at(const glm::dvec2& place, std::size_t likely) const;
-  /// How much of a way has been gone where it leaves an outline and what is OutlineClipper::thin beside it.
+  /// The share of a way at which it leaves an outline widened by OutlineClipper::thin.
   static double end_within(Outline outline, const glm::dvec2& from, const glm::dvec2& way);
 
   const ScreenPolygons& screen_;
   const Adjacency& adjacency_;
   CoveredOutline outline_;
   std::vector<Reached> found_;
-  std::vector<std::uint32_t> asked_;  ///< by slot: in which turn it was found last
+  std::vector<std::uint32_t> asked_;  ///< by slot: the turn in which it was found last
   std::uint32_t turn_ = 0;
   glm::dvec2 open_at_{0};
 };

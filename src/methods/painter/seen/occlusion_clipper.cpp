@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A polygon in a few cells of the grid is held against all that covers it there. One in many is halved along the cells
-// until it is in few, so that it meets only what is near, and comes back together where nothing was taken away.
+// A polygon in a few cells of the grid is compared with all polygons that cover it there. A polygon in many cells is
+// halved along the cells until the parts are in few cells, so that each part meets only near polygons. Parts from which
+// nothing was removed are joined again.
 //
-//    polygon --> in few cells?  --yes-->  clipped by what covers it in these cells
+//    polygon --> in few cells?  --yes-->  clipped by its covers in these cells
 //                     |
 //                     no --> halved along the cells, both halves likewise
-//                            both seen whole: the polygon stays as it was
+//                            both wholly visible: the polygon stays as it was
 //
-// What would leave a part narrower than 1/16 pixel is not cut: the polygon stays whole there and is painted over, which
-// shows the same.
+// A cut that would leave a part narrower than 1/16 pixel is not made: the polygon stays whole there and is painted
+// over, which shows the same.
 #include "painter/seen/occlusion_clipper.h"
 
 #include <algorithm>
@@ -16,13 +17,13 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// More are halved.
+/// Polygons in more cells are halved.
 constexpr int kFewCells = 4;
-/// Pixels. Beside a narrower part nothing has room for a hem, and viewers show a hairline; what would leave one stays
-/// whole, and is painted over.
+/// Pixels. A narrower part has no room for a hem, and viewers show a hairline. So a polygon from which a cut would
+/// leave a narrower part stays whole, and is painted over.
 constexpr double kNarrowest = 1.0 / 16;
-/// So many of those after a polygon, from the front, may hide it in a cell: without an end, a stack of n planes that
-/// each leave a sliver of the next takes n * n.
+/// At most so many later polygons, from the front, may hide a polygon in a cell. Without a limit, a stack of n planes
+/// that each leave a sliver of the next takes n * n steps.
 constexpr std::size_t kMostCovers = 4096;
 
 /// The cells in two halves along the longer axis.
@@ -68,7 +69,7 @@ std::uint32_t OcclusionClipper::hider_at(std::size_t slot, const glm::dvec2& at)
   return no_index;
 }
 
-/// Those that may hide what is behind or beside the polygon in a slot.
+/// Polygons that may hide things behind or beside the polygon in a slot.
 struct OcclusionClipper::Hiders {
   OcclusionClipper& clipper;
   std::size_t slot;
@@ -83,13 +84,13 @@ struct OcclusionClipper::Hiders {
 
 OccluderUnion::Found OcclusionClipper::spread(std::size_t slot, Outline outline, std::uint32_t hider,
                                               const glm::dvec2& at) {
-  // It may have been found for what lies next to it.
+  // The hider may have been found for a point next to `at`.
   if (!is_within(screen_.outline(hider), at, 0)) return OccluderUnion::Found::unknown;
   union_.set(outline);
   return union_.spread(hider, Hiders{*this, slot});
 }
 
-/// Most are not, and their middles tell.
+/// Most polygons are not hidden, and their middles tell.
 bool OcclusionClipper::is_hidden(std::size_t slot) {
   cutter_.begin(screen_.outline(slot));
   cutter_.keep_within(glm::dvec2(0), screen_.size());
@@ -162,7 +163,7 @@ bool OcclusionClipper::is_all_seen_at_once(std::size_t slot, const PolygonExtent
   return false;
 }
 
-/// Boxes that overlap meet in several cells; the one that both begin in, or where the later one begins, is the first.
+/// Boxes that overlap meet in several cells. The first of these is the one in which the later box begins, on each axis.
 bool OcclusionClipper::is_first_meeting(const PieceGrid::Range& cells, const PolygonExtent& cover, int x, int y) const {
   const PieceGrid::Range other = screen_.grid().range(cover);
   return x == std::max(cells.first_x, other.first_x) && y == std::max(cells.first_y, other.first_y);

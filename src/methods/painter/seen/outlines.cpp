@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nearly all pairs of outlines that are held against each other lie beside each other or one within the other. So that
-// is found first, mostly without a root or a copy, and only what is left is cut.
+// In nearly all pairs of outlines, one lies beside or within the other. These cases are found first, mostly without a
+// root or a copy; only the remaining pairs are cut.
 //
 //     ____________________     A part that a cover meets is split along the lines of the cover's sides, one after the
-//    |      kept 1        |    other. What is outside of a line is kept as a part of its own; what is inside goes on to
-//    |--------------------|    the next line; what is inside of all of them is hidden.
+//    |      kept 1        |    other. The piece outside of a line becomes a part of its own; the piece inside goes on
+//    |--------------------|    to the next line. The piece inside of all lines is hidden.
 //    | kept 2 |  hidden   |
 //    |________|___________|    Convex parts stay convex, so a part needs no structure but its corners.
 #include "painter/seen/outlines.h"
@@ -66,7 +66,7 @@ OutlineClipper::Place OutlineClipper::place(Outline outline, const glm::dvec2& p
 bool OutlineClipper::parts(Outline a, Outline b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     const glm::dvec2 p(a[i].at), way = glm::dvec2(a[next(i, a.size())].at) - p;
-    bool is_beyond = glm::dot(way, way) > thin * thin;  // cuts leave a corner twice: nothing is told by such a side
+    bool is_beyond = glm::dot(way, way) > thin * thin;  // cuts leave a corner twice, and such a side separates nothing
     for (std::size_t k = 0; is_beyond && k < b.size(); ++k) is_beyond = turn(way, glm::dvec2(b[k].at) - p) >= 0;
     if (is_beyond) return true;
   }
@@ -102,7 +102,7 @@ OutlineClipper::Place OutlineClipper::split(const Line& line) {
   return Place::both;
 }
 
-/// \returns true where the part is to go; what is left of it was added.
+/// \returns true if the part is to be removed; its remaining parts were added.
 bool OutlineClipper::subtract_from(std::size_t part, Outline cover, bool may_split) {
   const Outline outline = (*this)[part];
   lines_.clear();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Convex outlines on the screen, and what is left of them beside others.
+// Convex outlines on the screen, and clipping of one by others.
 //
-// Places are doubles in pixels and depths are affine over the screen, so that a corner that a cut makes has the mean of
-// the depths beside it. Nothing here is exact: pieces were cut exactly before, and what is drawn is looked at in
-// pixels. Every comparison therefore has a slack of a thousandth of a pixel (OutlineClipper::thin), always to the side
-// on which a polygon stays visible.
+// Places are doubles in pixels. Depths are affine over the screen, so a corner made by a cut has the mean of the depths
+// beside it. Nothing here is exact: pieces were cut exactly before, and the result is only looked at in pixels. So
+// every comparison has a slack of a thousandth of a pixel (OutlineClipper::thin), always to the side on which a polygon
+// stays visible.
 #pragma once
 
 #include <span>
@@ -25,14 +25,14 @@ struct Cover {
 /// Pixels: shorter sides have no direction.
 inline constexpr double shortest_side = 1e-9;
 
-/// Positive where `at` lies on the left of `way` in a plane whose y goes up; twice the area of their triangle.
+/// Positive if `at` lies to the left of `way` in a plane whose y goes up; twice the area of their triangle.
 [[nodiscard]] inline double turn(const glm::dvec2& way, const glm::dvec2& at) { return way.x * at.y - way.y * at.x; }
 
-/// Whether an outline is not wider than `width` anywhere, by its area and border.
+/// Whether an outline is nowhere wider than `width`, judged by its area and perimeter.
 [[nodiscard]] bool is_narrow(Outline outline, double width);
 
-/// Whether an outline is too narrow for its sides to say what is within it: all the screen may be on their inner side.
-/// Cuts leave such pieces, and models have triangles of that size. They hide nothing.
+/// Whether an outline is too narrow for its sides to bound its inside: all the screen may be on their inner side. Cuts
+/// leave such pieces, and models have triangles of that size. They hide nothing.
 [[nodiscard]] inline bool is_flat(Outline outline) { return outline.empty() || is_narrow(outline, shortest_side); }
 
 /// Whether a point is within an outline, or up to `beside` pixels beside it.
@@ -45,7 +45,7 @@ inline constexpr double shortest_side = 1e-9;
   return true;
 }
 
-/// Outlines one after another in one piece of memory.
+/// Outlines one after another in one block of memory.
 class OutlineList {
  public:
   [[nodiscard]] std::size_t count() const { return ends_.size(); }
@@ -67,27 +67,27 @@ class OutlineList {
   std::vector<std::size_t> ends_;
 };
 
-/// Takes convex outlines apart: counter-clockwise as they are seen, z affine over the screen. Covers must not be flat.
-/// Not for several threads at once.
+/// Clips convex outlines: counter-clockwise to the eye, z affine over the screen. Covers must not be flat. Not for
+/// several threads at once.
 class OutlineClipper {
  public:
-  /// Pixels: what is thinner is not there.
+  /// Pixels: thinner parts are dropped.
   static constexpr double thin = 1.0 / 1024;
-  /// When so many parts are left, none should be split any more: those go that are hidden whole.
+  /// From this many parts on, parts should not be split any more: only wholly hidden parts are removed.
   static constexpr std::size_t most_parts = 48;
   /// Steps that a Poll counts for each part from which a cover is subtracted.
   static constexpr std::size_t steps_of_part = 4;
 
   void begin(Outline outline);
-  /// Leaves what is not within `cover`. Without `may_split` only parts that lie within it as they are go.
-  /// \returns true when nothing is left.
+  /// Removes everything within `cover`. Without `may_split` it only removes parts that lie wholly within it. \returns
+  /// true if nothing is left.
   bool subtract(const Cover& cover, bool may_split = true);
-  /// Leaves what is within a box.
+  /// Removes everything outside a box.
   void keep_within(const glm::dvec2& low, const glm::dvec2& high);
 
   [[nodiscard]] std::size_t count() const { return parts_.size(); }
   [[nodiscard]] Outline operator[](std::size_t i) const { return {corners_.data() + parts_[i].first, parts_[i].count}; }
-  /// Something was taken away since begin() or forget_changes().
+  /// Whether something was removed since begin() or forget_changes().
   void forget_changes() { is_changed_ = false; }
   [[nodiscard]] bool is_changed() const { return is_changed_; }
 
@@ -96,22 +96,22 @@ class OutlineClipper {
     std::size_t first, count;
     glm::dvec2 low, high;
   };
-  /// The line of a side, of unit length; positive is outside.
+  /// The line of a side, with a direction of unit length; positive is outside.
   struct Line {
     glm::dvec2 from, along;
   };
   enum class Place : std::uint8_t { inside, outside, both };
 
-  /// Where `outline` is beside the line from p to q. Sets `line` for both.
+  /// The place of `outline` relative to the line from p to q. Sets `line` if the result is `both`.
   static Place place(Outline outline, const glm::dvec2& p, const glm::dvec2& q, Line& line);
   /// Whether a side of `a` has all of `b` on its outer side.
   static bool parts(Outline a, Outline b);
   void add(Outline outline);
   bool subtract_from(std::size_t part, Outline cover, bool may_split);
-  /// Leaves in inside_ what is on that side of a line and puts the rest into outside_. \returns where inside_ was.
+  /// Leaves the inner part of inside_ relative to a line, and puts the rest into outside_. \returns where inside_ was.
   Place split(const Line& line);
 
-  std::vector<PaintCorner> corners_;  ///< of all parts since begin(), also of those that are gone
+  std::vector<PaintCorner> corners_;  ///< of all parts since begin(), including removed ones
   std::vector<Part> parts_;
   std::vector<PaintCorner> rest_, inside_, outside_;
   std::vector<double> distances_;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polygons come from three sources: an order, a list of pieces, or outlines alone. Each source says how to get the box,
-// the description and the corners of the polygon at a place; all else is the same. Slots are dealt out by counting how
-// many polygons begin in each cell of the grid.
+// Polygons come from three sources: an order, a list of pieces, or outlines alone. Each source provides the box, the
+// description and the corners of the polygon at a place; everything else is the same. Slots are assigned by counting
+// how many polygons begin in each cell of the grid.
 //
 //    place in the order   0   1   2   3   4        painted in this order
 //    first cell           7   2   7   0   2
 //    slot                 3   1   4   0   2        by cell, then by place
 //
-// A polygon that reaches millions of pixels beyond the picture, next to the eye's plane, is cut there first: so far
-// away doubles have no digits left for places in the picture.
+// A polygon that reaches millions of pixels beyond the picture, next to the eye's plane, is cut there first: doubles so
+// far away have no digits left for places in the picture.
 #include "painter/seen/screen_polygons.h"
 
 namespace frontmost::painter_detail {
@@ -31,13 +31,13 @@ PolygonExtent extent_within(const glm::vec2& size, std::span<const Corner> corne
   return extent;
 }
 
-/// Pixels beyond the picture. Sides that reach farther, as they may next to the eye's plane, are cut there: to doubles
-/// so far away a place in the picture is known to 1e-9 pixel.
+/// Pixels beyond the picture. Sides next to the eye's plane may reach farther, and are cut there: at this distance
+/// doubles still give a place in the picture to 1e-9 pixel.
 constexpr double kReach = 1 << 22;
 
-/// What of a convex outline is on the lower side of a line along an axis, or on the upper one. Cut from the nearer end
-/// of a side: one at 1e17 pixels has no digits for a place near the picture. Where both are so far away neither has,
-/// but the cut is on the line, so that nothing is beyond it.
+/// The part of a convex outline on the lower, or the upper, side of a line along an axis. The cut is computed from the
+/// nearer end of a side, as an end at 1e17 pixels has no digits for a place near the picture. If both ends are so far
+/// away, neither has digits, but the cut is on the line, so nothing lies beyond it.
 std::vector<PaintCorner> cut_along_axis(Outline outline, int axis, double border, bool is_lower) {
   std::vector<PaintCorner> left;
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -55,7 +55,7 @@ std::vector<PaintCorner> cut_along_axis(Outline outline, int axis, double border
   return left;
 }
 
-/// The slots of places, by counting how many begin in each cell.
+/// Slots of places, found by counting how many polygons begin in each cell.
 std::vector<std::uint32_t> slots_of(const std::vector<PolygonExtent>& extents, const PieceGrid& grid) {
   std::vector<std::uint32_t> slots;
   slots.reserve(extents.size());
@@ -72,8 +72,8 @@ std::vector<std::uint32_t> slots_of(const std::vector<PolygonExtent>& extents, c
 
 }  // namespace
 
-/// Takes polygons by their places: `extents` are the boxes around them, describe(place) tells of one what a Description
-/// holds, and copy(place, corners) sets its corners.
+/// Takes polygons by their places: `extents` are their boxes, describe(place) returns a Description, and copy(place,
+/// corners) sets the corners.
 template <class Describe, class Copy>
 void ScreenPolygons::take(const std::vector<PolygonExtent>& extents, const Describe& describe, const Copy& copy) {
   slots_ = Buffer<Slot>(extents.size());
@@ -177,7 +177,7 @@ void ScreenPolygons::cut_at_reach(const std::vector<std::size_t>& far_slots) {
       part = cut_along_axis(part, axis, -kReach, false);
       part = cut_along_axis(part, axis, size_[axis] + kReach, true);
     }
-    // Nothing of it is nearer: then a point of the border stands for it.
+    // No part of it is nearer: a point of the border stands for it.
     if (part.size() < 3) {
       part.assign(3, outline(slot)[0]);
       for (PaintCorner& corner : part)

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polygons as they lie on the screen: what every question of this folder is asked about. The folder tells what hides
-// what.
+// Polygons on the screen, the input of all functions of this folder. They find which polygons hide which.
 //
-//   place in the order     1 ____________        An occluder is a polygon that nothing is seen through. It hides what
-//   of painting              |   2 ______|___    lies under it and is painted earlier.
+//   place in the order     1 ____________        An occluder is a polygon that nothing is seen through. It hides
+//   of painting              |   2 ______|___    earlier polygons under it.
 //                            |    |      |   |
-//                            |    |   3 _|___|_  - clip: what is seen of 1 is 1 without the union of the occluders 2
-//                            |    |    | |   | |   and 3 (occlusion_clipper.h, by outlines.h)
-//                            |____|____|_|   | | - union of occluders: 2 and 3 may hide a polygon together that none
+//                            |    |   3 _|___|_  - clip: the visible part of 1 is 1 without the union of the occluders
+//                            |    |    | |   | |   2 and 3 (occlusion_clipper.h, by outlines.h)
+//                            |____|____|_|   | | - union of occluders: 2 and 3 may together hide a polygon that neither
 //                                 |____|_____| |   of them hides alone (occluder_union.h)
 //                                      |_______| - adjacency: polygons of a mesh share sides, so a union is followed
-//                                                  from side to side (adjacency.h), and where no side without a
-//                                                  neighbour crosses, nothing begins or ends (unoverlapped.h)
+//                                                  from side to side (adjacency.h). If no side without a neighbour
+//                                                  crosses, nothing begins or ends (unoverlapped.h)
 //
 //   visible_parts.cpp   clips every polygon of an order by the later ones
-//   hidden.cpp          leaves out what is hidden before there is an order, by plane tests for which of two is before
+//   hidden.cpp          leaves out hidden polygons before there is an order; plane tests tell which of two is before
 #pragma once
 
 #include "painter/order/piece_grid.h"
@@ -22,13 +21,13 @@
 
 namespace frontmost::painter_detail {
 
-/// Depths of corners, so that what lies between them on the screen has the mean of them. In perspective depths are not
-/// affine over the screen, their reciprocals are. Its own inverse.
+/// A depth that is affine over the screen: points between two corners on the screen have the mean of their depths. In
+/// perspective depths are not affine, but their reciprocals are. The function is its own inverse.
 [[nodiscard]] inline double affine_depth(const View& view, double depth) {
   return view.projection.orthographic ? depth : 1 / depth;
 }
 
-/// On the screen alone.
+/// The box on the screen; depths are 0.
 [[nodiscard]] inline PolygonExtent box_of(Outline outline) {
   PolygonExtent box{glm::vec2(outline[0].at), glm::vec2(outline[0].at), 0, 0};
   for (const PaintCorner& corner : outline) {
@@ -38,23 +37,23 @@ namespace frontmost::painter_detail {
   return box;
 }
 
-/// A polygon that is told by its outline alone: convex, and counter-clockwise as it is seen.
+/// A polygon given by its outline alone: convex, and counter-clockwise to the eye.
 struct ScreenPolygon {
-  std::span<const glm::dvec2> corners;  ///< pixels, at most some thousand beyond the picture
+  std::span<const glm::dvec2> corners;  ///< pixels; at most a few thousand beyond the picture
   std::uint32_t group = 0;              ///< consecutive polygons of one group look the same
   bool is_occluder = true;              ///< nothing is seen through it
 };
 
-/// All polygons of an order on the screen, with depths affine. A polygon has a place in the order of painting. It is
-/// kept in a slot, and slots are in the order of the grid's cells: what is near on the screen is near in memory,
-/// because a polygon is always read together with its neighbours.
+/// All polygons of an order on the screen, with affine depths. A polygon has a place in the order of painting, and is
+/// stored in a slot. Slots are in the order of the grid's cells, so polygons that are near on the screen are near in
+/// memory: a polygon is always read together with its neighbours.
 class ScreenPolygons {
  public:
   ScreenPolygons(const PaintOrder& order, const Occluders& occluders);
-  /// Of pieces in the order in which they are listed.
+  /// Polygons of pieces, in the order of `members`.
   ScreenPolygons(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view,
                  const Occluders& occluders);
-  /// Without depths.
+  /// Polygons without depths.
   ScreenPolygons(std::span<const ScreenPolygon> polygons, const View& view);
 
   [[nodiscard]] std::size_t count() const { return slots_.size(); }
@@ -64,16 +63,16 @@ class ScreenPolygons {
   [[nodiscard]] Outline outline(std::size_t slot) const {
     return {corners_.data() + slots_[slot].first_corner, slots_[slot].corner_count};
   }
-  /// All outlines one after another, in the order of the slots, and where in there that of a slot begins.
+  /// All outlines one after another in the order of slots; first_corner(slot) is where a slot's outline begins.
   [[nodiscard]] Outline corners() const { return {corners_.data(), corners_.size()}; }
   [[nodiscard]] std::size_t first_corner(std::size_t slot) const { return slots_[slot].first_corner; }
   /// The first of the consecutive places of the same primitive, or of the same group.
   [[nodiscard]] std::uint32_t first_place(std::size_t slot) const { return slots_[slot].first_place; }
   [[nodiscard]] const PolygonExtent& extent(std::size_t slot) const { return slots_[slot].extent; }
-  /// Hides what is behind it, and has an area.
+  /// Whether the polygon hides polygons behind it, and has an area.
   [[nodiscard]] bool is_occluder(std::size_t slot) const { return slots_[slot].hides; }
   [[nodiscard]] const PieceGrid& grid() const { return grid_; }
-  /// The slots of what touches a cell of the grid, in the order of their places.
+  /// The slots of polygons that touch a cell of the grid, in the order of their places.
   [[nodiscard]] std::span<const std::uint32_t> cell(int x, int y) const { return grid_.cell(grid_.number(x, y)); }
   [[nodiscard]] std::span<const std::uint32_t> cell_at(const glm::dvec2& at) const {
     const PieceGrid::Range cells = grid_.range({glm::vec2(at), glm::vec2(at), 0, 0});
@@ -88,12 +87,12 @@ class ScreenPolygons {
     std::uint32_t place, first_place, corner_count;
     bool hides;
   };
-  /// For the corners of all slots.
+  /// Makes room for the corners of all slots.
   void make_room();
   [[nodiscard]] bool is_within_reach(Outline outline) const;
-  /// Cuts outlines where they are too far from the picture for their sides to have a place in it.
+  /// Cuts outlines that reach so far beyond the picture that doubles lose places in it.
   void cut_at_reach(const std::vector<std::size_t>& far_slots);
-  /// What is told of a polygon beside its corners. Consecutive ones of one group belong together.
+  /// A polygon's data beside its corners. Consecutive polygons of one group belong together.
   struct Description {
     std::uint32_t group, corner_count;
     bool is_occluder;

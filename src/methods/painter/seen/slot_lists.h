@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists of what is made of each polygon on the screen: made slot by slot, in several threads, and put together in the
-// order of painting.
+// Lists of results for each polygon on the screen: computed slot by slot, by several threads, and joined in the order
+// of painting.
 //
-// Threads take slots, because neighbours on the screen share what they read. What they make is wanted in the order of
-// painting, so each list remembers where the results of every slot end, and the lists are read by place afterwards. The
+// Threads take slots, because neighbours on the screen share the data that they read. Results are needed in the order
+// of painting, so each list remembers where the results of every slot end, and the lists are then read by place. The
 // result does not depend on which thread made which list.
 #pragma once
 
@@ -19,10 +19,11 @@ namespace frontmost::painter_detail {
 
 inline constexpr std::size_t slots_per_list = 1024;
 
-/// Calls add(worker, slot, list) for every slot, which adds what is made of one polygon to a List; each thread has a
-/// worker of its own, made by new_worker(). \returns the list of all, by place. `name` is that of the progress.
+/// Calls add(worker, slot, list) for every slot, which adds the results of one polygon to a List. Each thread has a
+/// worker of its own, made by new_worker(). \returns the joined list, by place. `name` names the progress.
 ///
-/// A List has add_polygon(other, i), which adds what the list `other` has of its i-th polygon, and reserve(lists).
+/// A List has add_polygon(other, i), which adds the results of the list `other` for its i-th polygon, and
+/// reserve(lists).
 template <class List, class NewWorker, class Add>
 List list_by_place(const ScreenPolygons& screen, const Execution& execution, const char* name,
                    const NewWorker& new_worker, const Add& add) {
@@ -44,7 +45,7 @@ List list_by_place(const ScreenPolygons& screen, const Execution& execution, con
   return all;
 }
 
-/// Room for all that lists have in one of their vectors.
+/// Reserves room for the sum of one vector of all lists.
 template <class T, class List>
 void reserve_sum(std::vector<T>& all, const std::vector<List>& lists, std::vector<T> List::*member) {
   std::size_t sum = 0;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The number of polygons over a point of the screen changes only at open sides, those without an adjacent polygon: at
-// all others one polygon ends where the next begins. Meshes have few open sides. So the number is the same all over a
-// polygon that no open side crosses, and all over those across its sides where no open side lies. Where the number is
-// 1, the polygon itself is all that there is.
+// The number of polygons over a point of the screen changes only at open sides, which have no adjacent polygon: at all
+// others one polygon ends where the next begins. Meshes have few open sides. So the number is constant over a polygon
+// that no open side crosses, and over its neighbours across sides on which no open side lies. If the number is 1,
+// nothing overlaps these polygons.
 //
 //       ____________
-//      /  /  /  /  /     Of a sheet over the background only the rim has open sides. All polygons that no open side
+//      /  /  /  /  /     A sheet over the background has open sides only at its rim. All polygons that no open side
 //     /__/__/__/__/      crosses have the same number of polygons over them, and hand it on across their sides: one
-//    /  /  /  /  /       look at the middle of one of them tells it for all. Nothing is handed on across a side on
-//   /__/__/__/__/        whose middle an open side lies.
+//    /  /  /  /  /       look at the middle of one of them tells it for all. Nothing is handed on across a side if an
+//   /__/__/__/__/        open side lies on its middle.
 #include <algorithm>
 
 #include "painter/limits.h"
@@ -17,14 +17,14 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// With more open sides in all of them it would take longer than it spares.
+/// If a greater share of sides is open, the search takes longer than it saves.
 constexpr double kMostOpen = 0.3;
 
-/// How a way from a to b lies beside an outline.
+/// The place of a way from a to b relative to an outline.
 enum class Beside : std::uint8_t { apart, touching, crossing };
 
-/// By lines along the sides and the way: apart where one keeps them more than OutlineClipper::thin away from each
-/// other.
+/// Separates by lines along the sides and the way: apart if one line keeps them more than OutlineClipper::thin away
+/// from each other.
 Beside beside(Outline outline, const glm::dvec2& a, const glm::dvec2& b) {
   const glm::dvec2 across = b - a;
   double least = std::numeric_limits<double>::infinity(), greatest = -least;
@@ -87,7 +87,7 @@ class Finder {
 
   [[nodiscard]] bool is_there(std::size_t slot) const { return gone_.empty() || !gone_[slot]; }
 
-  /// \returns false where there are too many.
+  /// \returns false if there are too many.
   bool find_open_sides() {
     std::size_t sides = 0;
     for (std::size_t slot = 0; slot < screen_.count(); ++slot) {
@@ -105,7 +105,7 @@ class Finder {
     return double(open_.size()) <= kMostOpen * double(sides);
   }
 
-  /// What lies beyond is not in the cells that it would be looked for in.
+  /// Whether the polygon lies in the picture: the grid's cells do not list open sides beyond.
   [[nodiscard]] bool is_in_picture(std::size_t slot) const {
     const Outline outline = screen_.outline(slot);
     return std::all_of(outline.begin(), outline.end(), [&](const PaintCorner& corner) {
@@ -127,7 +127,7 @@ class Finder {
     }
   }
 
-  /// From where to where in x the side is between two y; and a little more.
+  /// The range in x of a side between two values of y, slightly widened.
   struct Interval {
     double low, high;
   };
@@ -157,7 +157,7 @@ class Finder {
     }
   }
 
-  /// Nothing is known across the sides on whose middle an open side lies.
+  /// Blocks the sides on whose middle an open side lies: nothing is known across them.
   void block(std::uint32_t slot, const OpenSide& side) {
     const Outline outline = screen_.outline(slot);
     for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -175,7 +175,7 @@ class Finder {
       poll_.count();
       if (other == slot || !is_there(other) || beside(screen_.outline(other), middle, middle) == Beside::apart)
         continue;
-      // A neighbour that is only near tells nothing: the polygon is narrow here.
+      // A neighbour that is only near proves nothing: the polygon is narrow here.
       if (is_within(screen_.outline(other), middle, 0)) return spread(slot, State::shared);
       is_alone = false;
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every polygon is clipped by itself, by the union of the occluders after it.
+// Clips every polygon by itself, by the union of the occluders after it.
 //
 // Polygons that overlap nothing are found together, across the sides that they share, and need no clipper. In a scan or
-// a terrain these are most.
+// a terrain these are most of the polygons.
 #include "base/parallel.h"
 #include "painter/seen/adjacency.h"
 #include "painter/seen/occlusion_clipper.h"
@@ -18,7 +18,7 @@ using namespace painter_detail;
 struct PartList {
   std::vector<PaintPolygon> polygons;
   std::vector<PaintCorner> corners;
-  std::vector<std::size_t> ends;  ///< by polygon: of its parts
+  std::vector<std::size_t> ends;  ///< by polygon: end of its parts
 
   void add(PrimitiveId id, Outline outline, const View& view) {
     polygons.push_back({id, std::uint32_t(outline.size()), corners.size()});

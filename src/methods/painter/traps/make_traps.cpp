@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is not hidden of the strip beside a side is found by clipping, and the trap ends below that. Most sides of
-// polygons that are painted late have no occluder next to them, and that is told without any clipping.
+// Clipping finds the open parts of the strip beside a side, and the trap ends below them. Most sides of polygons that
+// are painted late have no occluder next to them, which is found without any clipping.
 //
-// Around a corner in the middle of what is seen viewers blend all that meet there, and each takes its share of what is
-// below. Only what covers all of the pixel leaves nothing of that. So the first that is painted goes around the corner:
-// the traps of its two sides end at the same place.
+// Around a corner in the middle of visible polygons, viewers blend all polygons that meet there, and the background
+// keeps a share. Only a polygon that covers the whole pixel hides the background. So the polygon that is painted first
+// goes around the corner: the traps of its two sides end at the same point.
 #include <algorithm>
 #include <array>
 
@@ -15,13 +15,13 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// Parts of the width to which a trap goes around a corner where it does not with all of it.
+/// Shares of its width by which a trap goes around a corner; the first that fits is taken.
 constexpr std::array kAround{1.0, 0.5, 0.25, 0.125};
-/// Pixels by which what is hidden has to be wider than a trap: rims that lie on each other grow bold.
+/// Pixels by which the hidden strip must be wider than a trap: rims that lie on each other grow bold.
 constexpr double kBeyondTrap = 1;
-/// Widths of traps that a part of a side is long, of the longest which are in so many.
+/// Length of a part of a side, in widths of its trap, and the most parts of a side.
 constexpr double kStrip = 8, kMostStrips = 256;
-/// How far from a polygon a trap of unit width may be.
+/// The farthest that a trap of unit width may be from its polygon.
 constexpr double kFarthest = 1.5;
 
 /// A side of an outline, from its corner on, and the upper rim of its trap.
@@ -58,7 +58,7 @@ class TrapMaker {
   void set_sides() {
     sides_.resize(std::max(sides_.size(), outline_.size()));
     around_.resize(outline_.size());
-    // Sides without a length have the way of the one before.
+    // Sides without a length take the direction of the side before.
     for (std::size_t turn = 0, i = 0; turn < 2 * outline_.size(); ++turn, i = next(i)) {
       const glm::dvec2 way = corner(next(i)) - corner(i);
       sides_[i].length = glm::length(way);
@@ -72,7 +72,7 @@ class TrapMaker {
     side.knots.clear();
     const glm::dvec2 from = corner(number), to = corner(next(number)),
                      out = outwards(side.along) * (width_ + kBeyondTrap);
-    // Few others are beside a part of a side.
+    // Few other polygons are beside a part of a side.
     const int parts = int(std::clamp(side.length / (kStrip * width_), 1.0, kMostStrips));
     if (side.length < OutlineClipper::thin || nearby_.are_open_beside(number)) return;
     if (parts == 1 && !nearby_.hide_beside(from, to)) return;
@@ -86,7 +86,7 @@ class TrapMaker {
     if (!std::all_of(knots.begin(), knots.end(), is_low)) side.knots = knots;
   }
 
-  /// How far the traps of both its sides go around a corner; 0: not at all.
+  /// How far the traps of both sides of a corner go around it; 0: not at all.
   [[nodiscard]] double reach_around(std::size_t number) {
     const TrappedSide &to = sides_[before(number)], &from = sides_[number];
     if (to.knots.empty() || from.knots.empty()) return 0;
@@ -138,7 +138,7 @@ class TrapMaker {
   TrapProfile profile_;
   Outline outline_;
   std::vector<TrappedSide> sides_;
-  std::vector<double> around_;  ///< by corner: how far traps go around it
+  std::vector<double> around_;  ///< by corner: reach of traps around it
   std::vector<glm::dvec2> beside_;
   std::vector<PaintCorner> asked_;
 };

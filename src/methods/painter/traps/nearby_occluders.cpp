@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Occluders around a polygon are listed once, from the cells that its box touches, and each question then goes through
-// the list. A polygon that covers a large part of the grid would list most of the picture; its questions each make a
-// list of their own, for the small box that they are about.
+// Occluders around a polygon are listed once, from the cells that its box touches; each question then searches the
+// list. A polygon that covers a large part of the grid would list most of the picture. So each of its questions makes a
+// list of its own, for the small box in question.
 //
-// The nearest in the order come first, and at most 4,096 of them are taken in a cell: in a stack of planes thousands
-// lie under each other, and a trap that is not hidden by the first thousands is not made.
+// The nearest in the order come first, and at most 4,096 of them are taken from a cell: in a stack of planes thousands
+// lie under each other. A trap that the first 4,096 do not hide is not made.
 #include "painter/traps/nearby_occluders.h"
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// A polygon in more cells of the grid may have thousands around it: each outline then has a list of its own.
+/// A polygon in more cells of the grid may have thousands of others around it: each outline then has a list of its own.
 constexpr int kMostCells = 64;
-/// So many of those after a polygon, from the front, may hide what is beside it in a cell: a stack of n planes would
-/// take n * n.
+/// At most so many later polygons, from the front, may hide the surroundings of a polygon in a cell: a stack of n
+/// planes would take n * n steps.
 constexpr std::size_t kMostHiders = 4096;
 
 template <class A, class B>
@@ -23,7 +23,7 @@ bool is_apart(const A& a, const B& b) {
   return a.low.x >= b.high.x || b.low.x >= a.high.x || a.low.y >= b.high.y || b.low.y >= a.high.y;
 }
 
-/// Whether an outline has places next to the outer side of a way, OutlineClipper::thin away from it and more.
+/// Whether an outline has points next to the outer side of a way, at least OutlineClipper::thin away from it.
 bool is_beside(Outline outline, const glm::dvec2& from, const glm::dvec2& way) {
   const double length = glm::length(way), thin = OutlineClipper::thin * length;
   double near = std::numeric_limits<double>::infinity(), far = -near, first = near, last = -near;
@@ -89,7 +89,7 @@ bool NearbyOccluders::are_open_beside(std::size_t side) const {
   const std::uint32_t across = adjacency_.across(screen_.first_corner(slot_) + side);
   if (across == no_index) return false;
   const bool may_hide = screen_.place(across) >= screen_.first_place(slot_) && screen_.is_occluder(across);
-  // Beyond one without an area others begin.
+  // Other polygons begin beyond a polygon without an area.
   return across == slot_ || (!may_hide && !is_flat(screen_.outline(across)));
 }
 

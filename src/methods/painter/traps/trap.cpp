@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traps as corners of an outline. Everything is measured along a side and across it:
+// Traps as corners of an outline. Places are measured along a side and across it:
 //
 //    along 0                              along = length of the side
 //       |      .____________.                |        Between two corners the outline follows the knots. A strip
@@ -7,8 +7,8 @@
 //    ===+===================================+===      strip of the next side, and the corner itself is left out.
 //     from                                   to
 //
-// Where neighbours have been merged, only a part of a side may be left. Its strip is written whole and then cut at the
-// ends of that part, across the side.
+// After neighbours are merged, only a part of a side may be left. Its strip is written whole and then cut at the ends
+// of that part, across the side.
 #include "painter/traps/trap.h"
 
 #include <algorithm>
@@ -19,16 +19,16 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// How far a strip begins from a corner that it does not go around: in its height, and at most in the way to where that
-/// changes.
+/// Distance at which a strip begins from a corner that it does not go around: relative to its height, but at most this
+/// share of the way to the next knot.
 constexpr double kInset = 0.5, kMostInset = 0.45;
 
-/// Pixels by which a part of a side may end before the whole, of which it is all then: both may have been rounded.
+/// Pixels. A part of a side that ends this close to the end of the whole side ends there: both may have been rounded.
 constexpr double kAtEnd = 1.0 / 1024;
 
 bool is_at(const glm::dvec2& a, const glm::dvec2& b) { return glm::length(a - b) <= kAtEnd; }
 
-/// What ends at a corner ends before it: there its rim would run along what is open around the corner.
+/// A strip that ends at a corner ends before it: otherwise its rim would run along open places around the corner.
 TrapKnot inset(const TrapKnot& end, const TrapKnot& beside) {
   const double way = beside.along - end.along, part = std::min(kInset * end.height / std::abs(way), kMostInset);
   return {end.along + part * way, end.height + part * (beside.height - end.height)};
@@ -45,7 +45,7 @@ void write_whole(const TrapList& list, const Trap& trap, std::vector<glm::dvec2>
   for (std::size_t i = 0; i < knots.size(); ++i) {
     const bool is_first = i == 0, is_last = i + 1 == knots.size(), is_end = is_first || is_last;
     const double reach = is_first ? trap.at_from.reach : is_last ? trap.at_to.reach : 0;
-    // It lies on the side, or on the way around the corner.
+    // The knot lies on the side, or on the way around the corner.
     if (is_end && (knots[i].height < least_trap_height || knots[i].height == reach)) continue;
     const TrapKnot knot = is_end && reach == 0 ? inset(knots[i], knots[is_first ? 1 : i - 1]) : knots[i];
     corners.push_back(trap.from + along * knot.along + out * knot.height);
@@ -57,8 +57,8 @@ void write_whole(const TrapList& list, const Trap& trap, std::vector<glm::dvec2>
   }
 }
 
-/// Takes away the first corners from number `first` on, those that lie before a line across the side through `at`, and
-/// puts there where the strip, which begins at `end`, comes over that line.
+/// Removes the corners from number `first` on that lie before a line across the side through `at`, and adds the point
+/// where the strip, which begins at `end`, crosses that line.
 void cut_beginning(std::vector<glm::dvec2>& corners, std::size_t first, const glm::dvec2& at, const glm::dvec2& along,
                    const glm::dvec2& end) {
   const auto beyond = [&](const glm::dvec2& p) { return glm::dot(p - at, along); };
@@ -72,7 +72,7 @@ void cut_beginning(std::vector<glm::dvec2>& corners, std::size_t first, const gl
   corners.insert(corners.begin() + std::ptrdiff_t(first), crossing);
 }
 
-/// The corners of a strip that follow `from` on the way to `to`, a part of its side.
+/// Writes the corners of a strip that follow `from` on the way to `to`, a part of its side.
 void write_trap(const TrapList& list, const Trap& trap, const glm::dvec2& from, const glm::dvec2& to,
                 std::vector<glm::dvec2>& corners) {
   const std::size_t first = corners.size();
@@ -86,8 +86,8 @@ void write_trap(const TrapList& list, const Trap& trap, const glm::dvec2& from, 
   turn_around();
 }
 
-/// Whether the strips of two sides that follow each other go around the corner between them, from the end of the first
-/// to the beginning of the second, which are at the same place.
+/// Whether the strips of two consecutive sides go around the corner between them: the end of the first coincides with
+/// the beginning of the second.
 bool go_around(const Trap& first, const Trap& second, const glm::dvec2& corner) {
   return second.at_from.reach > 0 && first.polygon == second.polygon && is_at(corner, second.from);
 }
@@ -113,7 +113,7 @@ void TrapList::add_polygon(const TrapList& other, std::size_t polygon) {
 glm::dvec2 TrapCorner::meeting_point(double width) const {
   const double turned = glm::dot(to, from);
   if (turned >= 0) return (outwards(to) + outwards(from)) * (width / (1 + turned));
-  const double cotangent = std::sqrt(std::max(1 + turned, 0.0) / (1 - turned));  // of half of what it turns by
+  const double cotangent = std::sqrt(std::max(1 + turned, 0.0) / (1 - turned));  // of half the turning angle
   return (to - from) * (0.5 * width * (1 + cotangent));
 }
 
@@ -126,7 +126,7 @@ void TrapList::set_corners(std::size_t polygon, std::span<const glm::dvec2> outl
 }
 
 void write_outline(const TrapList& list, std::span<const TrappedCorner> outline, std::vector<glm::dvec2>& corners) {
-  const Trap* before = nullptr;  // the one that ends at the corner
+  const Trap* before = nullptr;  // the trap that ends at the corner
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const glm::dvec2 &from = outline[i].at, &to = outline[i + 1 == outline.size() ? 0 : i + 1].at;
     const Trap* const trap = outline[i].trap == no_trap ? nullptr : &list.traps[outline[i].trap];
@@ -134,7 +134,7 @@ void write_outline(const TrapList& list, std::span<const TrappedCorner> outline,
     const std::size_t end = corners.size();
     if (trap) write_trap(list, *trap, from, to, corners);
     const bool is_written = corners.size() > end;
-    // The corner is within both strips.
+    // The corner lies within both strips.
     if (is_written && before && go_around(*before, *trap, from))
       corners.erase(corners.begin() + std::ptrdiff_t(end) - 1, corners.begin() + std::ptrdiff_t(end) + 1);
     before = is_written ? trap : nullptr;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The height of a trap is found at the few places where it can change: at the corners of what is open, and where lines
-// of the steepest slope from these reach the full height. Between such places the highest trap is never lower than the
-// line from one to the next, so the knots there suffice. Knots that gain little area are then left out, because every
-// knot is two numbers in the file.
+// The height of a trap is computed at the few places where it can change: at the corners of open parts, and where lines
+// of the steepest slope from these corners reach the full height. Between such places the highest trap is never lower
+// than the straight line, so knots there suffice. Knots that gain little area are then left out, because every knot is
+// two numbers in the file.
 #include "painter/traps/trap_profile.h"
 
 #include <algorithm>
@@ -11,11 +11,11 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// Heights change by so much for every pixel along a side.
+/// Heights change by at most this much for every pixel along a side.
 constexpr double kSteepest = 1;
-/// Pixels that a trap ends before what is open above it, or that part of the way to it.
+/// A trap ends this many pixels before open parts above it, or this share of the way to them.
 constexpr double kProfileMargin = 1, kProfileMarginPart = 0.6;
-/// Of the square of the greatest height: the area that a corner must be worth.
+/// The least area that a knot must gain, relative to the square of the greatest height.
 constexpr double kLeastGain = 1.0 / 16;
 
 }  // namespace
@@ -46,7 +46,7 @@ const std::vector<TrapKnot>& TrapProfile::fit(double length, double most) {
   return knots_;
 }
 
-/// Between places the height is nowhere below the line from one to the next.
+/// Places knots. Between places the height is nowhere below the straight line.
 void TrapProfile::place_knots(double length, double most) {
   places_.assign({0, length});
   const auto add = [&](double along) {
@@ -80,7 +80,7 @@ double TrapProfile::height_at(double along, double most) const {
   return std::max(least, 0.0);
 }
 
-/// Knots that gain the least go first, as long as the line past them is nowhere higher.
+/// Leaves out knots, the one of the least gain first, as long as the line past a knot is nowhere higher.
 void TrapProfile::leave_out(double least_gain) {
   while (knots_.size() > 2) {
     std::size_t best = 0;

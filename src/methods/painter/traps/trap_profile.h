@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How high a trap may be along a side, where occluders hide only a part of what is beside it.
+// The height of a trap along a side whose surroundings are only partly hidden.
 //
-//    most  ________            __________________       Above the side some parts are open (o): there a trap
-//                  \          /                         would be seen. The trap stays below them, by a pixel or
+//    most  ________            __________________       Above the side some parts are open (o): a trap would be
+//                  \          /                         visible there. The trap stays below them, by a pixel or
 //             ooo   \________/    oo                    six tenths of the way, and rises and falls by at most
 //            ooooo   knot  knot   oooo                  one pixel for every pixel along the side, so that its
 //    ==========================================         rim never runs along an outline.
@@ -16,15 +16,15 @@
 
 namespace frontmost::painter_detail {
 
-/// Heights above a side, on straight lines between knots. Not for several threads at once.
+/// Heights above a side, linear between knots. Not for several threads at once.
 class TrapProfile {
  public:
-  /// For a side from a place on, whose way has unit length.
+  /// Begins a side at `from` with the direction `way`, of unit length.
   void begin(const glm::dvec2& from, const glm::dvec2& way);
-  /// Parts of what is beside it that are not hidden.
+  /// Adds parts beside the side that are not hidden.
   void add_open(const OutlineClipper& open);
-  /// As high as is hidden, `most` at most; less towards what is open, and some way from it, so that no rim of a
-  /// trap runs along an outline: viewers would blend both, and it would grow bold.
+  /// The hidden height, at most `most`, reduced towards open parts and some way from them. So no rim of a trap runs
+  /// along an outline: viewers would blend both, and the outline would grow bold.
   [[nodiscard]] const std::vector<TrapKnot>& fit(double length, double most);
 
  private:
@@ -36,7 +36,7 @@ class TrapProfile {
   void leave_out(double least_gain);
 
   glm::dvec2 from_{0}, way_{0};
-  std::vector<glm::dvec2> corners_;  ///< along the side, and above it
+  std::vector<glm::dvec2> corners_;  ///< (along the side, above it)
   std::vector<Part> parts_;
   std::vector<double> places_;
   std::vector<TrapKnot> knots_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a RayTree is made and moved:
+// Building and moving a RayTree:
 //
 //   Surfaces --fill_leaves--> leaves --take_copies--> group_leaves --> boxes of leaves --build_nodes--> nodes
 //                                      (copies have a tree of their own)
@@ -13,8 +13,8 @@
 
 namespace frontmost {
 
-/// While a tree is changed in place. Where an error ends that halfway it holds triangles of two scenes, and holes of
-/// one: nothing is left of it then.
+/// Guards a tree while it is changed in place. An error halfway would leave triangles of two scenes, and holes of one;
+/// the destructor then empties the tree.
 class TreeChange {
  public:
   explicit TreeChange(RayTree& tree) : tree_(tree) {}
@@ -30,7 +30,7 @@ class TreeChange {
   bool is_complete_ = false;
 };
 
-/// Bounds of leaves, to build nodes over.
+/// Bounds of a leaf, for building nodes.
 struct LeafBox {
   float low[3];
   std::uint32_t leaf;
@@ -44,22 +44,23 @@ struct LeafBox {
 /// Fills tree.leaves in the surfaces' spatial order.
 void fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execution);
 
-/// Where thousands of triangles are those before them once more, as of objects that are placed a million times in one
-/// place, moves them to a tree of their own, whose leaves alone are filled. Leaves of `tree` are in the surfaces'
-/// spatial order, in which copies follow each other. \returns null, and leaves all as it is, where there are few.
+/// Moves copies of triangles to a tree of their own, of which only the leaves are filled, if thousands of triangles
+/// repeat the ones before them, as objects placed a million times in one place do. Leaves of `tree` are in the
+/// surfaces' spatial order, in which copies follow each other. \returns null, and changes nothing, if there are few
+/// copies.
 [[nodiscard]] std::shared_ptr<RayTree> take_copies(RayTree& tree, const Execution& execution);
 
-/// Deals the triangles out anew, a few leaves at a time, so that leaves are small. \returns the box of every leaf.
+/// Redistributes triangles within a few leaves at a time, so that leaves get small. \returns the box of every leaf.
 [[nodiscard]] std::vector<LeafBox> group_leaves(RayTree& tree, const Execution& execution);
 
-/// Moves the triangles of `tree` to where they are in `surfaces`, and fits every box anew.
-/// \returns false where `surfaces` has other triangles; the tree is then empty, as it is after an error.
+/// Moves the triangles of `tree` to their places in `surfaces`, and fits every box anew. \returns false if `surfaces`
+/// has other triangles; the tree is then empty, as after an error.
 [[nodiscard]] bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execution);
 
-/// The bounds of the triangles in use.
+/// The bounds of the leaf's triangles; unused lanes do not count.
 [[nodiscard]] LeafBox box_of(const RayLeaf& leaf, std::uint32_t number);
 
-/// Those of a node's children.
+/// The bounds of a node's children.
 [[nodiscard]] inline Box box_of(const RayNode& node) {
   Box box;
   for (std::size_t lane = 0; lane < node.count; ++lane)
@@ -68,20 +69,20 @@ void fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execu
   return box;
 }
 
-/// Fills tree.nodes over the boxes, which are reordered.
+/// Fills tree.nodes over the boxes, and reorders the boxes.
 void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& execution);
 
-/// Moves one instance to where it is in `surfaces`, which are those that the tree is of. \returns false where the tree
-/// has to be made anew, because corners have become finite, are so no more, or are copies of others; it is then empty,
-/// as it is after an error.
+/// Moves one instance to its place in `surfaces`, from which the tree was made. \returns false if the tree must be made
+/// anew, because vertices became finite or ceased to be, or because triangles are copies of others. The tree is then
+/// empty, as after an error.
 [[nodiscard]] bool follow_instance(const Surfaces& surfaces, std::uint32_t instance, RayTree& tree);
 
-/// Two corners the same: no ray meets it, or it is one that Surfaces has set aside as not finite.
+/// Two vertices are the same: no ray meets the triangle, or Surfaces marked it as not finite.
 inline bool is_degenerate(const ClusterSet& set, std::size_t t) {
   return set.i0[t] == set.i1[t] || set.i1[t] == set.i2[t] || set.i2[t] == set.i0[t];
 }
 
-/// Of triangle `t`, whose cluster's vertices are `positions`, by axis.
+/// Sets the vertices of triangle `t` in a lane. `positions` are the vertices of its cluster, by axis.
 inline void set_corners(const ClusterSet& set, std::size_t t, const float* const (&positions)[3], RayLeaf& leaf,
                         std::size_t lane) {
   const std::uint8_t corners[3] = {set.i0[t], set.i1[t], set.i2[t]};

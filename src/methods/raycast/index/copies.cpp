@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copies follow each other in the spatial order of the surfaces, so one pass over neighbouring lanes finds them:
 //
-//    lanes    a  a' a'' b  c  c' ...        a' has the corners of a and a higher id: whoever meets a' meets a as well,
-//    stay     a         b  c                at the same place, and a is seen
+//    lanes    a  a' a'' b  c  c' ...        a' has the vertices of a and a higher id: a ray that meets a' meets a as
+//    stay     a         b  c                well, at the same place, and a is seen
 //    go          a' a''       c'
 //
-// They go only where there are thousands: a second tree costs every build a little, and an index that has one is made
-// anew instead of being refitted. Triangles with holes stay, because a copy may be seen through the hole of the other.
+// Copies go only if there are thousands: a second tree costs every build a little, and an index with a second tree is
+// rebuilt instead of refitted. Triangles with holes stay, because a copy may be seen through the other's hole.
 #include <algorithm>
 #include <atomic>
 
@@ -17,11 +17,11 @@ namespace frontmost {
 namespace {
 
 constexpr std::size_t kTrianglesPerPart = 16384;
-/// Fewer cost views next to nothing, and an index without a second tree can be refitted.
+/// Fewer copies cost views next to nothing, and an index without a second tree can be refitted.
 constexpr std::size_t kFew = 4096;
 
-/// Whether the triangle at `place` is the one before it with a higher id: what meets it meets that one as well, at the
-/// same depth, and of the two that one is seen. One that is seen from both sides is no copy of a one-sided triangle.
+/// Whether the triangle at `place` repeats the one before it with a higher id: both are met together at the same depth,
+/// and the lower id is seen. A double-sided triangle is no copy of a one-sided triangle.
 bool is_copy(const RayTree& tree, std::size_t place) {
   const RayLeaf &one = tree.leaves[(place - 1) / kRayLanes], &again = tree.leaves[place / kRayLanes];
   const std::size_t a = (place - 1) % kRayLanes, b = place % kRayLanes;
@@ -41,7 +41,7 @@ std::size_t count_copies(const RayTree& tree, const Execution& execution) {
   return count;
 }
 
-/// Fills leaves from the first lane on.
+/// Fills leaves, starting with the first lane.
 class LeafFiller {
  public:
   explicit LeafFiller(std::size_t triangle_count) : leaves_((triangle_count + kRayLanes - 1) / kRayLanes) {
@@ -66,7 +66,7 @@ class LeafFiller {
 }  // namespace
 
 std::shared_ptr<RayTree> take_copies(RayTree& tree, const Execution& execution) {
-  // Of copies with holes one may be open where the other is not.
+  // Copies with holes may be open where the original is not.
   if (tree.cutouts || tree.triangle_count <= kFew) return nullptr;
   const std::size_t count = count_copies(tree, execution);
   if (count <= kFew) return nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An index after one instance has moved: its triangles get their new places, and the boxes on the way from there to the
+// Updates an index after one instance has moved: its triangles get their new places, and the boxes from there to the
 // root are fitted anew.
 //
 //    leaves that hold triangles of the instance --> boxes of these leaves --> nodes above
@@ -24,7 +24,7 @@ RayLinks links_of(const RayTree& tree) {
   return links;
 }
 
-/// Sets the box of a leaf in the node above it, and fits what is above that.
+/// Sets the box of a leaf in the node above it, and fits the nodes above that node.
 void fit_above(RayTree& tree, std::uint32_t leaf, Box box) {
   std::uint32_t link = tree.links->above_leaf[leaf];
   for (; link != no_index; link = tree.links->above_node[link / kRayLanes]) {
@@ -38,14 +38,14 @@ void fit_above(RayTree& tree, std::uint32_t leaf, Box box) {
   tree.bounds = box;
 }
 
-/// Moves an instance's triangles that are in a leaf. \returns how many, or no_index where one is not finite any more.
+/// Moves an instance's triangles in a leaf. \returns how many, or no_index if a triangle is not finite any more.
 std::uint32_t move_triangles(const PlacedScene& placed, std::uint32_t instance, RayLeaf& leaf) {
   const Instance& it = placed.scene->instances[instance];
   const Mesh& mesh = placed.scene->meshes[it.mesh];
   const ToWorld to_world(it.world_from_mesh);
   std::uint32_t count = 0;
   for (std::size_t lane = 0; lane < kRayLanes; ++lane) {
-    const PrimitiveId triangle = leaf.id[lane] - placed.first_primitives[instance];  // wraps for ids below
+    const PrimitiveId triangle = leaf.id[lane] - placed.first_primitives[instance];  // wraps around for lower ids
     if (triangle >= mesh.triangles.size()) continue;
     for (int k = 0; k < 3; ++k) {
       const int from = placed.mirrored[instance] && k > 0 ? 3 - k : k;
@@ -58,7 +58,7 @@ std::uint32_t move_triangles(const PlacedScene& placed, std::uint32_t instance, 
   return count;
 }
 
-/// The triangles of a mesh whose corners are finite and no two the same.
+/// The triangles of a mesh with finite vertices, no two of which are the same.
 std::uint32_t count_met(const Mesh& mesh) {
   std::uint32_t count = 0;
   for (const glm::uvec3& c : mesh.triangles) {
@@ -83,7 +83,7 @@ bool move_instance(const PlacedScene& placed, std::uint32_t instance, RayTree& t
     count += moved;
     fit_above(tree, leaf, as_box(box_of(tree.leaves[leaf], leaf)));
   }
-  // Others where corners have become finite.
+  // The counts differ if vertices became finite.
   return count == count_met(placed.scene->meshes[placed.scene->instances[instance].mesh]);
 }
 

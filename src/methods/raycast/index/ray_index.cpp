@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// RayIndex: what its constructors and refit() do, and in what order.
+// RayIndex: the steps of its constructors and of refit(), and their order.
 
 #include "base/parallel.h"
 #include "raycast/index/build.h"

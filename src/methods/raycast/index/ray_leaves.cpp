@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The leaves of a RayIndex: triangles in the surfaces' spatial order, sixteen at a time.
 //
-// Clusters already are in spatial order, and cutting their run into sixteens costs no sort of our own. The place of a
-// triangle depends on how many go before it, so that they are counted first. Dealing groups of sixteen leaves out anew
-// doubles the time of a build, and makes single rays 20 to 40 % and views up to 10 % faster.
+// Clusters already are in spatial order, so cutting their sequence into sixteens needs no further sort. The place of a
+// triangle depends on how many triangles go before it, so triangles are counted first. Redistributing groups of sixteen
+// leaves doubles the time of a build, and makes single rays 20 to 40 % and views up to 10 % faster.
 //
 //    clusters     [.......][......][........]         counted in parts, so that every part knows where its triangles go
-//    leaves       [ 16 ][ 16 ][ 16 ][ 16 ] ...        their runs, cut into sixteens
-//    dealt anew   sixteen leaves at a time            so that each leaf is small
+//    leaves       [ 16 ][ 16 ][ 16 ][ 16 ] ...        their triangles, cut into sixteens
+//    regrouped    sixteen leaves at a time            so that each leaf is small
 
 #include <algorithm>
 
@@ -44,8 +44,8 @@ void fill(const ClusterSet& set, const Cluster& cluster, std::size_t& place, Buf
   }
 }
 
-/// Deals the triangles of a group of whole leaves out anew: halved by the middle triangle along the longest side of
-/// their centres' box, until sixteen are left. The spatial order alone makes leaves that reach around its corners.
+/// Redistributes the triangles of a group of whole leaves: halves them by the middle triangle along the longest side of
+/// their centres' box, until sixteen are left. The spatial order alone makes leaves that bend around its turns.
 class Regrouping {
  public:
   static constexpr std::size_t kLeaves = 16;
@@ -75,7 +75,7 @@ class Regrouping {
     std::uint16_t triangle;
   };
 
-  /// Of the triangle's box, in halves: sums of two large floats overflow.
+  /// Centre of the triangle's box. Halves are added, as the sum of two large floats overflows.
   static float centre(const RayLeaf& leaf, std::size_t axis, std::size_t lane) {
     const float a = leaf.corner[0][axis][lane], b = leaf.corner[1][axis][lane], c = leaf.corner[2][axis][lane];
     return 0.5f * std::min({a, b, c}) + 0.5f * std::max({a, b, c});
@@ -149,7 +149,7 @@ std::vector<LeafBox> group_leaves(RayTree& tree, const Execution& execution) {
   const std::size_t total = tree.triangle_count, leaf_count = tree.leaves.size();
   std::vector<LeafBox> boxes(leaf_count);
   parallel_for(execution, leaf_count, kLeavesPerPart, [&](std::size_t begin, std::size_t end) {
-    // The last leaf, where it is not full, keeps its unused lanes at the end and stays as it is.
+    // The last leaf, if not full, stays as it is, with its unused lanes at the end.
     const std::size_t whole_end = std::min(end, total / kRayLanes);
     Regrouping regrouping;
     for (std::size_t i = begin; i + 1 < whole_end; i += Regrouping::kLeaves)

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes of a RayIndex: ranges of leaves are halved by the binned surface area heuristic, the child of the largest
-// surface first, until a node has sixteen.
+// The nodes of a RayIndex: the binned surface area heuristic halves ranges of leaves, the range of the largest surface
+// first, until a node has sixteen children.
 //
-// Runs of the spatial order of a fixed length are pieces of their own, built by whichever thread comes; the nodes above
+// Sequences of a fixed length in the spatial order are pieces, each built by whichever thread is free. The nodes above
 // are built over the pieces' boxes in the same way. So the tree is the same for any number of threads.
 //
 //    leaves of a piece         [ A ][ B ][ C ][ D ] ...
-//    a range is halved         [ A  B | C  D  ... ]     where the surfaces of both halves, each times its leaves,
-//    the larger one, too       [ A  B | C | D ... ]     are least; until a node has sixteen children
+//    a range is halved         [ A  B | C  D  ... ]     at the least sum of the halves' surfaces, each times its leaves
+//    the larger half as well   [ A  B | C | D ... ]     and so on, until a node has sixteen children
 
 #include <algorithm>
 #include <array>
@@ -20,11 +20,10 @@ namespace frontmost {
 namespace {
 
 constexpr int kBins = 16;
-/// Leaves of a piece. Beside splitting everything by area, views differ by less than the noise of 3 %, and two threads
-/// build in three quarters of the time.
+/// Leaves of a piece. Compared with splitting everything by area, views differ by less than the noise of 3 %, and two
+/// threads build in three quarters of the time.
 constexpr std::size_t kPieceLeaves = 2048;
-/// Fewer leaves than this are halved where they lie: their order already is a good one, and bins cost more than they
-/// save.
+/// Fewer leaves than this are halved in place: their order already is a good one, and bins cost more than they save.
 constexpr std::size_t kBinFrom = 4;
 
 struct BoxRange {
@@ -36,7 +35,7 @@ struct BoxRange {
 LeafBox as_leaf_box(const Box& box, std::uint32_t leaf) {
   return {{box.low.x, box.low.y, box.low.z}, leaf, {box.high.x, box.high.y, box.high.z}, 0};
 }
-/// Halves first: the sum of two large floats can overflow.
+/// Halves are added, as the sum of two large floats can overflow.
 glm::vec3 centre_of(const LeafBox& b) {
   return {0.5f * b.low[0] + 0.5f * b.high[0], 0.5f * b.low[1] + 0.5f * b.high[1], 0.5f * b.low[2] + 0.5f * b.high[2]};
 }
@@ -53,24 +52,24 @@ struct Bin {
 
 struct BoxSplit {
   int axis = -1;
-  int bin = 0;  ///< the first on the right
+  int bin = 0;  ///< the first bin on the right
   float cost = std::numeric_limits<float>::infinity();
 };
 
-/// Which bin a centre falls into along each axis.
+/// The bin that a centre falls into, along each axis.
 struct Binning {
   glm::vec3 origin, scale;
 
   explicit Binning(const Box& centres) : origin(centres.low) {
     for (int axis = 0; axis < 3; ++axis) {
       const float extent = centres.high[axis] - centres.low[axis];
-      // Zero, not finite, or so small that the scale overflows: everything is in the first bin.
+      // The extent is zero, not finite, or so small that the scale overflows: all centres are in the first bin.
       const float wanted = kBins * 0.9999f / extent;
       scale[axis] = extent > 0 && wanted < std::numeric_limits<float>::max() ? wanted : 0.0f;
     }
   }
   [[nodiscard]] int operator()(const glm::vec3& centre, int axis) const {
-    // In this order NaN, which differences beyond the floats leave, counts as 0.
+    // This order of arguments makes NaN, the difference of infinities, count as 0.
     return std::min(int(std::max(0.0f, (centre[axis] - origin[axis]) * scale[axis])), kBins - 1);
   }
 };
@@ -104,7 +103,7 @@ class NodeBuilder {
  public:
   explicit NodeBuilder(std::vector<LeafBox>& boxes) : boxes_(boxes) {}
 
-  /// \returns up to sixteen ranges, by splitting the largest until none can be split or `stop` leaves are left in each.
+  /// \returns up to sixteen ranges: splits the range of the largest surface until none can be split.
   std::vector<BoxRange> children_of(const BoxRange& range) {
     std::vector<BoxRange> ranges{range};
     ranges.reserve(kRayLanes);
@@ -112,7 +111,8 @@ class NodeBuilder {
       std::size_t largest = ranges.size();
       float most = -1;
       for (std::size_t i = 0; i < ranges.size(); ++i) {
-        // Areas that overflow count as equal; NaN never wins, but the first range that can be split does.
+        // Areas that overflow count as equal. A NaN area loses to any other, but the first splittable range is taken
+        // anyway.
         const float area = half_area(ranges[i].box);
         if (ranges[i].size() > 1 && (largest == ranges.size() || area > most)) largest = i, most = area;
       }
@@ -140,7 +140,7 @@ class NodeBuilder {
     return {range_of(range.begin, middle), range_of(middle, range.end)};
   }
 
-  /// \returns an empty range when all centres are in one place, or areas beyond what floats hold.
+  /// \returns an empty range if all centres are in one place, or areas exceed the range of floats.
   std::pair<BoxRange, BoxRange> split_by_area(const BoxRange& range) {
     Box centres;
     for (std::size_t i = range.begin; i < range.end; ++i) centres.include(centre_of(boxes_[i]));
@@ -223,7 +223,7 @@ void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& ex
     PieceBuilder(boxes, piece).build();
   });
 
-  // The piece above all others; its leaves are the pieces.
+  // The piece above all others, whose leaves are the pieces.
   std::vector<LeafBox> roots;
   for (std::uint32_t p = 0; p < pieces.size(); ++p) roots.push_back(as_leaf_box(pieces[p].range.box, p));
   NodePiece top;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inside of RayIndex: nodes of sixteen boxes, leaves of sixteen triangles, as structure of arrays.
+// The data of RayIndex: nodes of sixteen boxes, leaves of sixteen triangles, as structure of arrays.
 //
-//    node   low x   [ . . . . . . . . . . . . . . . . ]       A vector of the widest instruction set asks all sixteen
-//           low y   [ ................................ ]       boxes or triangles at once; narrower sets take 4 or 8 of
-//           ...                                                them in turn, and give the same bits.
+//    node   low x   [ . . . . . . . . . . . . . . . . ]       A vector of the widest instruction set tests all sixteen
+//           low y   [ ................................ ]       boxes or triangles at once; narrower sets take 4 or 8 in
+//           ...                                                turn, and give the same bits.
 //           child   [ leaf | node | node | leaf ... ]
 //
-// Nodes that wide leave few of them between the root and a leaf, and a walk waits for memory that often. Lanes that are
-// not used hold zeros and come last.
+// Wide nodes make few levels between the root and a leaf, and a walk waits for memory once a level. Unused lanes hold
+// zeros and come last.
 #pragma once
 
 #include <array>
@@ -22,10 +22,10 @@
 
 namespace frontmost {
 
-/// Boxes or triangles side by side: one vector of the widest instruction set.
+/// Boxes or triangles side by side: the lanes of one vector of the widest instruction set.
 inline constexpr std::size_t kRayLanes = 16;
 
-/// A child: the number of a leaf with this bit set, or of a node.
+/// A child is the number of a leaf with this bit set, or the number of a node.
 inline constexpr std::uint32_t kLeafBit = 0x80000000u;
 
 /// World-space boxes of `count` children. Unused lanes hold zeros.
@@ -48,7 +48,7 @@ struct alignas(64) RayLeaf {
   }
 };
 
-/// The way back, once an instance has moved. node * 16 + lane, or no_index above the root.
+/// Links from children to parents, for instances that move. node * 16 + lane, or no_index above the root.
 struct RayLinks {
   std::vector<std::uint32_t> above_node;
   std::vector<std::uint32_t> above_leaf;
@@ -64,13 +64,13 @@ struct RayTree {
   Box bounds;                              ///< around the triangles
   std::shared_ptr<const Cutouts> cutouts;  ///< null where no triangle has holes
   std::shared_ptr<const MaterialSides> sides;
-  /// Triangles that are there again: each has the corners of one of this tree, in their order, and a higher id. So
-  /// whoever asks what is nearest, or whether anything is met, does without them. Null: none were taken apart.
+  /// Copies: each has the vertices of a triangle of this tree, in their order, and a higher id. So queries for the
+  /// nearest hit, or for any hit, do without copies. Null if none were taken out.
   std::shared_ptr<RayTree> copies;
-  std::optional<RayLinks> links;  ///< made when they are first asked for
+  std::optional<RayLinks> links;  ///< made when first needed
 
   [[nodiscard]] const RayLeaf& leaf(std::uint32_t child) const { return leaves[child & ~kLeafBit]; }
-  /// For a child that will be looked at soon.
+  /// Prefetches a child that will be visited soon.
   void prefetch(std::uint32_t child) const {
     const char* const from =
         child & kLeafBit ? reinterpret_cast<const char*>(&leaf(child)) : reinterpret_cast<const char*>(&nodes[child]);
@@ -78,11 +78,11 @@ struct RayTree {
     for (std::size_t i = 0; i < bytes; i += 64) prefetch_line(from + i);
   }
 
-  /// The most children that a depth-first walk has waiting.
+  /// The most children that wait at once in a depth-first walk.
   [[nodiscard]] std::size_t stack_size() const { return std::size_t(depth) * (kRayLanes - 1) + 1; }
 };
 
-/// What an index holds.
+/// The tree that an index holds.
 [[nodiscard]] const RayTree& ray_tree(const RayIndex& index);
 
 }  // namespace frontmost

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A RayIndex after its triangles have moved: leaves keep their triangles and nodes their children, boxes are fitted
-// anew from the leaves upwards.
+// Updates a RayIndex after its triangles have moved: leaves keep their triangles and nodes their children, and boxes
+// are fitted anew from the leaves upwards.
 //
 //    clusters, as they moved --by id--> lane of a leaf        all triangles have a place in the old leaves
 //    leaves --> boxes --> nodes, from the last to the first    children come after their parents
 //
-// Where a triangle has no place, or one has gone, the index has to be built anew: refitting never changes which
-// triangles share a leaf.
+// If a triangle has no place, or one has gone, the index must be built anew: refitting never changes which triangles
+// share a leaf.
 
 #include <algorithm>
 #include <atomic>
@@ -19,20 +19,20 @@ namespace {
 
 constexpr std::size_t kRefitLeavesPerPart = 512, kRefitClustersPerPart = 64;
 
-/// Where the triangles of a tree are, by id: leaf * 16 + lane, or no_index.
+/// The places of a tree's triangles, by id: leaf * 16 + lane, or no_index.
 Buffer<std::uint32_t> places_of(const RayTree& tree, std::size_t id_count, const Execution& execution) {
   Buffer<std::uint32_t> places(id_count, no_index);
   parallel_for(execution, tree.leaves.size(), kRefitLeavesPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin * kRayLanes; i < end * kRayLanes; ++i) {
       const PrimitiveId id = tree.leaves[i / kRayLanes].id[i % kRayLanes];
-      if (id < id_count) places[id] = std::uint32_t(i);  // no_primitive is not
+      if (id < id_count) places[id] = std::uint32_t(i);  // no_primitive is not less
     }
   });
   return places;
 }
 
-/// Leaf after leaf, clusters and leaves run through space in nearly the same order: the fewest jumps through memory.
-/// \returns how many triangles were moved, or no_index where one has no place.
+/// Moves the triangles of a cluster. Clusters and leaves run through space in nearly the same order, so this order of
+/// work jumps least through memory. \returns how many triangles were moved, or no_index if one has no place.
 std::size_t move_triangles(const ClusterSet& set, const Cluster& cluster, const Buffer<std::uint32_t>& places,
                            RayTree& tree) {
   const float* const positions[3] = {set.x.data() + cluster.first_vertex, set.y.data() + cluster.first_vertex,
@@ -49,12 +49,12 @@ std::size_t move_triangles(const ClusterSet& set, const Cluster& cluster, const 
   return count;
 }
 
-/// Children come after their parents.
+/// Fits every node's boxes to its children.
 void fit_nodes(const std::vector<LeafBox>& boxes, RayTree& tree) {
   const auto box_of_child = [&](std::uint32_t child) {
     return child & kLeafBit ? as_box(boxes[child & ~kLeafBit]) : box_of(tree.nodes[child]);
   };
-  // From the last, so that a node's children have been fitted before it.
+  // From the last node backwards, as children come after their parents.
   for (std::size_t n = tree.nodes.size(); n-- > 0;) {
     RayNode& node = tree.nodes[n];
     for (std::size_t lane = 0; lane < node.count; ++lane) {
@@ -72,7 +72,7 @@ void fit_nodes(const std::vector<LeafBox>& boxes, RayTree& tree) {
 
 bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execution) {
   TreeChange change(tree);
-  // Copies may be moved apart.
+  // Copies may move apart.
   if (tree.copies) return false;
   const ClusterSet& set = cluster_set(surfaces, execution);
   tree.cutouts = set.cutouts;
@@ -82,7 +82,7 @@ bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execut
   parallel_for(execution, set.clusters.size(), kRefitClustersPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) moved += move_triangles(set, set.clusters[c], places, tree);
   });
-  // Too many where one has no place, too few where one cannot be met any more.
+  // The count is too high if a triangle has no place, and too low if a triangle cannot be met any more.
   if (moved != tree.triangle_count) return false;
   if (tree.root == no_index) {
     change.complete();

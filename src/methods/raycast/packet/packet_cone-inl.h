@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pyramid that the rays of a packet look through, and which boxes and triangles it passes by.
+// The pyramid of a packet's rays, and which boxes and triangles lie beside it.
 //
 //          u |      . high u        The axis z is the one that the rays move most along. Every ray is a point (u, v) of
 //            |   .   /              the plane at z = 1, its slopes, and the packet is a rectangle of that plane. Boxes
-//       eye  |.-----/------ z       and triangles are counted from the eye, and compared with the rectangle where they
-//              `   /                are. What is left out lies beside it by more than all rounding.
+//       eye  |.-----/------ z       and triangles are relative to the eye, and are compared with the rectangle at their
+//              `   /                own distance. Everything left out lies beside it by more than all rounding.
 //                `.  low u
 
 // Included once for every target.
@@ -27,7 +27,7 @@ namespace frontmost::raycast_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A packet's rays in the order of the grid: those that are left out together.
+/// Blocks of a packet's rays in the order of the grid: the rays of a block are tested together.
 constexpr std::size_t kBlockRays = 16, kScanBlocks = kScanRays / kBlockRays;
 
 /// Slopes of neighbouring rays.
@@ -35,12 +35,12 @@ struct SlopeRange {
   float low_u, high_u, low_v, high_v;
 };
 
-/// Of a unit: some roundings of each of up to three terms, and as much again.
+/// Bound of the rounding of a unit: some roundings of each of up to three terms, and as much again.
 constexpr float kConeError = 0x1p-20f;
 
 class PacketCone {
  public:
-  /// \returns false where the rays spread too widely to be cast together.
+  /// \returns false if the rays spread too widely to be cast together.
   bool Take(const ScanPacket& packet) {
     origin_ = packet.origin;
     valid_ = ValidRays(packet);
@@ -53,20 +53,20 @@ class PacketCone {
   [[nodiscard]] float sign() const { return sign_; }
   /// A bit for each ray that has a direction.
   [[nodiscard]] std::uint64_t valid() const { return valid_; }
-  /// No slope is greater, and 1 at least.
+  /// An upper bound of all slopes, and at least 1.
   [[nodiscard]] float steepest() const { return steepest_; }
   [[nodiscard]] const SlopeRange& range() const { return range_; }
   [[nodiscard]] const SlopeRange& range(std::size_t block) const { return block_range_[block]; }
   [[nodiscard]] HWY_INLINE QV SlopesU(std::size_t ray) const { return hn::Load(QF(), slope_u_ + ray); }
   [[nodiscard]] HWY_INLINE QV SlopesV(std::size_t ray) const { return hn::Load(QF(), slope_v_ + ray); }
 
-  /// Counted from the eye.
+  /// Coordinates relative to the eye.
   [[nodiscard]] HWY_INLINE QV FromEye(const float* from, int axis) const {
     const QF d;
     return hn::Sub(hn::Load(d, from), hn::Set(d, origin_[axis]));
   }
 
-  /// Boxes of a node that no ray meets before its block's end, and the least place that each reaches.
+  /// Boxes of a node that no ray meets before its block's end, and the least place that each box reaches.
   struct Missed {
     QM boxes;
     QV place;
@@ -77,7 +77,7 @@ class PacketCone {
     QV high_z = FromEye((sign_ > 0 ? node.high : node.low)[z_] + first, z_);
     if (sign_ < 0) low_z = hn::Neg(low_z), high_z = hn::Neg(high_z);
     const QV pad = hn::Mul(hn::Max(hn::Abs(low_z), hn::Abs(high_z)), hn::Set(d, kConeError));
-    // What lies behind the eye is not met, and the place of the rest says how far along it begins.
+    // Parts behind the eye are not met; the place of the remaining part tells where it begins along the axis.
     const QV near = hn::Max(hn::Sub(low_z, pad), hn::Zero(d)), far = hn::Add(high_z, pad);
     const Sides u = SidesOf(node, first, u_, near, far), v = SidesOf(node, first, v_, near, far);
     QM met = hn::MaskFromVec(hn::Zero(d));
@@ -90,7 +90,7 @@ class PacketCone {
   }
 
  private:
-  /// Wider packets look into so much that single rays are quicker.
+  /// Wider packets visit so much that single rays are quicker.
   static constexpr float kWidest = 0.75f;
   static constexpr float kSteepest = 4;
 
@@ -98,7 +98,7 @@ class PacketCone {
     float low, high;
   };
 
-  /// Where boxes begin and end across the axis, with room for rounding, and between which places along it.
+  /// The range of boxes across the axis, padded for rounding, and their places `near` to `far` along it.
   struct Sides {
     QV low, high, near, far;
   };
@@ -110,7 +110,7 @@ class PacketCone {
     return {hn::Sub(low, pad), hn::Add(high, pad), near, far};
   }
 
-  /// Between near and far along the axis the rays lie between low * z and high * z.
+  /// Boxes beside the rays: between near and far along the axis the rays lie between low * z and high * z.
   [[nodiscard]] HWY_INLINE QM Beside(const Sides& box, const Interval& slopes) const {
     const QF d;
     const QV least = hn::Mul(slopes.low >= 0 ? box.near : box.far, hn::Set(d, slopes.low));
@@ -118,7 +118,7 @@ class PacketCone {
     return hn::Or(hn::Gt(box.low, most), hn::Lt(box.high, least));
   }
 
-  /// is_valid() of every ray.
+  /// is_valid(), a bit for each ray.
   [[nodiscard]] static std::uint64_t ValidRays(const ScanPacket& packet) {
     if (!is_finite(packet.origin)) return 0;
     const QF d;
@@ -137,7 +137,7 @@ class PacketCone {
     return valid;
   }
 
-  /// The greatest coordinate of a ray in the middle; it serves when every ray moves along it.
+  /// Takes the greatest coordinate of a middle ray as the axis. \returns true if every ray moves forwards along it.
   bool SetAxis(const ScanPacket& packet) {
     const std::size_t lowest = hwy::Num0BitsBelowLS1Bit_Nonzero64(valid_), middle = packet.count / 2;
     const std::size_t some = valid_ >> middle & 1 ? middle : lowest;
@@ -145,7 +145,7 @@ class PacketCone {
     z_ = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     u_ = (z_ + 1) % 3, v_ = (z_ + 2) % 3;
     sign_ = direction[z_] < 0 ? -1.0f : 1.0f;
-    // Rays that are nobody's stay where another is.
+    // Unused rays take the place of a valid ray.
     const QF d;
     QM ahead = hn::FirstN(d, kQueryLanes);
     for (std::size_t first = 0; first < kScanRays; first += kQueryLanes) {
@@ -170,7 +170,7 @@ class PacketCone {
                 std::max(range_.high_v, r.high_v)};
     }
     steepest_ = std::max({1.0f, -range_.low_u, range_.high_u, -range_.low_v, range_.high_v});
-    // Also false for slopes that are not numbers.
+    // Also false for NaN slopes.
     return steepest_ <= kSteepest && range_.high_u - range_.low_u <= kWidest && range_.high_v - range_.low_v <= kWidest;
   }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the rays of a packet meet: of each ray the nearest certain triangle so far, and whether another might be nearer.
+// The hits of a packet: for each ray the nearest certain triangle so far, and whether another might be nearer.
 //
-//     ray ----[===]------[=====]-->    Where a ray meets a triangle is known to within an interval. `end` is where the
-//            from to                   nearest certain interval ends, and `other` where the first of all others begins:
-//                                      if that is beyond `end`, the triangle is the nearest, and only its place is
-//                                      worked out, for many rays at a time by the arithmetic of meet(). The few rays
-//                                      that are left, at edges, holes and doubled surfaces, ask meet() for each.
+//     ray ----[===]------[=====]-->    The place where a ray meets a triangle is known to within an interval. `end` is
+//            from to                   the end of the nearest certain interval, `other` the beginning of the first of
+//                                      all others. If `other` is beyond `end`, the triangle is the nearest, and only
+//                                      its place is computed, for many rays at a time by the arithmetic of meet(). The
+//                                      few remaining rays, at edges, holes and doubled surfaces, ask meet() for each
+//                                      triangle.
 
 // Included once for every target.
 #if defined(FRONTMOST_RAYCAST_PACKET_HITS_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -43,7 +44,7 @@ class PacketHits {
     packet_end_ = all;
   }
 
-  /// Nothing that begins beyond is met first by any ray, of each block and of all.
+  /// Ends of each block and of the packet: triangles that begin beyond an end are met first by no ray.
   [[nodiscard]] HWY_INLINE const float* block_ends() const { return block_end_; }
   [[nodiscard]] HWY_INLINE float packet_end() const { return packet_end_; }
 
@@ -66,10 +67,10 @@ class PacketHits {
 
  private:
   static constexpr std::uint64_t kAllLanes = (std::uint64_t(1) << kQueryLanes) - 1;
-  /// Ends are compared with what was rounded otherwise.
+  /// Margin, as ends are compared with values that were rounded differently.
   static constexpr float kBeyond = 1 + 0x1p-20f;
 
-  /// One triangle, as all rays see it.
+  /// One triangle, in the form that all rays share.
   struct Edges {
     QV normal[3][3], z[3], low_z, high_z, bound, error;
   };
@@ -85,7 +86,7 @@ class PacketHits {
     return e;
   }
 
-  /// \returns true when it is the nearest of some ray so far.
+  /// \returns true if the triangle is the nearest so far of some ray.
   HWY_INLINE bool MeetTriangle(const RayLeaf& leaf, const PacketTriangles& t, std::size_t first, std::size_t index) {
     const std::size_t lane = first + index;
     const Edges edges = EdgesOf(t, lane);
@@ -141,7 +142,7 @@ class PacketHits {
     const QI di;
     const QV end = hn::Load(d, end_ + first), old_from = hn::Load(d, from_ + first);
     const QM nearer = hn::And(certain, hn::Lt(to, end));
-    // What is not the nearest is one of the others.
+    // A triangle that is not the nearest counts among the others.
     const QV loser = hn::IfThenElse(nearer, old_from, hn::IfThenElse(met, from, hn::Set(d, kFloatInfinity)));
     hn::Store(hn::Min(hn::Load(d, other_ + first), loser), d, other_ + first);
     hn::Store(hn::IfThenElse(nearer, to, end), d, end_ + first);
@@ -163,7 +164,7 @@ class PacketHits {
     }
   }
 
-  /// Keeps the notes that are the nearest of a ray. Rays that are not certain of theirs have to be asked again.
+  /// Keeps only notes of the nearest triangle of some ray. Rays with an uncertain nearest triangle must be cast again.
   void Forget() {
     is_complete_ = false;
     std::array<std::int32_t, ScanScratch::kMostNotes> moved;
@@ -181,7 +182,7 @@ class PacketHits {
     note_count_ = count;
   }
 
-  /// Those whose nearest triangle is certain.
+  /// Rays whose nearest triangle is certain.
   [[nodiscard]] std::uint64_t SingleRays() const {
     const QF d;
     std::uint64_t single = 0;
@@ -194,7 +195,7 @@ class PacketHits {
     return single;
   }
 
-  /// Those that may meet anything.
+  /// Rays that may meet anything.
   [[nodiscard]] std::uint64_t SeenRays() const {
     std::uint64_t seen = 0;
     for (std::size_t i = 0; i < kScanRays; ++i) seen |= std::uint64_t(note_[i] >= 0 || other_[i] < kFloatInfinity) << i;
@@ -208,7 +209,7 @@ class PacketHits {
   using PF = hn::Rebind<float, PD>;
   static constexpr std::size_t kDoubleLanes = hn::MaxLanes(PD());
 
-  /// The nearest triangles' corners, and the rays that meet them. Rays that are not single take any triangle along.
+  /// The vertices of the nearest triangles, and the rays that meet them. Rays that are not single carry any triangle.
   struct Winners {
     alignas(64) float corner[3][3][kScanRays];
   };
@@ -273,7 +274,7 @@ class PacketHits {
     return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2]));
   }
 
-  /// One ray, by the definition.
+  /// Answers one ray by the definition.
   void Settle(ScanPacket& packet, std::size_t ray, Isa isa) const {
     const Query query = packet.query_of(ray);
     RayHit nearest;

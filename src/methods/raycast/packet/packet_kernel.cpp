@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A packet of a scan's rays through the tree: nearest boxes first, sixteen boxes or triangles at a time, for all rays
-// together.
+// Casts a packet of a scan's rays through the tree: nearest boxes first, sixteen boxes or triangles at a time, for all
+// rays together.
 //
 //    rays --> cone --> boxes that it may meet --> triangles --> nearest of each ray
 //              |                                                      |
@@ -18,7 +18,7 @@
 #define HWY_TARGET_INCLUDE "raycast/packet/packet_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After Highway: a block of its own.
+// The include follows Highway in a block of its own.
 #include "base/lanes-inl.h"
 #include "raycast/packet/packet_hits-inl.h"
 
@@ -49,7 +49,7 @@ class PacketWalker {
   }
 
  private:
-  /// Puts the children that rays may meet on top of the others, the nearest last.
+  /// Pushes the children that rays may meet, the nearest last.
   void LookInto(const RayNode& node) {
     const QF d;
     alignas(64) std::int32_t bits[kRayLanes + kQueryLanes];
@@ -62,7 +62,7 @@ class PacketWalker {
       entered.Store(hn::Load(QU(), node.child + first), child + count);
       count += entered.count();
     }
-    // Sorted by counting how many are farther; floats from 0 on are ordered as their bits are.
+    // Sorts by counting the farther children. Bits of floats from 0 on are ordered as the floats are.
     const QI di;
     for (std::size_t i = 0; i < count; ++i) {
       const auto own = hn::Set(di, bits[i]);
@@ -86,7 +86,7 @@ class PacketWalker {
   PacketHits hits_;
 };
 
-/// \returns false where the rays have to be asked one by one.
+/// \returns false if the rays must be cast one by one.
 bool CastTogether(const RayTree& tree, ScanPacket& packet, ScanScratch& scratch, Isa isa) {
   PacketCone cone;
   if (!cone.Take(packet)) return false;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sixteen triangles as a packet of rays sees them: the planes through the eye and each edge, and what they cover.
+// Sixteen triangles in the form that a packet of rays tests: the planes through the eye and each edge, and their
+// outlines.
 //
-//         b            Counted from the eye, n = a x (b - a) is normal to the plane of the eye and the edge from a
-//        / \           to b, and n . ray says on which side of it a ray passes. A ray that passes all three edges on
-//       a---c          one side meets the triangle, at the mean of the corners weighted by these turns.
+//         b            Relative to the eye, n = a x (b - a) is normal to the plane of the eye and the edge from a to b.
+//        / \           The sign of n . ray tells on which side of the plane a ray passes. A ray that passes all three
+//       a---c          edges on one side meets the triangle, at the mean of the vertices weighted by these values.
 //
-// The rays' slopes are affine in n . ray, so the turns of a whole rectangle of rays lie between those of its corners.
-// All is in floats, with a bound on what rounding can do.
+// These values, called turns, are affine in the rays' slopes. So the turns of a whole rectangle of rays lie between
+// those at its corners. All is computed in floats, with a bound on the rounding.
 
 // Included once for every target.
 #if defined(FRONTMOST_RAYCAST_PACKET_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -24,14 +25,14 @@ namespace frontmost::raycast_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Of a leaf: what broadcasts to rays.
+/// The triangles of a leaf, laid out for broadcasting to rays.
 struct PacketTriangles {
-  alignas(64) float normal[3][3][kRayLanes];  ///< [edge][u, v, z]; edge k is across from corner k
-  alignas(64) float z[3][kRayLanes];          ///< of the corners, along the packet's axis
+  alignas(64) float normal[3][3][kRayLanes];  ///< [edge][u, v, z]; edge k lies opposite vertex k
+  alignas(64) float z[3][kRayLanes];          ///< vertices' places along the packet's axis
   alignas(64) float low_z[kRayLanes], high_z[kRayLanes];
-  alignas(64) float bound[kRayLanes];  ///< no turn is wrong by more; infinite where floats do not serve
-  alignas(64) float error[kRayLanes];  ///< no place is
-  std::uint32_t blocks[kScanBlocks];   ///< which triangles the rays of a block may meet, a bit each
+  alignas(64) float bound[kRayLanes];  ///< error bound of all turns; infinite if floats do not suffice
+  alignas(64) float error[kRayLanes];  ///< error bound of all places
+  std::uint32_t blocks[kScanBlocks];   ///< triangles that the rays of a block may meet, a bit each
 };
 
 class TrianglePlacer {
@@ -39,8 +40,8 @@ class TrianglePlacer {
   TrianglePlacer(const PacketCone& cone, const RayLeaf& leaf, PacketTriangles& to)
       : cone_(cone), leaf_(leaf), to_(to) {}
 
-  /// Places as many triangles as a vector holds, and finds which of the blocks, whose farthest ends are `ends`, may
-  /// meet them. \returns those that any may.
+  /// Places a vector of triangles, and finds which blocks, whose farthest ends are `ends`, may meet them. \returns the
+  /// triangles that any block may meet.
   HWY_INLINE std::uint32_t Place(std::size_t first, const float* ends) {
     const QF d;
     QV at[3][3], low[3], high[3];
@@ -50,7 +51,7 @@ class TrianglePlacer {
       high[axis] = hn::Max(hn::Max(at[0][axis], at[1][axis]), at[2][axis]);
     }
     const QV size = hn::Max(hn::Max(Size(low[0], high[0]), Size(low[1], high[1])), Size(low[2], high[2]));
-    // Where products may leave the floats, nothing is said of the triangle but that it may be met anywhere.
+    // If products may leave the range of floats, the triangle may be met anywhere.
     const QM serves = hn::Lt(size, hn::Set(d, 0x1p40f));
     const QV error = hn::IfThenElseZero(serves, hn::Mul(Size(low[2], high[2]), hn::Set(d, kConeError)));
     const QV all = hn::Set(d, kFloatInfinity);
@@ -79,7 +80,7 @@ class TrianglePlacer {
     }
   }
 
-  /// The corners' difference is taken in the world, where it is rounded least.
+  /// The edge is a difference of world coordinates, where it is rounded least.
   [[nodiscard]] HWY_INLINE QV EdgeAlong(std::size_t first, int from, int to, int axis) const {
     const QF d;
     return hn::Sub(hn::Load(d, leaf_.corner[to][axis] + first), hn::Load(d, leaf_.corner[from][axis] + first));
@@ -101,15 +102,15 @@ class TrianglePlacer {
       longest = hn::Max(longest, hn::Max(hn::Max(hn::Abs(u), hn::Abs(v)), hn::Abs(z)));
     }
     // With A the largest coordinate, S the longest edge's and M the steepest slope, a turn is a sum of three products
-    // of slopes and differences of products: wrong by 42 half units in the last place of A S M at most. The last term
-    // stands for underflow.
+    // of slopes and differences of products. It is wrong by at most 42 half units in the last place of A S M. The last
+    // term stands for underflow.
     const QV scale = hn::Mul(hn::Mul(size, longest), hn::Set(d, cone_.steepest() * 0x1p-18f));
     const QV bound = hn::IfThenElse(serves, hn::Add(scale, hn::Set(d, 0x1p-100f)), hn::Set(d, kFloatInfinity));
     hn::Store(bound, d, to_.bound + first);
     return Outside(normal, bound);
   }
 
-  /// Where the sum of the turns has one sign for all rays, so must every turn of a ray that meets the triangle.
+  /// If the sum of the turns has one sign for all rays, so has every turn of a ray that meets the triangle.
   [[nodiscard]] HWY_INLINE QM Outside(const QV (&normal)[3][3], QV bound) const {
     const QF d;
     QV least = hn::Zero(d), most = hn::Zero(d);
@@ -137,7 +138,7 @@ class TrianglePlacer {
             hn::Add(normal[2], hn::Add(hn::Max(a, b), hn::Max(e, f)))};
   }
 
-  /// The rectangle of slopes that a triangle before the eye lies in, and the blocks that it meets.
+  /// Finds the slopes' rectangle of each triangle before the eye, and the blocks that meet the rectangle.
   HWY_INLINE std::uint32_t PlaceOutlines(const QV (&at)[3][3], QV nearest, QM kept, const float* ends) const {
     const QF d;
     const QV one = hn::Set(d, 1.0f);
@@ -166,7 +167,7 @@ class TrianglePlacer {
     return any;
   }
 
-  /// \returns what is left.
+  /// \returns the remaining triangles.
   HWY_INLINE std::uint32_t LeaveOut(QM triangles) const {
     const auto kept = ~std::uint32_t(frontmost::HWY_NAMESPACE::BitsOf(QF(), triangles));
     std::uint32_t any = 0;

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays towards one light are parallel: sheared along it, they are the points of a plane, and boxes and triangles cast
-// their outlines on it. Up to 64 rays walk the tree together as one rectangle of that plane, above their lowest start.
+// Rays towards one light are parallel. Sheared along the light, they are points of a plane, and boxes and triangles
+// cast their outlines on it. Up to 64 rays walk the tree together as one rectangle of that plane, above their lowest
+// start.
 //
-// Vectors decide with a bound on all rounding what is certainly missed and certainly met; what is left, mostly
-// neighbours seen through their common edge, is decided by stands_before(). So the answers do not depend on the order
-// of the rays, nor on the instruction set.
+// Vectors decide, with a bound on all rounding, which triangles are certainly missed and certainly met. stands_before()
+// decides the rest, mostly neighbours seen through their common edge. So the answers depend neither on the order of
+// rays nor on the instruction set.
 //
 //           light                   rays as points       All rays go the same way, so each is a point (u, v) of the
 //             \   \   \               . . . .            sheared plane with a height d at which it starts. A triangle
-//        tri __\___\                 . /\ .              is met by the points inside of its outline whose start lies
+//        tri __\___\                 . /\ .              is met by the points inside its outline whose start lies
 //               \   \   \            ./  \.              below it.
 //          ______\___\___\ points    '----'
 //
-// Rays that have met something take no further part, and a packet ends when all of its rays have. A start that is not
-// valid is lit: nothing stands before what is nowhere.
+// Rays that have met something take no further part, and a packet ends once all of its rays have. A start that is not
+// valid is lit: nothing stands before it.
 
 #include <algorithm>
 #include <cmath>
@@ -26,17 +27,17 @@
 #define HWY_TARGET_INCLUDE "raycast/query/light_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After Highway: a block of its own.
+// The include follows Highway in a block of its own.
 #include "base/lanes-inl.h"
 
 #ifndef FRONTMOST_RAYCAST_LIGHT_KERNEL_ONCE_
 #define FRONTMOST_RAYCAST_LIGHT_KERNEL_ONCE_
 namespace frontmost::raycast_detail {
 
-/// How the world is sheared: u and v across the light, d towards it, and the light's rays run along d.
+/// The sheared world: u and v lie across the light, d towards it, and the light's rays run along d.
 struct LightAxes {
   int u = 0, v = 1, d = 2;  ///< the world's axes; d is the one that the light moves most along
-  float sign = 1;           ///< +1 where the light comes from the positive side
+  float sign = 1;           ///< +1 if the light comes from the positive side
   float slope_u = 0, slope_v = 0;
 
   explicit LightAxes(const glm::vec3& to_light) {
@@ -49,7 +50,7 @@ struct LightAxes {
   }
 };
 
-/// Of one unit in scaled coordinates: six roundings of up to three terms, and as much again.
+/// Rounding bound of one unit in scaled coordinates: six roundings of up to three terms, and as much again.
 constexpr float kShearError = 0x1p-20f;
 
 }  // namespace frontmost::raycast_detail
@@ -90,7 +91,7 @@ class LightPacket {
   }
 
  private:
-  /// A rectangle of the sheared plane, and the starts' heights above it.
+  /// A rectangle of the sheared plane, and the range of the starts' heights.
   struct Bounds {
     float low_u, high_u, low_v, high_v, low_d, high_d;
   };
@@ -104,11 +105,11 @@ class LightPacket {
     scale_ = float(std::ldexp(1.0, std::clamp(-exponent, -126, 126)));
   }
 
-  /// Finds which starts are valid, where they are, and the scale.
+  /// Finds the valid starts, their positions, and the scale.
   void Measure(glm::dvec3* position) {
     float size = tree_size_;
     waiting_count_ = 0;
-    std::fill_n(waiting_, kLightRays, 0);  // those of a last packet that is not full are nobody's
+    std::fill_n(waiting_, kLightRays, 0);  // a last packet that is not full has unused rays
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const TrianglePoint& point = points_[i];
       is_clear_[i] = !is_valid(point);
@@ -118,14 +119,14 @@ class LightPacket {
       ++waiting_count_;
       position[i] = position_of(point);
       size = std::max(size, SizeOf(point.lift));
-      // Neighbours are mostly of one triangle.
+      // Neighbours mostly lie on the same triangle.
       if (i > 0 && !is_clear_[i - 1] && point.corners == points_[i - 1].corners) continue;
       for (const glm::vec3& corner : point.corners) size = std::max(size, SizeOf(corner));
     }
     SetScale(size);
   }
 
-  /// Rays without a valid start are lit; they and the unused ones stay where another is.
+  /// Rays without a valid start are lit. These and unused rays take the place of a valid start.
   void Place() {
     glm::dvec3 position[kLightRays];
     Measure(position);
@@ -161,11 +162,11 @@ class LightPacket {
       reach = hn::Max(reach, hn::Max(hn::Max(hn::Abs(x), hn::Abs(y)), hn::Abs(z)));
     }
     reach_ = hn::GetLane(hn::MaxOfLanes(d, reach));
-    // Doubles of coordinates up to 2 that are subtracted, beside the shear.
+    // The second term bounds the subtraction of doubles up to 2, which the shear does not cover.
     error_ = kShearError * reach_ + 0x1p-46f;
   }
 
-  /// Of one vector of rays.
+  /// Bounds of one vector of rays.
   [[nodiscard]] HWY_INLINE Bounds BoundsOf(std::size_t first) const {
     const LF d;
     const auto low = [&](const float* x) HWY_ATTR { return hn::GetLane(hn::MinOfLanes(d, hn::Load(d, x + first))); };
@@ -193,13 +194,13 @@ class LightPacket {
     return hn::Sub(hn::Mul(hn::Load(d, from), hn::Set(d, scale_)), hn::Set(d, origin_[axis]));
   }
 
-  /// An axis across the light, and between where along it outlines matter.
+  /// An axis across the light, and the range along it in which outlines matter.
   struct Across {
     int axis;
     float slope, begin, end;
   };
 
-  /// Whether boxes that reach from low_d to high_d towards the light cast no outline there.
+  /// Boxes whose outlines miss the range of `across`; the boxes reach from low_d to high_d towards the light.
   [[nodiscard]] HWY_INLINE LM Beside(const RayNode& node, std::size_t first, const Across& across, LV low_d,
                                      LV high_d) const {
     const LF d;
@@ -222,11 +223,11 @@ class LightPacket {
       if (axes_.sign < 0) low_d = hn::Neg(low_d), high_d = hn::Neg(high_d);
       const LV pad = hn::Mul(hn::Max(hn::Abs(low_d), hn::Abs(high_d)), hn::Set(d, kShearError));
       LM outside = hn::Lt(hn::Add(high_d, pad), hn::Set(d, b.low_d));
-      // What lies below all starts casts no shadow on them.
+      // Parts below all starts cast no shadow on them.
       low_d = hn::Max(hn::Sub(low_d, pad), hn::Set(d, b.low_d));
       outside = hn::Or(outside, Beside(node, first, {axes_.u, axes_.slope_u, b.low_u, b.high_u}, low_d, high_d));
       outside = hn::Or(outside, Beside(node, first, {axes_.v, axes_.slope_v, b.low_v, b.high_v}, low_d, high_d));
-      // A box whose ends are infinities of both signs is looked into; the greater of NaN and a number is either one, by
+      // A box with ends at infinities of both signs is visited. The maximum of NaN and a number depends on the
       // processor.
       outside = hn::And(outside, hn::Eq(high_d, high_d));
       const std::uint32_t used = (1u << std::min(kLightLanes, node.count - first)) - 1;
@@ -235,7 +236,7 @@ class LightPacket {
     }
   }
 
-  /// Sixteen triangles in the sheared plane, and which of them each vector of rays may meet.
+  /// Sixteen triangles in the sheared plane, and the triangles that each vector of rays may meet.
   struct Sheared {
     alignas(64) float u[3][kRayLanes], v[3][kRayLanes], d[3][kRayLanes], reach[kRayLanes];
     std::uint32_t beside[kLightRays / kLightLanes];
@@ -290,13 +291,13 @@ class LightPacket {
     return LaneBits(hn::RebindMask(LF(), hn::Ne(hn::Load(du, leaf.id + first), hn::Set(du, no_primitive))));
   }
 
-  /// One triangle, as all rays see it.
+  /// One triangle, in the form that all rays share.
   struct Outline {
     float u[3], v[3], d[3];
-    float edge_error, side_error;  ///< of a turn about an edge; of six times the volume below a start
-    bool is_above;                 ///< all of it above all starts
-    float high_d;                  ///< nothing of it is higher
-    float pad;                     ///< coordinates are wrong by at most so much
+    float edge_error, side_error;  ///< error bound of a turn about an edge, and of six times the volume below a start
+    bool is_above;                 ///< all of the triangle is above all starts
+    float high_d;                  ///< greatest height of the triangle
+    float pad;                     ///< error bound of coordinates
 
     [[nodiscard]] bool box_holds(float x, float y) const {
       const auto holds = [&](const float(&at)[3], float value) {
@@ -309,11 +310,11 @@ class LightPacket {
   [[nodiscard]] Outline OutlineOf(const Sheared& from, std::size_t lane) const {
     Outline t;
     for (std::size_t k = 0; k < 3; ++k) t.u[k] = from.u[k][lane], t.v[k] = from.v[k][lane], t.d[k] = from.d[k][lane];
-    // No difference of two coordinates is greater than `most`, nor wrong by more than `error`.
+    // No difference of two coordinates is greater than `most`, or wrong by more than `error`.
     const float own_error = kShearError * from.reach[lane];
     t.pad = own_error;
     const float most = 2 * (from.reach[lane] + reach_), error = own_error + error_ + 0x1p-23f * most;
-    // A turn is a difference of two products of differences: each of the four factors is wrong by `error` at most, and
+    // A turn is a difference of two products of differences. Each of the four factors is wrong by at most `error`, and
     // two products and their difference round once. The last term stands for underflow.
     t.edge_error = 8 * (most + error) * error + 0x1p-140f;
     t.side_error = 64 * most * (most + error) * error + 0x1p-140f;
@@ -344,7 +345,7 @@ class LightPacket {
     const LF d;
     const hn::RebindToUnsigned<LF> du;
     const hn::RebindToSigned<LF> di;
-    // Not its own triangle, nor rays that have met something already: those are in the dark for good.
+    // A ray skips its own triangle. Rays that have met something are in the dark for good, and skip all others.
     const LM waiting = hn::RebindMask(d, hn::MaskFromVec(hn::Load(di, waiting_ + first)));
     const LM others = hn::RebindMask(d, hn::Ne(hn::Load(du, ids_ + first), hn::Set(du, id)));
     const LV height = hn::Load(d, d_ + first);
@@ -375,19 +376,19 @@ class LightPacket {
     --waiting_count_;
   }
 
-  /// A triangle that certainly is passed through; a lifted point may be below its own.
+  /// Handles a triangle that the ray certainly passes through. A lifted point may be below its own triangle.
   void Meet(const RayLeaf& leaf, std::size_t lane, std::size_t ray) {
     const TrianglePoint& point = points_[ray];
     if ((point.lift == glm::vec3(0) || !is_own(leaf.corners_of(lane), point)) && !Passes(leaf, lane, ray)) Darken(ray);
   }
 
   HWY_NOINLINE void Decide(const RayLeaf& leaf, std::size_t lane, const Outline& outline, std::size_t ray) {
-    // Whether rays outside of the triangle's box come here depends on the width of a vector: they do not count.
+    // Rays outside the triangle's box do not count, as the width of a vector decides whether they come here.
     decided_ += outline.box_holds(u_[ray], v_[ray]);
     if (stands_before(leaf.corners_of(lane), points_[ray], to_light_) && !Passes(leaf, lane, ray)) Darken(ray);
   }
 
-  /// Whether light comes through the triangle where the ray passes: by a hole, or from behind.
+  /// Whether light passes the triangle at the ray's place: through a hole, or from behind.
   [[nodiscard]] HWY_INLINE bool Passes(const RayLeaf& leaf, std::size_t lane, std::size_t ray) const {
     if (is_one_way_ && !tree_.sides->is_double(leaf.id[lane]) && !FacesLight(leaf.corners_of(lane))) return true;
     const Cutouts* const cutouts = tree_.cutouts.get();
@@ -416,7 +417,7 @@ class LightPacket {
   std::uint64_t decided_ = 0;
   float scale_ = 1, error_ = 0, reach_ = 0;
   glm::vec3 origin_{0};
-  Bounds bounds_{}, block_[kLightRays / kLightLanes];  ///< of all; of each vector
+  Bounds bounds_{}, block_[kLightRays / kLightLanes];  ///< bounds of all rays, and of each vector
   std::size_t block_count_ = 0;
 };
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a ray or segment meets: decided exactly on the floats of the query and of the corners.
+// The hit of a ray or segment, decided exactly on the floats of the query and of the vertices.
 //
-// The sign of a determinant is asked in doubles first, with a bound; what is left goes through numbers that are not
-// rounded. Which triangle is met therefore never depends on rounding. Only the place along the ray is rounded, and it
-// is kept between the triangle's corners along every axis: of slivers rounding leaves no more than that.
+// Signs of determinants are computed in doubles first, with a bound; undecided signs are computed without rounding. So
+// rounding never changes which triangle is met. Only the place along the ray is rounded, and is kept between the
+// triangle's vertices along every axis: rounding leaves no better bound for slivers.
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@
 namespace frontmost::raycast_detail {
 namespace {
 
-/// The sums themselves, as numbers that are never rounded.
+/// The sums as numbers that are never rounded.
 ExactVector unrounded(const HighLowVector& v) {
   ExactVector sums;
   for (std::size_t axis = 0; axis < 3; ++axis) sums[axis] = Expansion(v.low[axis]) + Expansion(v.high[axis]);
@@ -23,9 +23,9 @@ ExactVector unrounded(const HighLowVector& v) {
 
 glm::dvec3 rounded(const HighLowVector& v) { return {v.high[0], v.high[1], v.high[2]}; }
 
-/// Where the plane of corners, which are counted from the origin, is met. What is met lies between the corners along
-/// every axis: of triangles that are slivers, or tiny against how far they are, rounding leaves no more than that. The
-/// signs are certain as well, so it cannot be allowed to say otherwise.
+/// The place at which the ray meets the plane of vertices `c`, which are relative to the origin. The place is kept
+/// between the vertices along every axis: with slivers, or triangles tiny against their distance, rounding leaves no
+/// better bound. The signs are certain, so the rounded place must not contradict them.
 double place_along(const Query& q, const glm::dvec3& along, const std::array<glm::dvec3, 3>& c) {
   double nearest = std::numeric_limits<double>::denorm_min();
   double farthest = q.is_segment ? 1.0 : std::numeric_limits<double>::max();
@@ -38,7 +38,7 @@ double place_along(const Query& q, const glm::dvec3& along, const std::array<glm
   }
   const glm::dvec3 n = glm::cross(c[1] - c[0], c[2] - c[0]);
   const double t = glm::dot(n, c[0]) / glm::dot(n, along);
-  // NaN is what underflow leaves. The range may be empty by a rounding.
+  // NaN comes from underflow. The range may be empty by a rounding.
   return std::max(std::min(std::isnan(t) ? nearest : std::max(t, nearest), farthest),
                   std::numeric_limits<double>::denorm_min());
 }
@@ -66,7 +66,7 @@ int determinant_sign(const HighLowVector& a, const HighLowVector& b, const HighL
     det += x[std::size_t(i)] * (p - q);
     size += std::abs(x[std::size_t(i)]) * (std::abs(p) + std::abs(q));
   }
-  // Three roundings of the coordinates and five on the way: less than 16 half units in the last place of the size.
+  // Three roundings of the coordinates and five more: less than 16 half units in the last place of the size.
   if (std::abs(det) > size * 0x1p-49) return det > 0 ? 1 : -1;
   return dot(unrounded(a), cross(unrounded(b), unrounded(c))).sign();
 }
@@ -81,13 +81,13 @@ RayHit meet(const Query& q, const std::array<glm::vec3, 3>& corners, PrimitiveId
   const HighLowVector along = q.is_segment ? high_low_difference(q.end, q.origin) : high_low(q.direction);
   std::array<HighLowVector, 3> c;
   for (std::size_t k = 0; k < 3; ++k) c[k] = high_low_difference(corners[k], q.origin);
-  // Which way the line turns about each edge. Seen against the direction, counter-clockwise is negative: front.
+  // How the line turns about each edge. Seen against the direction, counter-clockwise is negative: front.
   const int u = determinant_sign(along, c[1], c[2]), v = determinant_sign(along, c[2], c[0]),
             w = determinant_sign(along, c[0], c[1]);
   const int least = std::min({u, v, w}), most = std::max({u, v, w});
   const int facing = least >= 0 ? most : most <= 0 ? least : 0;
   if (facing == 0) return {};
-  // The origin's side of the plane; a surface through it is not met.
+  // The origin's side of the plane decides. A surface through the origin is not met.
   if (determinant_sign(c[0], c[1], c[2]) != facing) return {};
   if (q.is_segment) {
     std::array<HighLowVector, 3> e;

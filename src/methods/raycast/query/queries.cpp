@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What users ask of single rays and segments, one by one or in batches.
+// Public queries of single rays and segments, one by one or in batches.
 //
-// Many queries are asked in parts of 256, each part by one thread through one kernel call. A single query takes the
-// same way with a part of one, so that it gets the same answer.
+// A batch is divided into parts of 256 queries, each answered by one thread in one kernel call. A single query is a
+// part of one, so it gets the same answer.
 
 #include "raycast/query/queries.h"
 
@@ -15,12 +15,12 @@ namespace {
 
 using namespace raycast_detail;
 
-/// Their queries and answers, 20 KiB, lie on the stack and in the first-level cache.
+/// Queries and answers of a part, 20 KiB, lie on the stack and in the first-level cache.
 constexpr std::size_t kQueriesPerPart = 256;
 
 Query query_of(const Ray& ray) { return {ray.origin, ray.origin, ray.direction, false}; }
 
-/// The rounded direction may overflow where the ends are as far apart as floats reach; it then leaves nothing out.
+/// The rounded direction may overflow if the ends are as far apart as floats reach; it then leaves nothing out.
 Query query_of(const Segment& segment) { return {segment.from, segment.to, segment.to - segment.from, true}; }
 
 RayHit first_of(const RayTree& tree, const Query& query, Want want) {
@@ -35,8 +35,8 @@ void check_sizes(std::size_t queries, std::size_t answers) {
                 "there are " + std::to_string(answers) + " places for " + std::to_string(queries) + " queries");
 }
 
-/// Calls take(begin, hits) for the answers to consecutive questions. Answers go by number to where they belong, so they
-/// do not depend on which thread asked what.
+/// Calls take(begin, hits) for the answers to consecutive questions. Answers are stored by number, so they do not
+/// depend on threads.
 template <class Question, class Take>
 void ask(const RayIndex& index, std::span<const Question> questions, Want want, const Execution& execution,
          const Take& take) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays that are asked for one by one or in batches: what the kernels of single rays and of rays to a light offer.
+// The kernels of single rays, and of rays to a light.
 //
 //    closest_hit, is_clear, all_hits, closest_hits ...   --> queries.cpp --> walk(), walk_batch()   query_kernel.cpp
 //    are_lit, and shade's shadows by rays                --> find_lit()                              light_kernel.cpp
@@ -14,7 +14,7 @@
 
 namespace frontmost::raycast_detail {
 
-/// Whether the query goes on through the triangle that it meets there: by a hole, or from behind.
+/// Whether the query goes on through the triangle that it meets: by a hole, or from behind.
 [[nodiscard]] inline bool passes(const RayTree& tree, const Query& query, const RayHit& hit) {
   if (query.is_one_way && !hit.is_front && !tree.sides->is_double(hit.primitive)) return true;
   const Cutouts* const cutouts = tree.cutouts.get();
@@ -24,28 +24,28 @@ namespace frontmost::raycast_detail {
   return (*cutouts)[hit.primitive].is_hole_at(from + hit.t * along);
 }
 
-/// What ends a walk.
+/// When a walk ends.
 enum class Want : std::uint8_t {
   closest,  ///< one hit, the nearest
   any,      ///< one hit, whichever comes first
   all,      ///< every hit, in no order
 };
 
-/// Appends what is met to `hits`. Precondition: is_valid(query).
+/// Appends the hits to `hits`. Precondition: is_valid(query).
 void walk(const RayTree& tree, const Query& query, Want want, std::vector<RayHit>& hits, Isa isa);
 
-/// The hit of each query that `want`, closest or any, asks for; none where the query is not valid.
-/// Precondition: as many answers as queries. \returns how many nodes and leaves they have looked at.
+/// The hit of each query, closest or any as `want` says; none if the query is not valid. Precondition: as many answers
+/// as queries. \returns how many nodes and leaves were visited.
 std::uint64_t walk_batch(const RayTree& tree, std::span<const Query> queries, Want want, std::span<RayHit> answers,
                          Isa isa);
 
-/// Rays that walk the tree together: four pixels by four of four samples.
+/// Rays that walk the tree together: four by four pixels of four samples each.
 inline constexpr std::size_t kLightRays = 64;
 
 /// A light at infinity.
 struct LightAim {
   glm::vec3 to_light;
-  bool is_one_way = false;  ///< Query::is_one_way, of rays that come from the light
+  bool is_one_way = false;  ///< Query::is_one_way, for rays that come from the light
 };
 
 /// are_lit() on this thread. \returns how often exact numbers had to decide, which takes microseconds.

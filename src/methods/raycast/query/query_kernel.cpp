@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// One ray through the tree: sixteen boxes or triangles at a time. Vectors only leave out what is certainly missed, or
-// lies behind what is certainly met; what remains, one or two triangles a ray, is decided by meet(). Rays of a batch go
-// through large trees in turns, one fetching while the others work.
+// One ray through the tree, sixteen boxes or triangles at a time. Vectors only leave out triangles that are certainly
+// missed, or lie behind a certain hit; meet() decides the rest, one or two triangles a ray. Rays of a batch go through
+// large trees in turns, one fetching while the others work.
 //
 //    ray 0   fetch ------> work   fetch ------> work       Nodes of large trees come from memory. While one ray's next
-//    ray 1      fetch ------> work   fetch ------>         node is on its way others look into theirs, so that the
+//    ray 1      fetch ------> work   fetch ------>         node is on its way, other rays visit theirs, so that the
 //    ray 2         fetch ------> work   fetch ------>      waiting overlaps.
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 #define HWY_TARGET_INCLUDE "raycast/query/query_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After Highway: a block of its own.
+// The include follows Highway in a block of its own.
 #include "base/lanes-inl.h"
 #include "raycast/query/ray_axis-inl.h"
 
@@ -38,7 +38,7 @@ HWY_INLINE std::uint32_t QueryBits(QM mask) { return std::uint32_t(frontmost::HW
 
 class QueryWalker {
  public:
-  /// `stack` has room for tree.stack_size().
+  /// Precondition: `stack` has room for tree.stack_size() entries.
   QueryWalker(const RayTree& tree, const Query& query, Want want, Entry* stack, std::vector<RayHit>& hits)
       : tree_(tree), q_(query), axis_(query), want_(want), stack_(stack), hits_(hits) {
     if (query.is_segment) end_ = 1;
@@ -46,7 +46,7 @@ class QueryWalker {
     stack_[waiting_++] = {0, tree.root};
   }
 
-  /// One node or leaf. \returns false where the walk has ended, and `hits` is complete.
+  /// Visits one node or leaf. \returns false once the walk has ended and `hits` is complete.
   bool Step() {
     const Entry next = stack_[--waiting_];
     if ((next.child & kLeafBit) == 0) {
@@ -66,14 +66,14 @@ class QueryWalker {
   }
 
  private:
-  /// t = bound * inverse - start, widened by all rounding, also of numbers below the normal floats; the end of a
-  /// segment is rounded too.
+  /// Along one axis, t = bound * inverse - start, widened by all rounding, also of numbers below the normal floats. The
+  /// end of a segment is rounded too.
   struct Slab {
     float inverse, start_enter, start_leave;
     bool rests, is_flipped;
   };
 
-  /// May be met, but not before the place `from`.
+  /// A triangle that may be met, but not before the place `from`.
   struct Noted {
     float from;
     PrimitiveId id;
@@ -86,14 +86,14 @@ class QueryWalker {
     const double size = std::max({double(std::abs(tree_.bounds.low[axis])), double(std::abs(tree_.bounds.high[axis])),
                                   std::abs(o), q_.is_segment ? double(std::abs(q_.end[axis])) : 0.0});
     constexpr float all = std::numeric_limits<float>::infinity();
-    // An axis along which the ray hardly moves says nothing, except where it does not move at all.
+    // An axis along which the ray hardly moves says nothing, unless the ray does not move along it at all.
     const double reach = std::max(1.0, size) / std::abs(d);
     if (!(reach < 0x1p120) || std::isinf(d)) return {0, all, -all, d == 0, false};
     const double inverse = 1 / d, slack = 0x1p-20 * size * std::abs(inverse) + 0x1p-146;
     return {float(inverse), float(o * inverse + slack), float(o * inverse - slack), false, inverse < 0};
   }
 
-  /// Boxes that the ray cannot meet as it does not move along an axis.
+  /// Boxes that the ray cannot meet, as it does not move along an axis.
   [[nodiscard]] HWY_NOINLINE QM Beside(const RayNode& node, std::size_t first) const {
     const QF d;
     QM beside = hn::MaskFromVec(hn::Zero(d));
@@ -106,8 +106,8 @@ class QueryWalker {
     return beside;
   }
 
-  /// How many of `count` are greater than number i, or equal and before it. Floats from 0 on are ordered as their bits
-  /// are, and these even where they overflow to NaN.
+  /// How many of `count` are greater than number i, or equal and before it. Bits of floats from 0 on are ordered as the
+  /// floats are, even if they overflow to NaN.
   static HWY_INLINE std::size_t RankOf(const std::int32_t* at, std::size_t count, std::size_t i) {
     const QI d;
     const auto own = hn::Set(d, at[i]);
@@ -120,7 +120,7 @@ class QueryWalker {
     return rank;
   }
 
-  /// Puts the children that are entered on top of the others, the nearest last. \returns how many.
+  /// Pushes the children that the ray enters, the nearest last. \returns how many.
   std::size_t LookInto(const RayNode& node, Entry* top) const {
     const QF d;
     const QU du;
@@ -155,7 +155,7 @@ class QueryWalker {
     return count;
   }
 
-  /// For the nearest hit: what may be met waits to be decided, since nearer ones that are certainly met spare most.
+  /// For the nearest hit: notes triangles that may be met and decides later, as nearer certain hits spare most of them.
   void NoteLeaf(const RayLeaf& leaf) {
     const QF d;
     for (std::size_t first = 0; first < kRayLanes; first += kQueryLanes) {
@@ -175,17 +175,17 @@ class QueryWalker {
     }
   }
 
-  /// Nothing that begins beyond a place along the ray is the nearest.
+  /// Moves the end: nothing that begins beyond a place along the ray is the nearest.
   void EndAt(float place) { end_ = std::min(end_, axis_.t_of(place) * (1 + 0x1p-20f) + 0x1p-148f); }
 
   void Note(const RayLeaf& leaf, std::size_t lane, float from) {
     if (leaf.id[lane] == no_primitive) return;
-    // Deciding early costs time alone: what is farther than the end is left out again then.
+    // Deciding early only costs time; triangles beyond the end are left out later.
     if (noted_ == kMostNoted) Settle();
     notes_[noted_++] = {from, leaf.id[lane], leaf.corners_of(lane)};
   }
 
-  /// Decides what was noted.
+  /// Decides the noted triangles.
   void Settle() {
     for (std::size_t i = 0; i < noted_; ++i) {
       const Noted& note = notes_[i];
@@ -200,7 +200,7 @@ class QueryWalker {
     bool met = false;
     for (std::size_t first = 0; first < kRayLanes; first += kQueryLanes) {
       const Candidates candidates = CandidatesOf(axis_.Pass(leaf, first));
-      // A hit of any kind is asked for; which one, and where, says nothing to whoever asks whether the way is clear.
+      // Any hit will do; its triangle and place are not asked for.
       if (want_ == Want::any && candidates.certain != 0 && !tree_.cutouts && !q_.is_one_way) {
         const std::size_t lane = first + hwy::Num0BitsBelowLS1Bit_Nonzero32(candidates.certain);
         hits_.push_back({leaf.id[lane], 0, false});
@@ -224,7 +224,7 @@ class QueryWalker {
     } else if (hit.t < hits_[0].t || (hit.t == hits_[0].t && hit.primitive < hits_[0].primitive)) {
       hits_[0] = hit;
     }
-    // Boxes at the same t may hold an equal hit of a lower id: the end is rounded up.
+    // The end is rounded up, as boxes at the same t may hold an equal hit of a lower id.
     if (want_ == Want::closest) end_ = std::min(end_, float(hits_[0].t) * (1 + 0x1p-22f) + 0x1p-148f);
   }
 
@@ -232,7 +232,7 @@ class QueryWalker {
     std::uint32_t possible, certain;
   };
 
-  /// Missed is also what lies before the start or beyond the end.
+  /// Triangles before the start or beyond the end count as missed.
   [[nodiscard]] HWY_INLINE Candidates CandidatesOf(const Passes& p) const {
     const QF d;
     const float end = axis_.place_of(end_);
@@ -255,7 +255,7 @@ class QueryWalker {
   Noted notes_[kMostNoted];
 };
 
-/// Room for what a walk has put off, which takes memory of its own in uncommonly deep trees alone.
+/// Room for the children that a walk has put off. Allocates memory in uncommonly deep trees only.
 class WalkStack {
  public:
   explicit WalkStack(const RayTree& tree) : deep_(tree.stack_size() > kUsual ? tree.stack_size() : 0) {}
@@ -279,16 +279,16 @@ struct QueryBatch {
   std::span<const Query> queries;
   Want want;
   std::span<RayHit> answers;
-  std::size_t next = 0;     ///< the first query that nobody has begun
-  std::uint64_t steps = 0;  ///< nodes and leaves that were looked at
+  std::size_t next = 0;     ///< the first query that has not begun
+  std::uint64_t steps = 0;  ///< visited nodes and leaves
 };
 
-/// Walks for one query of a batch after the other.
+/// Walks for the queries of a batch, one after the other.
 class BatchWalk {
  public:
   explicit BatchWalk(QueryBatch& batch) : batch_(batch), stack_(batch.tree) {}
 
-  /// \returns false where no query is left.
+  /// \returns false if no query is left.
   bool Begin() {
     while (batch_.next < batch_.queries.size()) {
       number_ = batch_.next++;
@@ -301,7 +301,7 @@ class BatchWalk {
     return false;
   }
 
-  /// \returns false where no query is left.
+  /// \returns false if no query is left.
   bool Step() {
     ++batch_.steps;
     if (walker_->Step()) return true;
@@ -317,8 +317,8 @@ class BatchWalk {
   std::optional<QueryWalker> walker_;
 };
 
-/// Rays that take turns hide each other's waiting for memory: 1.4 times as many a second where a million triangles do
-/// not fit into caches, but a tenth fewer where all do. More than eight gain nothing.
+/// Rays that take turns hide each other's waiting for memory: 1.4 times as many a second if a million triangles do not
+/// fit into caches, but a tenth fewer if all do. More than eight rays gain nothing.
 constexpr std::size_t kTurns = 8;
 constexpr std::size_t kTurnsFromBytes = std::size_t(8) << 20;
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// What single rays and segments meet, and what stands between a point and a light: the definitions, exact, in plain
-// scalar code. Kernels are faster ways to the same bits, and ask here where rounding leaves them in doubt. For rays
-// through the samples of a view the definition is in sample_rule.h.
+// The definitions of what single rays and segments meet, and of what stands between a point and a light: exact, in
+// plain scalar code. Kernels are faster ways to the same bits, and ask here if rounding leaves a doubt. sample_rule.h
+// holds the definition for rays through the samples of a view.
 //
 //              c
-//             / |         The line from o along d passes through the triangle, edges included, where it turns to the
-//    o ------/--|---> d   same side about all three edges: the signs of det(d, b - o, c - o), det(d, c - o, a - o) and
-//           a---b         det(d, a - o, b - o). The triangle is before o where that of det(a - o, b - o, c - o) is the
-//                         same.
+//             / |         The line from o along d passes through the triangle, edges included, if it turns to the same
+//    o ------/--|---> d   side about all three edges: the signs of det(d, b - o, c - o), det(d, c - o, a - o) and
+//           a---b         det(d, a - o, b - o) agree. The triangle is before o if the sign of det(a - o, b - o, c - o)
+//                         agrees with them.
 //
-// Differences of floats are kept as exact sums of two doubles. A determinant is worked out in doubles first, and
-// without any rounding where its sign is not certain then.
+// Differences of floats are kept as exact sums of two doubles. A determinant is computed in doubles first, and without
+// any rounding if its sign is still uncertain.
 //
 // J. Shewchuk. Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates. 1997.
 #pragma once
@@ -26,47 +26,47 @@ struct HighLowVector {
   std::array<double, 3> high{}, low{};
 };
 
-/// v itself; b - a.
+/// high_low(v) is v itself, high_low_difference(b, a) is b - a.
 [[nodiscard]] HighLowVector high_low(const glm::vec3& v);
 [[nodiscard]] HighLowVector high_low_difference(const glm::vec3& b, const glm::vec3& a);
 
-/// -1, 0 or 1. A few nanoseconds unless the determinant is within rounding of zero; a few microseconds then.
-/// Precondition: the vectors come from finite floats, so that no product leaves the range of doubles.
+/// Sign of the determinant: -1, 0 or 1. Takes a few nanoseconds, or microseconds if the determinant is within rounding
+/// of zero. Precondition: the vectors come from finite floats, so that no product leaves the range of doubles.
 [[nodiscard]] int determinant_sign(const HighLowVector& a, const HighLowVector& b, const HighLowVector& c);
 
 /// A ray, or a segment whose far end is at t = 1.
 struct Query {
-  glm::vec3 origin, end;  ///< `end` of segments only
-  glm::vec3 direction;    ///< of segments: end - origin, rounded
+  glm::vec3 origin, end;  ///< `end` only counts in segments
+  glm::vec3 direction;    ///< in segments: end - origin, rounded
   bool is_segment;
   bool is_one_way = false;  ///< one-sided triangles are not met from behind, as in views with Culling::material
 };
 
-/// \returns false where nothing can be met: a coordinate that is not finite, or no direction.
+/// \returns false if nothing can be met: a coordinate is not finite, or there is no direction.
 [[nodiscard]] bool is_valid(const Query& query);
 
-/// A triangle met at its exact place, or not at all: the definition, on plain scalars.
+/// The definition of a hit, on plain scalars: the triangle is met at its exact place, or not at all.
 [[nodiscard]] RayHit meet(const Query& query, const std::array<glm::vec3, 3>& corners, PrimitiveId id);
 
-/// False where there is no such point: a value that is not finite, a negative weight, or none above zero.
+/// False if there is no such point: a value is not finite, a weight is negative, or no weight is above zero.
 [[nodiscard]] bool is_valid(const TrianglePoint& point);
 
 using CornerPositions = std::array<glm::vec3, 3>;
 
-/// The triangle's corners are those of the point's own, in any order.
+/// Whether the triangle's vertices are the point's own, in any order.
 [[nodiscard]] bool is_own(const CornerPositions& corners, const TrianglePoint& point);
 
-/// True when the ray from the point towards the light passes through the triangle: through an edge or corner counts,
-/// along its plane or starting on it does not. An own triangle never does.
-/// Tens of nanoseconds unless something is within 1e-14 of touching; microseconds then.
-/// Precondition: is_valid(point), finite values elsewhere, and a direction.
+/// True if the ray from the point towards the light passes through the triangle. Passing through an edge or vertex
+/// counts; passing along the triangle's plane or starting on it does not. A point's own triangle never counts. Takes
+/// tens of nanoseconds, or microseconds if the ray is within 1e-14 of touching. Precondition: is_valid(point), finite
+/// values elsewhere, and a direction.
 [[nodiscard]] bool stands_before(const CornerPositions& corners, const TrianglePoint& point, const glm::vec3& to_light);
 
 /// Where the ray passes through the triangle's plane, rounded. Precondition: stands_before().
 [[nodiscard]] glm::dvec3 passed_point(const CornerPositions& corners, const TrianglePoint& point,
                                       const glm::vec3& to_light);
 
-/// The point itself, rounded.
+/// The position of the point, rounded.
 [[nodiscard]] glm::dvec3 position_of(const TrianglePoint& point);
 
 }  // namespace frontmost::raycast_detail

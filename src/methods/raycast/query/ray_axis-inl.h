@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// How one ray passes many triangles: by their sides, or through them and where.
+// Tests many triangles against one ray: which it passes by, and which it passes through at what place.
 //
 //    sheared along the ray       The triangle is moved so that the ray's origin is at zero, and sheared so that the ray
-//        v |   c                 runs along one axis of the world. The ray passes through it where zero lies inside of
-//          |  / .                the sheared corners: the three edges then turn about it in one way. All of this is in
-//     -----o-/---.--- u          floats with a bound on the error; what is not certain is asked again by meet().
+//        v |   c                 runs along one axis of the world. The ray passes through the triangle if zero lies
+//          |  / .                inside the sheared vertices: the three edges then turn about zero in one direction.
+//     -----o-/---.--- u          All of this is in floats with an error bound; meet() decides the uncertain cases.
 //          a-------b
 
 // Included once for every target.
@@ -35,8 +35,8 @@ using QV = hn::Vec<QF>;
 using QM = hn::Mask<QF>;
 constexpr std::size_t kQueryLanes = hn::MaxLanes(QF());
 
-/// Triangles of which the ray's line passes some `beside` for certain, others for certain through the `inside`; where
-/// it meets them at all, between the places `from` and `to`.
+/// Triangles that the ray's line certainly passes `beside`, and triangles that it certainly passes `inside`. If the
+/// line meets a triangle at all, it does so between the places `from` and `to`.
 struct Passes {
   QM beside, inside;
   QV from, to;
@@ -58,8 +58,8 @@ class RayAxis {
   [[nodiscard]] float place_of(float t) const { return t * length_; }
   [[nodiscard]] float t_of(float place) const { return place / length_; }
 
-  /// Sheared along the ray, a triangle is met where its edges all turn about the axis in one way. What two edges
-  /// certainly turn different ways about is missed.
+  /// Tests triangles, sheared along the ray: the ray meets a triangle if all its edges turn about the axis in one
+  /// direction. It misses the triangle if two edges certainly turn in different directions.
   [[nodiscard]] HWY_INLINE Passes Pass(const RayLeaf& leaf, std::size_t first) const {
     const QF d;
     QV u[3], v[3], z[3];
@@ -79,7 +79,7 @@ class RayAxis {
     const QV bound = hn::Add(hn::Mul(hn::Mul(hn::Add(wide, error), error), hn::Set(d, 8.0f)), hn::Set(d, 0x1p-140f));
     const QV least = Least(e), most = Most(e), below = hn::Neg(bound);
     const QM inside = hn::And(Serves(hn::Max(wide, deep), total), hn::Or(hn::Gt(least, bound), hn::Lt(most, below)));
-    // The place is the mean of the corners', weighted by turns, of which each may be wrong by `bound`.
+    // The place is the mean of the vertices' places, weighted by turns, each of which may be wrong by `bound`.
     const QV share = hn::Div(hn::Set(d, 1.0f), total);
     const QV sum = hn::Add(hn::Add(hn::Mul(e[0], z[0]), hn::Mul(e[1], z[1])), hn::Mul(e[2], z[2]));
     const QV nearest = Least(z), farthest = Most(z), place = hn::Mul(sum, share);
@@ -91,8 +91,8 @@ class RayAxis {
   }
 
  private:
-  /// Sizes of which no product overflows, so that no turn is NaN, which least and most may pass over; and turns that no
-  /// underflow makes wrong by more than the bounds.
+  /// Triangles with sizes of which no product overflows, so that no turn is NaN (least and most may ignore NaN), and
+  /// with turns that underflow does not make wrong by more than the bounds.
   static HWY_INLINE QM Serves(QV size, QV total) {
     const QF d;
     return hn::And(hn::Lt(size, hn::Set(d, 0x1p40f)), hn::Gt(hn::Abs(total), hn::Set(d, 0x1p-80f)));

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// With weights w and corners c of its own triangle, the point is (sum of w c) / (sum of w) + lift: no float, but a
-// fraction. So a corner q of another triangle lies at (sum of w (q - c - lift)) / (sum of w) from it; signs of
-// determinants do not change when the division is left out, and what is left are sums of products.
+// With weights w and vertices c of its own triangle, the point is (sum of w c) / (sum of w) + lift: no float, but a
+// fraction. A vertex q of another triangle lies at (sum of w (q - c - lift)) / (sum of w) from the point. Leaving out
+// the division does not change signs of determinants, and sums of products remain.
 //
-//    w0 (q - c0 - lift) + w1 (q - c1 - lift) + w2 (q - c2 - lift)     a corner q seen from the point, times their sum
+//    w0 (q - c0 - lift) + w1 (q - c1 - lift) + w2 (q - c2 - lift)     a vertex q seen from the point, times their sum
 //
-// In doubles first, with a bound; and where that leaves a sign open, as sums of products that are never rounded. A
-// point of a triangle that lies in the plane of its neighbour is thus never dark by rounding.
+// Signs are computed in doubles first, with a bound, and if that leaves them open, as sums of products without
+// rounding. So rounding never darkens a point of a triangle that lies in the plane of its neighbour.
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +18,7 @@ namespace {
 
 float dot3(const glm::vec3& a, const glm::vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// Coordinates with a bound: no rounding of one exceeds 16 half units in the last place of its size.
+/// Coordinates with an error bound: at most 16 half units in the last place of `size`.
 struct Rounded {
   glm::dvec3 value{0}, size{0};
 };
@@ -46,17 +46,17 @@ ExactVector exact_from(const TrianglePoint& point, const glm::vec3& corner) {
   return result;
 }
 
-/// 2 when rounding leaves it open.
+/// The sign, or 2 if rounding leaves it open.
 int likely_sign(const Rounded& a, const Rounded& b, const Rounded& c) {
   const double det = glm::dot(a.value, glm::cross(b.value, c.value));
   const glm::dvec3 &p = b.size, &q = c.size;
   const glm::dvec3 minors(p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x);
-  // Three coordinates of 16 half units each, and five roundings on the way.
+  // Three coordinates of 16 half units each, and five more roundings.
   if (std::abs(det) > glm::dot(a.size, minors) * (64 * 0x1p-53)) return det > 0 ? 1 : -1;
   return 2;
 }
 
-/// The corners of a triangle, from the point, and the direction of the light.
+/// The vertices of a triangle, relative to the point, and the direction of the light.
 class LitTriangle {
  public:
   LitTriangle(const CornerPositions& corners, const TrianglePoint& point, const glm::vec3& to_light)
@@ -65,14 +65,14 @@ class LitTriangle {
     rounded_light_ = {glm::dvec3(to_light), glm::abs(glm::dvec3(to_light))};
   }
 
-  /// Which way the light's ray turns about the edge from corner i to corner j.
+  /// How the light's ray turns about the edge from vertex i to vertex j.
   [[nodiscard]] int turn(std::size_t i, std::size_t j) const {
     const int likely = likely_sign(rounded_light_, rounded_[i], rounded_[j]);
     if (likely != 2) return likely;
     return dot(exact(light_), cross(exact_corner(i), exact_corner(j))).sign();
   }
 
-  /// The point's side of the plane; 0 on it.
+  /// The point's side of the plane; 0 on the plane.
   [[nodiscard]] int side() const {
     const int likely = likely_sign(rounded_[0], rounded_[1], rounded_[2]);
     if (likely != 2) return likely;
@@ -92,7 +92,7 @@ class LitTriangle {
 }  // namespace
 
 bool is_valid(const TrianglePoint& point) {
-  // Zero unless something is not finite: then it is NaN.
+  // Zero, or NaN if a value is not finite.
   float nothing = dot3(point.lift, glm::vec3(0)) + dot3(point.weights, glm::vec3(0));
   for (const glm::vec3& corner : point.corners) nothing += dot3(corner, glm::vec3(0));
   const glm::vec3& w = point.weights;
@@ -100,14 +100,14 @@ bool is_valid(const TrianglePoint& point) {
 }
 
 bool is_own(const CornerPositions& corners, const TrianglePoint& point) {
-  // By positions, not by ids: the same triangle twice in a file would darken itself.
+  // Compares positions, not ids: a triangle that is in a file twice would darken itself.
   return std::is_permutation(corners.begin(), corners.end(), point.corners.begin());
 }
 
 bool stands_before(const CornerPositions& corners, const TrianglePoint& point, const glm::vec3& to_light) {
   if (is_own(corners, point)) return false;
   const LitTriangle sight(corners, point, to_light);
-  // As meet(): all turns to one side, edges included, and the plane is yet to come.
+  // The rule of meet(): all turns go to one side, edges included, and the plane lies ahead.
   const int u = sight.turn(1, 2), v = sight.turn(2, 0), w = sight.turn(0, 1);
   const int least = std::min({u, v, w}), most = std::max({u, v, w});
   const int facing = least >= 0 ? most : most <= 0 ? least : 0;

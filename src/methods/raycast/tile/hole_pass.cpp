@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The definition of sample_rule.h, ray by ray: only rays that ended in a hole come here, so nothing is done many at a
-// time. Boxes are met in doubles, padded by more than the rounding of a corner's place.
+// The definition of sample_rule.h, ray by ray. Only rays that ended in a hole come here, so nothing is done many at a
+// time. Boxes are met in doubles, padded by more than the rounding of a vertex's place.
 //
-// Going on from the hole would need the place where the ray is, which is rounded. So the ray begins at the eye again
-// and leaves out every hit that is a hole: the nearest that is left is by definition what is seen, and a hole in what
-// it met first is only one of them.
+// Going on from the hole would need the ray's place there, which is rounded. So the ray begins at the eye again and
+// leaves out every hit that is a hole. The nearest hit that remains is by definition the visible one.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -17,7 +16,7 @@
 namespace frontmost::raycast_detail {
 namespace {
 
-/// A place on the screen: the pixel, and its sample in 1/256 pixel from the image's top left corner.
+/// A place on the screen: the pixel, and its sample in 1/256 pixel from the image's top left.
 struct SamplePlace {
   int pixel_x, pixel_y;
   std::int32_t x, y;
@@ -28,7 +27,7 @@ struct Nearest {
   float key = 0;
 };
 
-/// One view; used by one thread.
+/// Passes the holes of one view; used by one thread.
 class HolePasser {
  public:
   HolePasser(const RayTree& tree, const View& view)
@@ -41,7 +40,7 @@ class HolePasser {
 
   [[nodiscard]] bool is_hole(PrimitiveId id, const SamplePlace& place) {
     if (!cutouts_.has(id)) return false;
-    // Neighbours mostly look at the same triangle, and setting one up costs more than asking it.
+    // Neighbours mostly look at the same triangle, and setting up a cutout costs more than testing it.
     if (id != id_) {
       cutout_.emplace(cutouts_[id], rays_);
       id_ = id;
@@ -49,7 +48,7 @@ class HolePasser {
     return cutout_->is_hole(place.x, place.y);
   }
 
-  /// What is met through all holes.
+  /// The nearest hit that is not a hole.
   [[nodiscard]] Nearest look(const SamplePlace& place) {
     const glm::dvec3 at = rays_.at(double(place.x) / kSubPixels, double(place.y) / kSubPixels);
     start_ = rays_.is_parallel() ? at : glm::dvec3(0);
@@ -75,7 +74,7 @@ class HolePasser {
     std::uint32_t child;
   };
 
-  /// The nearest is taken first: what it shows hides most of the others.
+  /// Pushes children so that the nearest is taken first: its triangles hide most of the others.
   void look_into(const RayNode& node) {
     const std::size_t others = waiting_.size();
     for (std::uint32_t i = 0; i < node.count; ++i) {
@@ -87,21 +86,21 @@ class HolePasser {
               [](const Waiting& a, const Waiting& b) { return a.enter > b.enter; });
   }
 
-  /// Whether what begins there is behind what was found.
+  /// Whether everything from `enter` on is behind the nearest hit so far.
   [[nodiscard]] bool is_behind(double enter) const {
     return !(enter <= transform_.near || key_of_distance(transform_, enter) * (1 + 0x1p-20f) >= nearest_.key);
   }
 
-  /// Where the ray enters a box, that is given from the eye, between the planes; none where it misses it or that is
-  /// behind what was found. Distances are along the viewing axis.
+  /// Where the ray enters a box, which is relative to the eye, between the planes. None if the ray misses the box, or
+  /// if the box is behind the nearest hit so far. Distances are along the viewing axis.
   [[nodiscard]] std::optional<double> entry(const glm::dvec3& low, const glm::dvec3& high) const {
     const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high));
     const double pad = 0x1p-17 * std::max({far.x, far.y, far.z});
-    if (!std::isfinite(pad)) return transform_.near;  // a box beyond the floats says nothing
+    if (!std::isfinite(pad)) return transform_.near;  // a box beyond the range of floats says nothing
     double enter = transform_.near - pad, leave = transform_.far + pad;
     for (int axis = 0; axis < 3; ++axis) {
       const double a = low[axis] - pad - start_[axis], b = high[axis] + pad - start_[axis], d = direction_[axis];
-      // Between the two planes all along, or nowhere: the division below would give NaN on one of them.
+      // The ray lies between the two planes everywhere or nowhere: the division below would give NaN on one of them.
       if (d == 0) {
         if (a > 0 || b < 0) return std::nullopt;
         continue;
@@ -121,7 +120,7 @@ class HolePasser {
   void meet(const SampleTriangle& triangle, PrimitiveId id, const SamplePlace& place) {
     const float sx = float(place.x - transform_.centre_x), sy = float(place.y - transform_.centre_y);
     if (!keeps(facing_, id, facing(transform_, triangle.corners, sx, sy))) return;
-    // The tile is part of the definition of a key: sample_rule.h.
+    // The tile is part of the definition of a key (sample_rule.h).
     const auto tile_centre = [](int pixel, std::int32_t image_centre) {
       return float((pixel / kTileSize * kTileSize + kTileSize / 2) * kSubPixels - image_centre);
     };
@@ -141,9 +140,9 @@ class HolePasser {
   FacingRule facing_;
   ScreenTransform transform_;
   ScreenRays rays_;
-  PrimitiveId id_ = no_primitive;  ///< that cutout_ is of
+  PrimitiveId id_ = no_primitive;  ///< triangle of cutout_
   std::optional<ScreenCutout> cutout_;
-  // Of the ray that is looked along.
+  // State of the current ray.
   glm::dvec3 start_{0}, direction_{0};  ///< from the eye; one unit along the viewing axis
   Nearest nearest_;
   std::vector<Waiting> waiting_;

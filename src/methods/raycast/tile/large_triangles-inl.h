@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of more than a few pixels, one at a time, by blocks of 4 x 4 pixels: blocks that are hidden, or clear of
-// every edge, are told apart first, many at a time.
+// Triangles of more than a few pixels, one at a time, by blocks of 4 x 4 pixels. Blocks that are hidden, or clear of
+// every edge, are found first, many at a time.
 //
-//    +--+--+--+--+      The tile is 8 x 8 blocks. It is told of all of them at once whether what is there hides the
-//    |  |o |o |  |      triangle (H), whether the block is wholly outside of an edge (o), and whether it is wholly
-//    |H |  |F |o |      inside of all three (F). Blocks that are full need no edges any more, only depths.
+//    +--+--+--+--+      The tile is 8 x 8 blocks. All blocks are classified at once: hidden by earlier triangles (H),
+//    |  |o |o |  |      wholly outside of an edge (o), or wholly inside of all three edges (F). Full blocks need no
+//    |H |  |F |o |      edges any more, only depths.
 //    |H |F |F |  |
 //    +--+--+--+--+
 //
-// Edges are affine over the tile. A bound of what shearing and products round is taken off on both sides, so a block is
-// classified only where every sample in it would be decided the same way by the rule itself.
+// Edges are affine over the tile. Bounds of the rounding of shearing and products are taken off on both sides, so a
+// block is classified only if the rule itself would decide every sample in it the same way.
 
 // Included once for every target.
 #if defined(FRONTMOST_RAYCAST_LARGE_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -28,9 +28,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// From this many blocks on, blocks are classified by the edges first.
 constexpr int kClassifyFrom = 5;
-constexpr float kBlockReach = 0.5f * (kBlock - 1) * kPixel;  // of its samples from their middle
+constexpr float kBlockReach = 0.5f * (kBlock - 1) * kPixel;  // distance of a block's outermost samples from their
+                                                             // middle
 
-/// Columns and rows of a block's pixels from its first, and the middles of the tile's blocks from its first sample.
+/// Columns and rows of a block's pixels from its first pixel, and the middles of the tile's blocks from its first
+/// sample.
 struct Offsets {
   alignas(64) float x[kBlockPixels], y[kBlockPixels], block_x[kBlockCount], block_y[kBlockCount];
   constexpr Offsets() : x(), y(), block_x(), block_y() {
@@ -51,7 +53,7 @@ struct Rect {
   int x0, y0, x1, y1;
 };
 
-/// Corners that floats serve.
+/// Three vertices in floats.
 struct SingleCorners {
   float x[3], y[3], d[3];
 
@@ -68,7 +70,7 @@ struct SingleCorners {
   }
 };
 
-/// Some of them may take doubles.
+/// Three vertices, some of which may need doubles.
 struct WideCorners {
   std::array<SampleCorner, 3> corners;
 
@@ -94,8 +96,8 @@ class LargeRayTriangles {
     if (hwy::PopCount(open) < std::size_t(kClassifyFrom)) {
       std::uint64_t hidden = 0;
       ForEachBit(open, [&](std::size_t block) {
-        // Of few blocks the greatest key of all of the triangle has to do: working out the key of each costs more than
-        // it hides.
+        // With few blocks, the greatest key of the whole triangle serves: computing the key of each block would cost
+        // more than it hides.
         hidden |= std::uint64_t(large.plane.high < buffer_.farthest()[block]) << block;
       });
       open &= ~hidden;
@@ -122,11 +124,11 @@ class LargeRayTriangles {
     return blocks;
   }
 
-  /// Blocks in which every key so far is greater than any of the triangle's.
+  /// Blocks in which every key so far is greater than all keys of the triangle.
   [[nodiscard]] std::uint64_t Hidden(const TileKeyPlane& plane) const {
     const DF d;
     const float slope = std::abs(plane.gx) + std::abs(plane.gy);
-    // Rounding here, and of the keys: a few units in the last place of what is added up.
+    // Rounding here and of the keys is a few units in the last place of the sum.
     const float pad = 16 * kHalfUlp * (std::abs(plane.k0) + slope * (kTileSize * kPixel));
     const VF start = hn::Set(d, plane.k0 + (slope * kBlockReach + pad));
     const VF gx = hn::Set(d, plane.gx), gy = hn::Set(d, plane.gy), high = hn::Set(d, plane.high);
@@ -136,21 +138,21 @@ class LargeRayTriangles {
     for (std::size_t i = 0; i < kBlockCount; i += kLanes) {
       const VF u = hn::Add(hn::Load(d, kOffsets.block_x + i), first_x);
       const VF v = hn::Add(hn::Load(d, kOffsets.block_y + i), first_y);
-      // The key at the middle of the block, and what the slope adds to its farthest sample; no key is above the
-      // corners'.
+      // The key at the middle of the block, plus the change to its nearest sample. No key is greater than the vertices'
+      // keys.
       const VF nearest = hn::Min(hn::Add(start, hn::Add(hn::Mul(u, gx), hn::Mul(v, gy))), high);
       hidden |= std::uint64_t(BitsOf(d, hn::Lt(nearest, hn::Load(d, buffer_.farthest() + i)))) << i;
     }
     return hidden;
   }
 
-  /// E(u, v) = e0 + u*ex + v*ey from the tile's centre, positive inside; |E| <= slack decides nothing.
+  /// E(u, v) = e0 + u*ex + v*ey from the tile's centre, positive inside. |E| <= slack decides nothing.
   struct Edges {
     float ex[3], ey[3], e0[3], slack[3];
     int facing;
   };
 
-  /// \returns false when nothing can be said in advance.
+  /// \returns false if nothing can be decided in advance.
   bool SetEdges(const std::array<SampleCorner, 3>& corners, Edges& edges) const {
     double x[3], y[3], w[3], size[3], error[3];
     const double half = double(std::max(t_.centre_x, t_.centre_y)) + kSubPixels, tile = 0.5 * kTileSize * kSubPixels;
@@ -159,24 +161,24 @@ class LargeRayTriangles {
       w[k] = t_.orthographic ? 1.0 : c.d;
       x[k] = c.x - double(place_.centre_x) * w[k];
       y[k] = c.y - double(place_.centre_y) * w[k];
-      // What a sheared corner is at most, and (in units in the last place) how far shearing rounds it.
+      // The greatest size of a sheared corner, and its rounding by shearing in units in the last place.
       size[k] = std::max(std::abs(x[k]), std::abs(y[k])) + tile * std::abs(w[k]);
       error[k] = half * std::abs(w[k]) + size[k];
     }
     double e[3][3], det = 0, det_slack = 0;
     for (int k = 0; k < 3; ++k) {
       const int a = (k + 1) % 3, b = (k + 2) % 3;
-      // (x_a - u w_a)(y_b - v w_b) - (y_a - v w_a)(x_b - u w_b), in which u v cancels.
+      // Expands (x_a - u w_a)(y_b - v w_b) - (y_a - v w_a)(x_b - u w_b), in which u v cancels.
       e[k][0] = y[a] * w[b] - w[a] * y[b];
       e[k][1] = w[a] * x[b] - x[a] * w[b];
       e[k][2] = x[a] * y[b] - y[a] * x[b];
       const double slack = 8 * double(kHalfUlp) * (error[a] * size[b] + error[b] * size[a]);
       edges.slack[k] = float(slack) * 1.001f;
-      // The three corners' determinant has the sign that all edges have where the triangle is before the eye.
+      // The determinant of the three corners has the sign of all edges if the triangle is before the eye.
       det += e[k][2] * w[k];
       det_slack += slack * std::abs(w[k]);
     }
-    // Not for what overflows, nor NaN, nor a triangle that is seen edge-on as far as rounding can tell.
+    // Nothing is decided for overflow, NaN, or a triangle that is edge-on as far as rounding can tell.
     if (!(std::abs(det) > det_slack && det_slack < 0x1p120)) return false;
     const double sign = det > 0 ? 1 : -1;
     edges.facing = int(sign);
@@ -225,7 +227,7 @@ class LargeRayTriangles {
 
   // -- blocks -------------------------------------------------------------------------------------------------------
 
-  /// What the rays of every block are held against.
+  /// The three corners that the rays of every block are tested against.
   struct SingleVectors {
     VF x[3], y[3], w[3];
   };
@@ -295,7 +297,7 @@ class LargeRayTriangles {
     });
   }
 
-  /// The same in doubles, whose products may be rounded: where two are equal, the exact rule decides.
+  /// Met() in doubles, whose products may be rounded: the exact rule decides if two products are equal.
   [[nodiscard]] HWY_NOINLINE MF Met(const LargeTriangle<WideCorners>& large, const WideCorners& wide, VF sx,
                                     VF sy) const {
     const DF d;
@@ -332,7 +334,7 @@ class LargeRayTriangles {
     return hn::RebindMask(d, hn::MaskFromVec(hn::Load(di, answer)));
   }
 
-  /// sheared(), one coordinate.
+  /// One coordinate of sheared().
   static HWY_INLINE VD Sheared(double c, double w, bool is_single, hn::Vec<DHF> s) {
     const DD dd;
     const DHF dh;
@@ -341,7 +343,7 @@ class LargeRayTriangles {
   }
 
   const ScreenTransform& t_;
-  const FacingRule facing_;  // a copy: it is asked in the inner loops
+  const FacingRule facing_;  // a copy, as the inner loops read it
   const TilePlace& place_;
   RayTileBuffer& buffer_;
 };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which rays meet which triangles, many at a time: sample_rule.h in vectors.
+// The test of sample_rule.h in vectors: which rays meet which triangles, many at a time.
 //
-// A product of two floats is rounded monotonically. So where two rounded products differ, their exact values differ in
-// the same direction, and only where they are equal is anything in doubt. These lanes are asked one by one, by the rule
-// itself; they are few, on edges that pass exactly through samples.
+// A product of two floats is rounded monotonically. If two rounded products differ, their exact values differ in the
+// same direction; only equal products leave a doubt. Doubtful lanes are decided one by one by the rule itself. They are
+// few, on edges that pass exactly through samples.
 
 // Included once for every target.
 #if defined(FRONTMOST_RAYCAST_MEETING_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -22,8 +22,8 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using view_detail::HWY_NAMESPACE::Kept;
 
-/// Where the three determinants are certain: floats round products monotonically, so a difference has the right sign
-/// unless it is zero.
+/// Lanes in which the three determinants are certain. Floats round products monotonically, so a difference has the
+/// right sign unless it is zero.
 struct EdgeSides {
   MF front, back, doubtful;
 };
@@ -39,7 +39,7 @@ HWY_INLINE EdgeSides SidesOf(const VF (&x)[3], const VF (&y)[3]) {
   return {hn::Lt(most, zero), hn::Gt(least, zero), hn::Eq(closest, zero)};
 }
 
-/// Asks `meets(lane, sx, sy)` about the doubtful lanes, one by one.
+/// Decides the doubtful lanes one by one with `meets(lane, sx, sy)`.
 template <class Meets>
 HWY_NOINLINE MF Resolve(MF met, MF doubtful, VF sx, VF sy, Meets&& meets) {
   const DF d;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a ray through a sample meets: the one definition, in plain scalar code. Kernels are faster ways to the same
+// The one definition of what a ray through a sample meets, in plain scalar code. Kernels are faster ways to the same
 // bits.
 //
-// Corners are homogeneous screen positions (view/screen_transform.h). For the ray through sample (sx, sy), sheared so
-// that the ray is the axis, a corner lies at (x - sx*w, y - sy*w): rounded, but the same for every triangle that has
-// this corner. The ray meets the triangle when the origin is inside the three sheared corners, edges included; the
-// signs of the three 2x2 determinants are exact.
+// Corners are homogeneous screen positions (view/screen_transform.h) of the triangle's vertices. For the ray through
+// sample (sx, sy), sheared so that the ray is the axis, a corner lies at (x - sx*w, y - sy*w). The position is rounded,
+// but it is the same for every triangle with this vertex. The ray meets the triangle if the origin is inside the three
+// sheared corners, edges included; the signs of the three 2x2 determinants are exact.
 //
-// With the eye on a corner or an edge, or anywhere else in a triangle's plane, this says nothing: sheared, all of the
-// triangle lies on one line through the origin, or would but for rounding. Whether it is seen edge-on is decided on the
-// world's coordinates, exactly; what is covers nothing.
+// The test says nothing if the eye lies in the triangle's plane, on a vertex or an edge for instance: all sheared
+// corners then lie on one line through the origin, but for rounding. Whether a triangle is seen edge-on is decided
+// exactly, on world coordinates. An edge-on triangle covers nothing.
 //
 // S. Woop, C. Benthin, I. Wald. Watertight Ray/Triangle Intersection. Journal of Computer Graphics Techniques 2(1),
 // 2013; here the determinants are never rounded.
@@ -25,14 +25,14 @@
 
 namespace frontmost::raycast_detail {
 
-/// Keys are affine over the screen; they are evaluated from the centre of the tile that holds the sample, because far
-/// from the image's centre little would be left of a float's precision. The tile is part of the definition.
+/// Keys are affine over the screen. They are evaluated from the centre of the tile that holds the sample, because
+/// floats lose precision far from the image's centre. The tile is part of the definition.
 inline constexpr int kTileSize = 32;
 
-/// Corners between the planes, on the guard band, and within these distances are transformed and sheared in floats:
-/// products of two sheared coordinates then stay in their range. The others take doubles.
+/// Corners between the planes, within the guard band and within these distances are transformed and sheared in floats:
+/// products of two sheared coordinates then stay in range. All other corners take doubles.
 inline constexpr float kSingleNear = 0x1p-40f, kSingleFar = 0x1p40f;
-/// Steeper or higher key planes than this are those of triangles as good as edge-on: their keys are made constant.
+/// Steeper or higher key planes belong to triangles that are as good as edge-on: their keys are made constant.
 inline constexpr float kSteepest = 0x1p60f;
 
 struct SampleCorner {
@@ -55,7 +55,7 @@ inline SampleCorner make_corner(const ScreenTransform& t, const glm::vec3& world
   return {place.x, place.y, place.z, false};
 }
 
-/// Whether a plane through the triangle holds the eye, or in parallel projection the direction of view.
+/// Whether a plane through the triangle holds the eye, or in parallel projection the view direction.
 inline bool is_edge_on(const View& view, const std::array<glm::vec3, 3>& world) {
   const glm::dvec3 a(world[0]), b(world[1]), c(world[2]);
   if (view.projection.orthographic) return sign_of_determinant({b, a}, {c, a}, {view.forward()}) == 0;
@@ -63,10 +63,10 @@ inline bool is_edge_on(const View& view, const std::array<glm::vec3, 3>& world) 
   return sign_of_determinant({a, eye}, {b, eye}, {c, eye}) == 0;
 }
 
-/// A triangle with finite corners as the rays of a view see it.
+/// A triangle with finite vertices, as the rays of a view see it.
 struct SampleTriangle {
   std::array<glm::vec3, 3> world;
-  std::array<SampleCorner, 3> corners;  ///< what rays are held against: the same for all triangles that share them
+  std::array<SampleCorner, 3> corners;  ///< vertices on the screen, equal for all triangles that share them
 };
 
 inline SampleTriangle make_triangle(const ScreenTransform& t, const std::array<glm::vec3, 3>& world) {
@@ -86,8 +86,8 @@ inline Point sheared(const ScreenTransform& t, const SampleCorner& c, float sx, 
   return {float(c.x) - sx * w, float(c.y) - sy * w};
 }
 
-/// The exact sign of a.x * b.y - a.y * b.x: products round monotonically, so where they differ, they tell; where they
-/// are equal, their rounding errors do.
+/// The exact sign of a.x * b.y - a.y * b.x. Products round monotonically, so different rounded products decide. Equal
+/// ones leave the decision to their rounding errors.
 inline int side(const Point& a, const Point& b) {
   const double p = a.x * b.y, q = a.y * b.x;
   if (p != q) return p > q ? 1 : -1;
@@ -95,7 +95,7 @@ inline int side(const Point& a, const Point& b) {
   return int(p_error > q_error) - int(p_error < q_error);
 }
 
-/// -1: met, front-facing (counter-clockwise on the screen; y is down); 1: met from behind; 0: missed, or edge-on.
+/// -1: met from the front (counter-clockwise on the screen; y is down); 1: met from behind; 0: missed, or edge-on.
 inline int facing(const ScreenTransform& t, const std::array<SampleCorner, 3>& corners, float sx, float sy) {
   const Point a = sheared(t, corners[0], sx, sy), b = sheared(t, corners[1], sx, sy),
               c = sheared(t, corners[2], sx, sy);
@@ -104,7 +104,7 @@ inline int facing(const ScreenTransform& t, const std::array<SampleCorner, 3>& c
   return least >= 0 ? most : most <= 0 ? least : 0;
 }
 
-/// Whether culling leaves a triangle that a ray meets so; `facing` is that of facing().
+/// Whether culling keeps a triangle that a ray meets this way; `facing` comes from facing().
 inline bool keeps(const FacingRule& rule, PrimitiveId id, int facing) {
   return facing != 0 && rule.keeps(id, facing < 0);
 }
@@ -117,7 +117,7 @@ inline float key_of_distance(const ScreenTransform& t, double d) {
 /// The key of a triangle over one tile: k0 + u*gx + v*gy, (u, v) from the tile's centre in 1/256 pixel.
 struct TileKeyPlane {
   float gx = 0, gy = 0, k0 = 0;
-  float low = 0, high = 0;  ///< the range of the corners' keys, which no key leaves
+  float low = 0, high = 0;  ///< range of the vertices' keys, which no key leaves
   bool is_clipped = false;  ///< not wholly between near and far: only keys in [cut, 1] are seen
   bool is_outside = false;  ///< wholly before near or beyond far, or seen edge-on: covers nothing
   float cut = 0;
@@ -136,8 +136,8 @@ inline void set_range(const ScreenTransform& t, const std::array<SampleCorner, 3
   plane.low = farthest <= t.far ? key_of_distance(t, farthest) : plane.cut;
 }
 
-/// Where keys come from. Of a triangle that has a corner in doubles, all of them are: it may pass so near to the eye
-/// that floats would turn its plane to the other side.
+/// The vertices that keys are computed from. If one vertex is in doubles, all are: the triangle may pass so near to the
+/// eye that floats would turn its plane to the other side.
 inline std::array<glm::dvec3, 3> places_of(const ScreenTransform& t, const SampleTriangle& triangle, bool is_single) {
   std::array<glm::dvec3, 3> places;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -147,12 +147,12 @@ inline std::array<glm::dvec3, 3> places_of(const ScreenTransform& t, const Sampl
   return places;
 }
 
-/// `tile`: its centre, from the image's, in 1/256 pixel.
+/// The key plane of a triangle. `tile` is the tile's centre, from the image's, in 1/256 pixel.
 inline TileKeyPlane key_plane(const View& view, const ScreenTransform& t, const SampleTriangle& triangle,
                               const glm::dvec2& tile) {
   TileKeyPlane plane;
   set_range(t, triangle.corners, plane);
-  // Corners that are single are before the eye: such a triangle, seen edge-on, is no wider than their rounding.
+  // Single corners are before the eye: an edge-on triangle of single corners is no wider than their rounding.
   const bool is_single =
       triangle.corners[0].is_single && triangle.corners[1].is_single && triangle.corners[2].is_single;
   plane.is_outside = plane.is_outside || (!is_single && is_edge_on(view, triangle.world));
@@ -167,7 +167,7 @@ inline TileKeyPlane key_plane(const View& view, const ScreenTransform& t, const 
   plane.gy = float(ny * scale);
   plane.k0 = t.orthographic ? float(double(t.far) * double(t.inverse_range) - (det - across) * scale)
                             : float((across + nd) * scale);
-  // NaN counts as too steep. Of what reaches beyond near or far, no sample sees the hair between them.
+  // NaN counts as too steep. If the triangle reaches beyond near or far, no sample sees the sliver between the planes.
   if (!(std::abs(plane.gx) <= kSteepest && std::abs(plane.gy) <= kSteepest && std::abs(plane.k0) <= kSteepest)) {
     plane.is_outside = plane.is_clipped;
     plane.gx = plane.gy = 0;

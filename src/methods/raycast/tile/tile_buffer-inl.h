@@ -27,7 +27,7 @@ namespace frontmost::raycast_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// At most as many lanes as a leaf, a node and a block have.
+// At most as many lanes as a leaf, a node and a block have entries.
 using DF = hn::CappedTag<float, kRayLanes>;
 using DU = hn::RebindToUnsigned<DF>;
 using DI = hn::RebindToSigned<DF>;
@@ -51,7 +51,7 @@ constexpr float kPixel = kSubPixels;
 /// Half a unit in the last place of a float, relative.
 constexpr float kHalfUlp = 0x1p-24f;
 
-/// The lanes that are set.
+/// A bit for each lane that is set.
 template <class D>
 HWY_INLINE std::uint32_t BitsOf(D d, hn::Mask<D> mask) {
   std::uint8_t bytes[8] = {};
@@ -65,7 +65,7 @@ HWY_INLINE void ForEachBit(Bits bits, Body&& body) {
   for (; bits != 0; bits &= bits - 1) body(std::size_t(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits)));
 }
 
-/// The tile's place: distances from the image's centre in 1/256 pixel.
+/// The tile's place; distances are from the image's centre in 1/256 pixel.
 struct TilePlace {
   int x0, y0, width, height;  // pixels
   float centre_x, centre_y;   // of the tile
@@ -91,7 +91,7 @@ class RayTileBuffer {
     std::fill_n(ids_, RayTileScratch::kPixels, no_primitive);
     std::fill_n(farthest_, kBlockCount, 0.0f);
     if (place.width == kTileSize && place.height == kTileSize) return;
-    // Pixels outside the image are nearer than anything, so that they never keep a block from hiding.
+    // Pixels outside the image are nearer than anything, so they never keep a block from hiding.
     for (int y = 0; y < kTileSize; ++y)
       for (int x = 0; x < kTileSize; ++x)
         if (x >= place.width || y >= place.height) keys_[PixelIndex(x, y)] = std::numeric_limits<float>::max();
@@ -104,7 +104,8 @@ class RayTileBuffer {
   [[nodiscard]] HWY_INLINE float* keys(std::size_t block) const { return keys_ + block * kBlockPixels; }
   [[nodiscard]] HWY_INLINE PrimitiveId* ids(std::size_t block) const { return ids_ + block * kBlockPixels; }
 
-  /// No key in the block, or in any pixel of the tile, is less: what is farther is hidden. May lag behind.
+  /// Lower bounds of the keys in each block, and in the whole tile: farther triangles are hidden. The bounds may lag
+  /// behind.
   [[nodiscard]] HWY_INLINE const float* farthest() const { return farthest_; }
   [[nodiscard]] HWY_INLINE float tile_farthest() const { return tile_farthest_; }
 
@@ -115,7 +116,7 @@ class RayTileBuffer {
     dirty_ |= std::uint64_t(1) << (pixel / kBlockPixels);
   }
 
-  /// To be called after a block was written.
+  /// Finds the farthest key of a block. Call after writing the block.
   HWY_INLINE void Update(std::size_t block) {
     farthest_[block] = FarthestOfBlock(block);
     is_stale_ = true;
@@ -167,7 +168,7 @@ class RayTileBuffer {
       std::memcpy(to + x, tile + PixelIndex(x, y), std::size_t(std::min(kBlock, place_.width - x)) * sizeof(T));
   }
 
-  /// Past the caches: nobody reads it soon.
+  /// Writes a row past the caches, as it is not read soon.
   template <class T>
   HWY_INLINE void StreamRow(const T* tile, int y, T* to) const {
     const hn::CappedTag<T, kBlock> d;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Casting one tile: its rays walk the tree together, nearest children first, and meet many triangles at a time.
+// Casts one tile: its rays walk the tree together, nearest children first, and meet many triangles at a time.
 //
 // A. Reshetov, A. Soupikov, J. Hurley. Multi-Level Ray Tracing Algorithm. 2005 (a frustum in place of its rays).
 //
-// What a ray meets is defined in sample_rule.h, and every path here gives its bits. Triangles of a few pixels are
-// handled as many at a time as the vector holds, larger ones by blocks of pixels. Everything that decides to leave
-// something out (boxes, rectangles, blocks) is padded by a bound of the rounding on both sides.
+// sample_rule.h defines what a ray meets, and every path here gives the same bits. Triangles of a few pixels are
+// handled a vector at a time, larger ones by blocks of pixels. Each test that leaves something out (boxes, rectangles,
+// blocks) is padded by a bound of the rounding on both sides.
 
 #include "raycast/tile/tile_kernel.h"
 
@@ -26,7 +26,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// A half-space of positions relative to the eye: a*x + b*y + c*z + offset.
 struct HalfSpace {
   float n[3], offset;
-  float pad;  // no rounding, here or of a corner, exceeds this
+  float pad;  // no rounding, here or of a vertex, exceeds this
 };
 
 class TileCaster {
@@ -51,7 +51,7 @@ class TileCaster {
   }
 
  private:
-  /// sign * (row - at * w_row), so turned that it is positive inside.
+  /// The plane sign * (row - at * w_row); `sign` makes it positive inside.
   [[nodiscard]] HalfSpace SidePlane(const std::array<float, 3>& row, float row_offset, double at, double sign) const {
     HalfSpace p{};
     const double w = t_.orthographic ? 0 : 1;
@@ -68,7 +68,7 @@ class TileCaster {
     return p;
   }
 
-  /// Through the outermost samples, not the tile's sides: the frustum of the rays that are cast.
+  /// Planes through the outermost samples, not the tile's sides: the frustum of the rays that are cast.
   void SetPlanes() {
     const double left = place_.first_x, right = left + (place_.width - 1) * kSubPixels;
     const double top = place_.first_y, bottom = top + (place_.height - 1) * kSubPixels;
@@ -83,19 +83,19 @@ class TileCaster {
     const DF d;
     VF sum[3];
     for (int axis = 0; axis < 3; ++axis)
-      // The end of the box that lies farthest along the normal, or against it: no need to look at eight corners.
+      // The end of the box that lies farthest along the normal, or against it, replaces a look at eight corners.
       sum[axis] = hn::Mul(hn::Set(d, p.n[axis]), ends[(p.n[axis] >= 0) == farthest ? 1 : 0][axis]);
     return hn::Add(hn::Add(hn::Add(sum[0], sum[1]), sum[2]), hn::Set(d, p.offset));
   }
 
-  /// No key of what lies at this distance or beyond is greater.
+  /// An upper bound of the keys at this distance or beyond.
   [[nodiscard]] HWY_INLINE VF NearestKey(VF nearest) const {
     const DF d;
     const VF one = hn::Set(d, 1.0f), near = hn::Set(d, t_.near);
     const VF key = t_.orthographic ? hn::Mul(hn::Sub(hn::Set(d, t_.far), nearest), hn::Set(d, t_.inverse_range))
                                    : hn::Div(near, nearest);
     const VF padded = hn::Mul(key, hn::Set(d, 1.0f + 16 * kHalfUlp));
-    // Not beyond near, or NaN.
+    // 1 for a distance that is not beyond near, or NaN.
     return hn::IfThenElse(hn::Gt(nearest, near), hn::Max(hn::Min(padded, one), hn::Zero(d)), one);
   }
 
@@ -112,7 +112,7 @@ class TileCaster {
         ends[0][axis] = hn::Sub(hn::Load(d, node.low[axis] + first), eye);
         ends[1][axis] = hn::Sub(hn::Load(d, node.high[axis] + first), eye);
       }
-      // Strictly outside by more than rounding can explain; NaN is not.
+      // Outside means strictly outside, by more than rounding can explain; NaN is not outside.
       MF outside = hn::Lt(Distance(planes_[0], ends, true), hn::Set(d, -planes_[0].pad));
       for (int i = 1; i < 4; ++i)
         outside = hn::Or(outside, hn::Lt(Distance(planes_[i], ends, true), hn::Set(d, -planes_[i].pad)));
@@ -132,10 +132,10 @@ class TileCaster {
     Push(keys, children, count);
   }
 
-  /// Sorts by counting: the place of each is how many are farther. No branch depends on the keys.
+  /// Sorts by counting: the place of a child is the number of farther children. No branch depends on the keys.
   HWY_INLINE void Push(const std::uint32_t* keys, const std::uint32_t* children, std::size_t count) {
     const DI di;
-    // The lowest bits tell equals apart, for the order only.
+    // The lowest bits tell equal keys apart; only the order depends on them.
     alignas(64) std::int32_t order[kRayLanes];
     for (std::size_t i = 0; i < kRayLanes; ++i)
       order[i] = i < count ? std::int32_t((keys[i] & ~15u) | i) : std::numeric_limits<std::int32_t>::max();
@@ -150,13 +150,13 @@ class TileCaster {
 
   void Walk() {
     waiting_ = 1;
-    // Infinity: nothing hides the root.
+    // The key is infinity: nothing hides the root.
     scratch_.stack[0] = Waiting(0x7F800000u) << 32 | frame_.tree.root;
     while (waiting_ > 0) {
       const Waiting next = scratch_.stack[--waiting_];
       const auto bits = std::uint32_t(next >> 32), child = std::uint32_t(next);
       if (waiting_ > 0) frame_.tree.prefetch(std::uint32_t(scratch_.stack[waiting_ - 1]));
-      // Every few leaves: a hidden one that is met costs less than looking for it.
+      // Refreshes every few leaves: visiting a hidden leaf costs less than looking for it.
       if (!(child & kLeafBit) || (++leaves_met_ & 3) == 0) buffer_.Refresh();
       float key;
       std::memcpy(&key, &bits, sizeof key);
@@ -186,7 +186,7 @@ class TileCaster {
     return hn::And(between, hn::And(hn::Le(hn::Abs(x), reach), hn::Le(hn::Abs(y), reach)));
   }
 
-  /// The first and last sample column (or row) that corners at `low` to `high` may cover.
+  /// The first and last sample column (or row) that vertices from `low` to `high` may cover.
   struct Span {
     VF first, last;
   };
@@ -199,7 +199,7 @@ class TileCaster {
     return {hn::Max(first, hn::Zero(d)), hn::Min(last, hn::Set(d, float(count - 1)))};
   }
 
-  /// To a few units in the last place, by one division. The products stay in range: kSingleNear, kSingleFar.
+  /// Inverts to a few units in the last place, by one division. kSingleNear and kSingleFar keep the products in range.
   static HWY_INLINE void Invert(const VF (&d)[3], VF (&inverse)[3]) {
     const VF ab = hn::Mul(d[0], d[1]), all = hn::Div(hn::Set(DF(), 1.0f), hn::Mul(ab, d[2]));
     const VF c = hn::Mul(all, d[2]);
@@ -212,7 +212,7 @@ class TileCaster {
     for (std::size_t first = 0; first < kRayLanes; first += kLanes) MeetLanes(leaf, first);
   }
 
-  /// Those of up to 2 x 2 blocks whose every pixel has something nearer.
+  /// Triangles of up to 2 x 2 blocks whose every pixel shows something nearer.
   [[nodiscard]] HWY_INLINE MF Hidden(VF nearest, VI x0, VI y0, VI x1, VI y1) const {
     const DF d;
     const DI di;
@@ -226,7 +226,7 @@ class TileCaster {
     return hn::And(hn::RebindMask(d, few), hn::Lt(nearest, hn::Min(above, below)));
   }
 
-  /// Puts corners into the batch, as rays see them. \returns the triangles whose corners are all single ones.
+  /// Puts vertices into the batch, as rays see them. \returns the triangles whose vertices are all single.
   HWY_INLINE MF PlaceCorners(const RayLeaf& leaf, std::size_t first, RayTriangleQueue::Batch& to) const {
     const DF d;
     MF single = hn::MaskFromVec(hn::Zero(d));
@@ -243,7 +243,7 @@ class TileCaster {
     return single;
   }
 
-  /// What triangles may be seen through: a rectangle of samples, and no key greater than `nearest`.
+  /// Screen bounds of triangles: a rectangle of samples, and a greatest key `nearest`.
   struct Extent {
     Span across, down;
     VF nearest;
@@ -266,13 +266,13 @@ class TileCaster {
                             : hn::Mul(hn::Set(d, t_.near * (1 + 16 * kHalfUlp)), greatest(inverse))};
   }
 
-  /// Without those that are hidden, where looking for them has paid lately.
+  /// Drops hidden triangles, if looking for them has paid lately.
   [[nodiscard]] HWY_INLINE MF WithoutHidden(MF kept, VF nearest, VI x0, VI y0, VI x1, VI y1) {
     if (hidden_credit_ <= 0 && (leaves_met_ & 15) != 0) return kept;
     const DF d;
     const std::size_t before = hn::CountTrue(d, kept);
     const MF left = hn::AndNot(Hidden(nearest, x0, y0, x1, y1), kept);
-    // Looking pays from two hidden triangles on.
+    // Looking pays if it finds two hidden triangles.
     hidden_credit_ = std::min(hidden_credit_ + int(before - hn::CountTrue(d, left)) - 2, kMostCredit);
     return left;
   }
@@ -293,7 +293,7 @@ class TileCaster {
     kept = hn::And(kept, hn::And(hn::Le(across.first, across.last), hn::Le(down.first, down.last)));
     if (hn::AllFalse(d, kept)) return;
 
-    // Lanes that are not kept may hold anything, but in range.
+    // Lanes that are not kept may hold anything, so they are clamped.
     const auto as_int = [&](VF v) HWY_ATTR {
       return hn::ConvertTo(DI(), hn::Min(hn::Max(v, hn::Zero(d)), hn::Set(d, float(kTileSize - 1))));
     };
@@ -306,7 +306,7 @@ class TileCaster {
     queue_.Add(batch, kept);
   }
 
-  /// Triangles with a corner that floats do not serve: one by one.
+  /// Meets triangles with a vertex that needs doubles, one by one.
   HWY_NOINLINE void MeetWide(const RayLeaf& leaf, std::size_t first, MF wide) {
     ForEachBit(BitsOf(DF(), wide), [&](std::size_t bit) {
       const std::size_t lane = first + bit;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures by rays: casting the rays of one tile together, and those on that went into a hole.
+// Pictures by rays: casts the rays of one tile together, and follows rays that went into a hole.
 //
 //    boxes and leaves, nearest first --> triangles --few pixels--> queue, many at a time --+--> keys and ids
 //                                            |                                             |    of the tile
@@ -15,7 +15,7 @@
 
 namespace frontmost::raycast_detail {
 
-/// All tiles' input, and where the answer goes.
+/// The input of all tiles, and the planes of the answer.
 struct RayTileInput {
   const RayTree& tree;
   const ScreenTransform& transform;
@@ -28,7 +28,7 @@ struct RayTileInput {
   bool streams;  ///< whole rows are written past the caches
 };
 
-/// A child waiting to be looked into: the bits of its nearest key above its number, so that greater is nearer.
+/// A child that waits to be visited: the bits of its nearest key above its number, so that the greater is the nearer.
 using Waiting = std::uint64_t;
 
 /// Buffers of one thread.
@@ -47,8 +47,8 @@ struct RayTileScratch {
 /// Fills the pixels of tile (x, y), counted in tiles, of every sample plane.
 void cast_tile(const RayTileInput& frame, int x, int y, RayTileScratch& scratch, Isa isa);
 
-/// Of a Visible that takes triangles with holes for whole: replaces what has a hole at its sample by what the ray meets
-/// next. O(samples), and O(log n) and more for each ray that goes on.
+/// For a Visible that takes triangles with holes for whole: a triangle with a hole at the sample is replaced by the
+/// next hit of its ray. O(samples), and O(log n) and more for each ray that goes on.
 void pass_holes(const RayTree& tree, Visible& visible, const Execution& execution);
 
 }  // namespace frontmost::raycast_detail

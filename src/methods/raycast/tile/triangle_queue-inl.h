@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles whose corners floats serve, many at a time. They wait in a queue until they fill a vector; those of a few
+// Triangles with vertices in floats, many at a time. They wait in a queue until they fill a vector; triangles of a few
 // pixels are then met one pixel of each per step.
 //
 //    waiting   x, y, d of three corners, id, rect     | t0 | t1 | ... | t15 |   full: all are set up together
 //    walk      step 1: the first pixel of each of them; step 2: the second of each; ... up to 3 x 3
 //
-// Triangles of a scan often cover one sample or none. One after the other each would use a lane of a vector; side by
-// side they use all lanes, and the loop is as long as the largest of them asks for.
+// Triangles of a scan often cover one sample or none. Met one after the other, each would use a lane of a vector. Side
+// by side they use all lanes, and the loop is as long as the largest of them needs.
 
 // Included once for every target.
 #if defined(FRONTMOST_RAYCAST_TRIANGLE_QUEUE_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -25,7 +25,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using frontmost::HWY_NAMESPACE::Compactor;
 
-/// A triangle whose rectangle of samples is at most this wide and high is met with others at once.
+/// A triangle whose rectangle of samples is at most this wide and high is met together with others.
 constexpr int kWalkLimit = 3;
 
 class RayTriangleQueue {
@@ -35,10 +35,10 @@ class RayTriangleQueue {
 
   struct Batch {
     VF x[3], y[3], d[3];
-    VU id, rect;  // x0, y0, x1, y1: pixels of the tile, a byte each from the lowest
+    VU id, rect;  // x0, y0, x1, y1: pixels of the tile, one byte each from the lowest
   };
 
-  /// Adds the lanes of `kept`, and meets what fills a vector.
+  /// Adds the lanes of `kept`; meets the triangles once they fill a vector.
   HWY_INLINE void Add(const Batch& batch, MF kept) {
     const Compactor<DF> compact(kept);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -154,7 +154,7 @@ class RayTriangleQueue {
       VF y[3];
       for (int k = 0; k < 3; ++k) y[k] = hn::Sub(cy[k], hn::Mul(sy, cw[k]));
       const MF in_rows = hn::AndNot(hn::RebindMask(d, hn::Gt(hn::Set(du, row), rects.rows)), small);
-      // Pixel numbers of TileBuffer, whose blocks are 8 in a row and 16 pixels each.
+      // Pixel numbers of RayTileBuffer: 8 blocks in a row, 16 pixels in a block.
       const VU row_part = hn::Add(hn::ShiftLeft<7>(hn::ShiftRight<2>(py)), hn::ShiftLeft<2>(hn::And(py, three)));
       for (std::uint32_t column = 0; column <= last_column; ++column) {
         const VU px = hn::Add(rects.x0, hn::Set(du, column));
@@ -206,8 +206,8 @@ class RayTriangleQueue {
     if (large.rect.y1 - large.rect.y0 < kTileSize / 2 || !IsThereAlready(large)) large_.Draw(large);
   }
 
-  /// Whether it is the last one again, as where objects are placed twice or a million times: the lower id hides it,
-  /// unless that one alone may be left out.
+  /// Whether the last large triangle came again with a higher id, as objects may be placed twice or a million times.
+  /// The lower id hides the copy, unless material culling may leave out the lower id alone.
   [[nodiscard]] bool IsThereAlready(const LargeTriangle<SingleCorners>& large) {
     if (facing_.culling() == Culling::material) return false;
     if (last_id_ < large.id && large.corners == last_) return true;
@@ -217,16 +217,16 @@ class RayTriangleQueue {
   }
 
   const ScreenTransform& t_;
-  const FacingRule facing_;  // a copy: it is asked in the inner loops
+  const FacingRule facing_;  // a copy, as the inner loops read it
   const TilePlace& place_;
   RayTileBuffer& buffer_;
   LargeRayTriangles& large_;
-  // Room for one vector more than is met at a time, as Compress stores whole ones.
+  // Room for one vector more than is met at a time, as Compress stores whole vectors.
   static constexpr std::size_t kRoom = 3 * kRayLanes;
   alignas(64) float x_[3][kRoom], y_[3][kRoom], d_[3][kRoom];
   alignas(64) std::uint32_t id_[kRoom], rect_[kRoom];
   std::size_t count_ = 0;
-  SingleCorners last_{};  ///< of the last large triangle that was drawn
+  SingleCorners last_{};  ///< vertices of the last large triangle that was drawn
   PrimitiveId last_id_ = no_primitive;
 };
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The depth buffer: planes that outlive draw calls.
 //
-// A draw call is in three steps: the state becomes rules for this view and format, the triangles become batches in the
-// order of their ids, and every batch is drawn into the tiles that it is in. Tiles are independent, so threads share no
-// sample, and within a tile all batches come in order.
+// A draw call has three steps: the state becomes rules for this view and format, the triangles become batches in the
+// order of their ids, and every batch is drawn into its tiles. Tiles are independent, so threads share no sample.
+// Within a tile all batches come in order.
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +16,7 @@ namespace {
 
 using namespace zbuffer_detail;
 
-/// Only size and samples count; the rest is a view that passes.
+/// Validates size and samples; the rest of the view is arbitrary but valid.
 std::size_t checked_sample_count(int width, int height, int samples) {
   View view;
   view.width = width;

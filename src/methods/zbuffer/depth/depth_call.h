@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A draw call of a depth buffer: what a DepthState means for one view and one format, worked out once a call, and the
+// A draw call of a depth buffer: the meaning of a DepthState for one view and one format, computed once a call, and the
 // kernel that draws placed triangles by it into one tile.
 //
 //    DepthState, view, format --rules_for()--> DepthRules: a line from keys to depths, three flags for eight functions
 //    triangle --offset_of()--> its polygon offset                  depth of a sample = limited(line(key) + offset)
 //
-// The kernel thus knows no depth function, no direction and no format but whether depths are floats: everything else is
-// numbers.
+// So the kernel knows no depth function, no direction and no format, except whether depths are floats. Everything else
+// is numbers.
 #pragma once
 
 #include <span>
@@ -18,7 +18,8 @@
 
 namespace frontmost::zbuffer_detail {
 
-/// Window depth of a key: limited(at_zero + slope * key) + offset, in double, limited to [0, 1].
+/// Window depth of a key: at_zero + slope * key, limited to [low, high], in double. The depth of a sample is this depth
+/// plus the offset, limited to [0, 1].
 struct DepthMap {
   double at_zero, slope;
   double low, high;  ///< the depth range, in order
@@ -37,11 +38,12 @@ struct DepthRules {
   PolygonOffset offset;
 
   [[nodiscard]] bool has_offset() const { return offset.factor != 0 || offset.units != 0; }
-  /// Of a triangle with key gradient (gx, gy) per 1/256 pixel; `key_low` and `key_high` of its whole visible part.
+  /// Polygon offset of a triangle with key gradient (gx, gy) per 1/256 pixel. `key_low` and `key_high` bound the keys
+  /// of its whole visible part.
   [[nodiscard]] double offset_of(double gx, double gy, float key_low, float key_high) const;
 };
 
-/// \throws Error bad_argument naming what is out of range.
+/// The rules of a state. \throws Error bad_argument naming the value that is out of range.
 [[nodiscard]] DepthRules rules_for(const DepthState& state, DepthFormat format, const ScreenTransform& transform);
 
 /// The planes of a depth buffer, [sample][y][x].
@@ -53,16 +55,16 @@ struct DepthPlanes {
   std::span<const glm::ivec2> samples;
 };
 
-/// What all tiles of a draw call have in common.
+/// The input that all tiles of a draw call share.
 struct DepthCall {
   DepthPlanes planes;
   DepthRules rules;
   PrimitiveId id_offset;
-  const Cutouts* cutouts;  ///< null where no triangle has holes, through which nothing is drawn
+  const Cutouts* cutouts;  ///< null if no triangle has holes; nothing is drawn through holes
   const ScreenRays& rays;
 };
 
-/// Draws what a batch has in a tile, one triangle after the other; touches no pixel of other tiles.
+/// Draws the triangles of a batch that touch a tile, one after the other; touches no pixel of other tiles.
 void draw_depths(const DepthCall& call, const Tile& tile, const OrderedBatch& batch, Isa isa);
 
 }  // namespace frontmost::zbuffer_detail

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The depth test of every fragment in order.
 //
-// Coverage and keys as in tile_kernel.cpp: edge values shifted right by 8, so that a pixel's step is -dy or dx.
+// Coverage and keys follow tile_kernel.cpp: edge values are shifted right by 8, so that a pixel's step is -dy or dx.
 
 #include "zbuffer/depth/depth_call.h"
 

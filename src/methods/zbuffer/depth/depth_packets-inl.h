@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of a few pixels drawn into a depth buffer, as many at once as the vector holds, and yet in their order: all
-// of a packet are walked pixel by pixel in step, which gives each its own mask of covered pixels; the masks are then
-// taken one after the other.
+// Triangles of a few pixels drawn into a depth buffer, a vector at once and yet in their order. All triangles of a
+// packet are walked pixel by pixel in step, which gives each a mask of covered pixels. The masks are then drawn in
+// order.
 //
 //    walk      lane 0: mask of 8 x 8 pixels     lane 1: mask     ...        all lanes in step
 //    draw      fragments of triangle 0, then those of triangle 1, ...       in the order of submission
 //
-// Coverage does not depend on the order of triangles, so it is found for all of them together. Fragments are then
-// listed in their order; keys and depths of a vector of them are worked out together, and the tests come one after the
-// other.
+// Coverage does not depend on the order of triangles, so it is found for all together. Fragments are then listed in
+// their order. Keys and depths are computed for a vector of fragments; the tests come one after the other.
 
 // Included once for every target.
 #if defined(FRONTMOST_ZBUFFER_DEPTH_PACKETS_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -53,7 +52,7 @@ class DepthPackets {
   }
 
  private:
-  // A triangle whose pixel rectangle is at most this wide and high is drawn with others at once: 64 pixels, a bit each.
+  // Triangles with a pixel rectangle at most this wide and high are drawn in packets: 64 pixels, a bit each.
   static constexpr int kWalkLimit = 8;
 
   template <class Fetch>
@@ -78,7 +77,7 @@ class DepthPackets {
     }
   }
 
-  /// `fetch` reads a vector of a column.
+  /// Loads a packet. `fetch` reads a vector of a column.
   template <class Fetch>
   HWY_INLINE void Load(std::size_t count, const Fetch& fetch, const BatchColumns& from) {
     const DI d;
@@ -92,7 +91,7 @@ class DepthPackets {
     count_ = count;
   }
 
-  /// One by one, row by row.
+  /// Draws one triangle, row by row.
   void DrawSingle(const SingleTriangle& single) {
     TriangleRecord record = single.record;
     record.id += call_.id_offset;
@@ -109,7 +108,7 @@ class DepthPackets {
     return call_.rules.offset_of(keys.gx(), keys.gy(), low, high);
   }
 
-  /// Those that must ask for holes, which rows do.
+  /// Lanes of triangles with holes. Rows draw them, as only rows test holes.
   [[nodiscard]] HWY_NOINLINE MI HaveHoles() const {
     HWY_ALIGN_MAX std::uint32_t id[kMaxLanes];
     HWY_ALIGN_MAX std::int32_t lanes[kMaxLanes] = {};
@@ -118,7 +117,7 @@ class DepthPackets {
     return hn::MaskFromVec(hn::Load(DI(), lanes));
   }
 
-  /// Finds the pixels of each triangle in which this sample is covered, within eight by eight of its first.
+  /// Finds the pixels of each triangle in which this sample is covered, within eight by eight pixels of its first.
   HWY_INLINE void Walk(std::size_t sample) {
     const DI d;
     const glm::ivec2 offset = call_.planes.samples[sample];
@@ -156,13 +155,13 @@ class DepthPackets {
     hn::Store(hn::BitCast(DU(), mask[0]), DU(), mask_[0]);
     hn::Store(hn::BitCast(DU(), mask[1]), DU(), mask_[1]);
     drawn_ = by_row_ | BitsOf(d, hn::Ne(hn::Or(mask[0], mask[1]), hn::Zero(d)));
-    // The keys of a pixel are found from here on.
+    // Offsets from which Merge() finds the keys of a pixel.
     from_x_ = hn::Sub(sx, packet_.x0);
     from_y_ = hn::Sub(sy, packet_.y0);
     hn::Store(hn::Add(hn::Mul(rows.first, hn::Set(d, call_.planes.width)), columns.first), d, first_);
   }
 
-  /// Triangle by triangle.
+  /// Draws the covered pixels, triangle by triangle.
   void Empty(std::size_t sample) {
     std::size_t count = 0;
     for (std::uint64_t left = drawn_; left != 0; left &= left - 1) {
@@ -206,7 +205,7 @@ class DepthPackets {
       if (call_.rules.has_offset())
         for (std::size_t n = 0; n < live; ++n) offset[n] = offset_[references_[i + n] & 15];
       for (std::size_t n = 0; n < hn::Lanes(d); n += hn::Lanes(dd))
-        // Depths may be worked out together, tests may not: two fragments of a vector may be of one pixel.
+        // Depths may be computed together, but tests may not: two fragments of a vector may belong to one pixel.
         hn::Store(test_.Stored(hn::Load(HalfF(), key + n), hn::Load(dd, offset + n)), HalfU(), stored + n);
       for (std::size_t n = 0; n < live; ++n) Put(PlaceOf(sample, references_[i + n]), stored[n], id[n], key[n]);
     }
@@ -250,17 +249,17 @@ class DepthPackets {
   DepthTest<is_float> test_;
   DepthRows<is_float> rows_;
   RunReader reader_;
-  // Of the packet.
+  // State of the packet.
   Packet packet_;
   VF key_[3];
   VU id_;
-  MI walkable_;  // many at once
+  MI walkable_;  // drawn many at once
   std::size_t count_ = 0;
   double offset_[kMaxLanes] = {};
-  // Of the packet at one sample.
-  std::uint64_t by_row_ = 0, drawn_ = 0;         // lanes that are drawn on their own; those, and all that cover a pixel
-  VI from_x_, from_y_;                           // from the topmost corner to the sample of the first pixel
-  HWY_ALIGN_MAX std::int32_t first_[kMaxLanes];  // its place in the tile
+  // State of the packet at one sample.
+  std::uint64_t by_row_ = 0, drawn_ = 0;         // lanes that rows draw; those and all lanes that cover a pixel
+  VI from_x_, from_y_;                           // from the key plane's origin to the sample of the first pixel
+  HWY_ALIGN_MAX std::int32_t first_[kMaxLanes];  // index of the first pixel in the tile
   HWY_ALIGN_MAX std::uint32_t mask_[2][kMaxLanes];
   std::uint32_t references_[kMaxLanes * kWalkLimit * kWalkLimit + kMaxLanes];
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of any size drawn into a depth buffer one at a time, a row of samples after the other.
+// Triangles of any size drawn into a depth buffer one at a time, row by row.
 //
-// Everything of a sample that is 32 bits wide lives in half vectors beside whole vectors of doubles: depths are worked
-// out in double and rounded once, so that every instruction set stores the same bits.
+// Values of a sample with 32 bits live in half vectors beside whole vectors of doubles. Depths are computed in double
+// and rounded once, so that every instruction set stores the same bits.
 
 // Included once for every target.
 #if defined(FRONTMOST_ZBUFFER_DEPTH_ROWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -37,7 +37,7 @@ constexpr std::size_t kHalfLanes = hn::MaxLanes(DD());
 /// Adding this to 0 <= x < 2^32 leaves x, rounded to an integer with ties to even, in the low bits of the sum.
 constexpr double kRounder = 6755399441055744.0;  // 1.5 * 2^52
 
-/// From keys to what is stored, and what passes.
+/// Converts keys to stored depths, and tests which pass.
 template <bool is_float>
 class DepthTest {
  public:
@@ -66,7 +66,7 @@ class DepthTest {
     const HalfU du;
     hn::Mask<HalfU> less, equal;
     if constexpr (is_float) {
-      // The clear value may be negative, whose bits have the opposite order.
+      // The clear value may be negative, and the bits of negative floats have the opposite order.
       const auto a = hn::BitCast(HalfF(), stored), b = hn::BitCast(HalfF(), kept);
       less = hn::RebindMask(du, hn::Lt(a, b));
       equal = hn::RebindMask(du, hn::Eq(a, b));
@@ -104,7 +104,7 @@ class DepthTest {
   int passing_;
 };
 
-/// Where a vector of samples is kept, and where on the screen the first of them is, in 1/256 pixel.
+/// The planes' entries for a vector of samples, and the screen position of the first, in 1/256 pixel.
 struct Cell {
   std::uint32_t* stored;
   PrimitiveId* primitives;
@@ -118,7 +118,7 @@ class DepthRows {
   DepthRows(const DepthCall& call, const Tile& tile, const DepthTest<is_float>& test)
       : call_(call), tile_(tile), test_(test) {}
 
-  /// Draws one triangle at one of a pixel's samples. Corners relative to the tile.
+  /// Draws one triangle at one of a pixel's samples. Vertices are relative to the tile.
   void Draw(const TriangleRecord& r, double offset, std::size_t sample) {
     const glm::ivec2 at = call_.planes.samples[sample];
     const PixelRect rect = sampled_rect(r, at, at, tile_.width, tile_.height);
@@ -139,7 +139,7 @@ class DepthRows {
       step[k] = hn::Set(d, lanes * edges.step_x[k]);
     }
     for (int y = rect.y0; y <= rect.y1; ++y) {
-      // The same operations in the same order as for many triangles at a time, so that both give the same bits.
+      // These operations and their order are the same as for packets, so that both give the same bits.
       const float dy_gy = float(y * kSubPixels + at.y - plane.y0) * plane.gy;
       auto e0 = row[0], e1 = row[1], e2 = row[2];
       for (int x = first; x <= rect.x1; x += lanes) {
@@ -157,16 +157,16 @@ class DepthRows {
   }
 
  private:
-  /// What all samples of a triangle have in common.
+  /// The values that all samples of a triangle share.
   struct Paint {
     const KeyPlane& plane;
     hn::Vec<DD> offset;
     PrimitiveId id;
     std::size_t sample;
-    const ScreenCutout* cutout;  ///< null where it has no holes
+    const ScreenCutout* cutout;  ///< null if the triangle has no holes
   };
 
-  /// Of samples from `place` on those that look into no hole.
+  /// The samples from `place` on that do not look into a hole.
   [[nodiscard]] static HWY_NOINLINE hn::Mask<HalfU> Solid(const ScreenCutout& cutout, const glm::ivec2& place,
                                                           hn::Mask<HalfU> seen) {
     const HalfU d;
@@ -185,7 +185,7 @@ class DepthRows {
     return hn::Min(hn::Max(key, hn::Set(d, plane.k_min)), hn::Set(d, plane.k_max));
   }
 
-  /// Of a row of samples from `first` on.
+  /// Keys of a row of samples from `first` on.
   [[nodiscard]] static HWY_INLINE hn::Vec<HalfF> KeyOf(const SteepKeys& steep, const glm::ivec2& first) {
     const HalfI d;
     view_detail::HWY_NAMESPACE::SteepColumn column;
@@ -204,7 +204,7 @@ class DepthRows {
       PutWhole(paint, cell, covered, key);
       return;
     }
-    // The other lanes' memory is another tile's, or nobody's.
+    // Memory of the other lanes belongs to another tile, or lies outside the planes.
     HWY_ALIGN_MAX std::uint32_t stored[kHalfLanes] = {}, primitives[kHalfLanes] = {};
     HWY_ALIGN_MAX float keys[kHalfLanes] = {};
     const Cell copy{stored, primitives, keys, place};
@@ -226,7 +226,7 @@ class DepthRows {
     const HalfF df;
     const auto stored = test_.Stored(key, paint.offset), kept = hn::LoadU(du, cell.stored);
     auto pass = hn::And(covered, test_.Passes(stored, kept));
-    // Last: a look into a texture costs as much as many depth tests.
+    // The hole test comes last: one look into a texture costs as much as many depth tests.
     if (paint.cutout != nullptr) pass = Solid(*paint.cutout, cell.place, pass);
     if (hn::AllFalse(du, pass)) return;
     if (test_.rules().mask) hn::StoreU(hn::IfThenElse(pass, stored, kept), du, cell.stored);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the state to constants of a draw call, and the formats' roundings.
+// Constants of a draw call from its state, and the formats' roundings.
 //
 //    key      0 ............................ 1          0: at infinity, or at the far plane in parallel projection
-//    depth    at_far ................. at_near          the depth range, either way round; limited to it
+//    depth    at_far ................. at_near          the depth range, in either direction; depths are limited to it
 //
-// Keys are affine over the screen, and so are depths, because one is a line over the other. Depths are worked out in
-// double and rounded once, to 8, 16 or 24 bits or to a float, so that every machine stores the same.
+// Keys are affine over the screen, and depths are affine in keys, so depths are affine over the screen too. Depths are
+// computed in double and rounded once, to 8, 16 or 24 bits or to a float, so that every machine stores the same.
 
 #include <algorithm>
 #include <cmath>
@@ -33,12 +33,12 @@ double steps(DepthFormat format) { return double((std::uint32_t(1) << integer_bi
 
 std::uint32_t stored_depth(DepthFormat format, double depth) {
   if (format == DepthFormat::f32) {
-    const float rounded = float(depth) + 0.0f;  // -0 would compare unlike its bits
+    const float rounded = float(depth) + 0.0f;  // -0 becomes +0: its bits would compare differently
     std::uint32_t bits;
     std::memcpy(&bits, &rounded, sizeof bits);
     return bits;
   }
-  // 24 bits times a double: exact but for the rounding itself, whose ties go to even in IeeeScope.
+  // 24 bits times a double are exact but for the rounding itself, whose ties go to even in IeeeScope.
   return std::uint32_t(std::nearbyint(std::clamp(depth, 0.0, 1.0) * steps(format)));
 }
 
@@ -66,7 +66,7 @@ void check_state(const DepthState& state) {
   check(state.func <= DepthFunc::always, "depth function", "there are eight");
 }
 
-/// 2^(e - 23) for 2^e <= depth < 2^(e + 1), never less than the smallest float's.
+/// 2^(e - 23) for 2^e <= depth < 2^(e + 1), and never less than the least float.
 double float_step(double depth) {
   constexpr int kLeast = -149, kFractionBits = 23;
   return std::ldexp(1.0, depth > 0 ? std::max(std::ilogb(depth) - kFractionBits, kLeast) : kLeast);
@@ -76,8 +76,8 @@ double float_step(double depth) {
 
 DepthRules rules_for(const DepthState& state, DepthFormat format, const ScreenTransform& t) {
   check_state(state);
-  // Nearness 1 at the near plane and 0 at the far one, affine in the key. The key is 0 at infinity in perspective, and
-  // at the far plane in parallel projection.
+  // Nearness is 1 at the near plane and 0 at the far plane, affine in the key. The key is 0 at infinity in perspective,
+  // and at the far plane in parallel projection.
   const bool has_far_key = !t.orthographic && t.far < ScreenTransform::farthest;
   const double far_key = has_far_key ? double(t.near) / double(t.far) : 0;
   const double scale = 1 / (1 - far_key);
@@ -86,7 +86,7 @@ DepthRules rules_for(const DepthState& state, DepthFormat format, const ScreenTr
 
   DepthRules rules;
   rules.map.slope = (at_near - at_far) * scale;
-  rules.map.at_zero = at_far - rules.map.slope * far_key + 0.0;  // never -0, so no depth is
+  rules.map.at_zero = at_far - rules.map.slope * far_key + 0.0;  // + 0.0 turns -0 into +0, so no depth is -0
   rules.map.low = std::min(state.range_near, state.range_far) + 0.0;
   rules.map.high = std::max(state.range_near, state.range_far) + 0.0;
   rules.format = format;
@@ -101,7 +101,8 @@ DepthRules rules_for(const DepthState& state, DepthFormat format, const ScreenTr
 }
 
 double DepthRules::offset_of(double gx, double gy, float key_low, float key_high) const {
-  // Gradients are per 1/256 pixel, OpenGL's m is per pixel; it may be the greater of the two instead of the length.
+  // Gradients are per 1/256 pixel, but OpenGL's m is per pixel. OpenGL allows the greater component instead of the
+  // length.
   const double m = std::abs(map.slope) * kSubPixels * std::max(std::abs(gx), std::abs(gy));
   const double r =
       format == DepthFormat::f32 ? float_step(std::max(map.of(key_low), map.of(key_high))) : 1 / steps(format);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawing one tile from batches: the same triangles into the same buffer as tile_kernel.cpp, from another source.
+// Draws one tile from batches: the same triangles into the same buffer as tile_kernel.cpp, from another source.
 //
-// A batch is left out of a tile where its nearest key is hidden in all of the blocks that it touches there. Its
-// triangles come from columns, in runs; small ones are queued as those of clusters are, large ones are records and come
-// first.
+// A batch is left out of a tile if its nearest key is hidden in all blocks of the tile that it touches. Its triangles
+// come from columns, in runs. Small triangles are queued like those of clusters; large ones are records and come first.
 
 #include "zbuffer/direct/direct_frame.h"
 
@@ -11,7 +10,7 @@
 #define HWY_TARGET_INCLUDE "zbuffer/direct/batch_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After Highway: a block of its own.
+// The include follows Highway in a block of its own.
 #include "base/compactor-inl.h"
 #include "zbuffer/direct/tile_pixels-inl.h"
 #include "zbuffer/place/run_reader-inl.h"
@@ -24,7 +23,7 @@ namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Triangles after which it is found out again what blocks hide, or whether asking pays.
+// After this many triangles, the painter finds again which blocks hide, or whether testing pays.
 constexpr std::size_t kWindow = 512;
 constexpr int kMostIdle = 7;
 
@@ -59,7 +58,7 @@ class BatchPainter {
     small_.Finish();
   }
 
-  /// What was drawn hides much of what comes now.
+  /// Starts testing for hidden triangles: the tile's earlier triangles hide much of the later ones.
   void LookForHidden() {
     idle_ = kMostIdle;
     NextWindow();
@@ -74,11 +73,11 @@ class BatchPainter {
     const auto append = [&](std::size_t count, const auto& fetch) HWY_ATTR { Append(count, fetch, from); };
     for (const TileRun& run : batch.in_tile(job_.column(), job_.row())) reader_.Read(run, append);
     reader_.Finish(append);
-    // Triangles in the queue stay within the batch's blocks, whenever they are drawn.
+    // Queued triangles stay within the batch's blocks, so these marks stay valid until they are drawn.
     buffer_.MarkDrawn(blocks_);
   }
 
-  /// `fetch` reads a vector of a column.
+  /// Appends a packet. `fetch` reads a vector of a column.
   template <class Fetch>
   HWY_INLINE void Append(std::size_t count, const Fetch& fetch, const BatchColumns& from) {
     const DI d;
@@ -108,7 +107,7 @@ class BatchPainter {
     if (met_ >= kWindow) NextWindow();
   }
 
-  /// Into the queue, by `store`.
+  /// Puts triangles into the queue by `store`.
   template <class Store>
   HWY_INLINE void Put(const VI (&x)[3], const VI (&y)[3], const VI (&key)[3], VU id, const Store& store) {
     TriangleQueue& queue = small_.queue();
@@ -126,8 +125,8 @@ class BatchPainter {
                           nearest);
   }
 
-  /// Asking whether triangles are hidden, and finding what hides, costs an eighth of drawing a dense mesh: it goes on
-  /// as long as it finds something, and is tried again now and then.
+  /// Testing whether triangles are hidden costs an eighth of drawing a dense mesh. Testing goes on as long as it finds
+  /// hidden triangles, and is tried again now and then.
   HWY_NOINLINE void NextWindow() {
     const bool pays = asks_ && hidden_ * 8 >= met_;
     idle_ = pays || idle_ == kMostIdle ? 0 : idle_ + 1;
@@ -144,11 +143,11 @@ class BatchPainter {
   LargeTriangles large_;
   SmallTriangles small_;
   RunReader reader_;
-  std::uint64_t blocks_ = 0;  // of the batch
-  // Of this window: triangles, those that were hidden, and whether that is asked.
+  std::uint64_t blocks_ = 0;  // blocks of the batch
+  // State of this window: triangles, hidden triangles, and whether hidden triangles are looked for.
   std::size_t met_ = 0, hidden_ = 0;
   bool asks_ = false;
-  int idle_ = kMostIdle;  // windows in which it was not
+  int idle_ = kMostIdle;  // windows since testing stopped
 };
 
 void DrawBatches(const BatchFrame& frame, const BatchJob& job, TileScratch& scratch) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// One picture without clusters: batches of triangles in the scene's order are put on the screen, sorted into tiles,
-// and drawn, some hundred batches at a time. What is seen is a minimum, so the picture may be taken up again for the
-// next ones.
+// One picture without clusters. Batches of triangles in the scene's order are placed on the screen, sorted into tiles,
+// and drawn, some hundred batches at a time. Visibility is a minimum, so the picture of earlier batches is simply
+// continued with the next ones.
 //
-// The first batches are the nearest, as far as a few triangles of each tell. What they show hides most of what comes
-// later, which is then left out by batches: `farthest` keeps, for every block of the picture, how far the farthest of
-// its samples is.
+// The first batches are the nearest, judging by a few triangles of each. They hide most of the later batches, which are
+// then left out as a whole. `farthest` holds the farthest key of the samples of every block of the picture.
 
 #include "zbuffer/direct/direct_frame.h"
 
@@ -24,30 +23,31 @@
 namespace frontmost::zbuffer_detail {
 namespace {
 
-// Half a million triangles; of a large scene at first fewer, so that those behind them need not be looked at.
+// Half a million triangles at once. A large scene starts with fewer, so that triangles behind them need not be looked
+// at.
 constexpr std::size_t kBatchesAtOnce = 256, kBatchesAtFirst = 32, kFewBatches = 128;
 
-/// A batch, and what of its source does not fit into columns.
+/// A batch, and the triangles of its source that do not fit into columns.
 struct DirectBatch {
   TriangleBatch small;
-  std::optional<TriangleBatch> cutouts;  ///< those of the small ones that may have holes
-  std::vector<TriangleRecord> records;   ///< large ones, and those that were clipped
+  std::optional<TriangleBatch> cutouts;  ///< small triangles that may have holes
+  std::vector<TriangleRecord> records;   ///< large triangles and clipped triangles
 };
 
-/// What filling a batch needs of memory, one a thread.
+/// Memory for filling a batch, one a thread.
 struct DirectScratch : PlaceScratch {
   Buffer<BatchColumns> spare{1};
 };
 
-/// A batch and how near it is. Slices are half as deep again as they are far: finer ones hide no more, and lose the
-/// order of the file, which is that of memory.
+/// A batch and its nearness. The far end of a slice is at most 1.5 times as far as its near end. Finer slices hide no
+/// more, and lose the order of the file, which is the order of memory.
 struct Near {
   std::uint32_t slice, batch;
 
   Near() = default;
   Near(float key, std::size_t number) : batch(std::uint32_t(number)) {
     std::memcpy(&slice, &key, sizeof slice);
-    slice >>= 22;  // the exponent and a bit
+    slice >>= 22;  // the exponent and one bit of the fraction
   }
 };
 
@@ -72,7 +72,7 @@ class DirectFrame {
 
   VisiblePixels draw_pixels() {
     survey();
-    if (order_.size() > batches_at_first()) make_planes();  // what the first batches show waits there for the others
+    if (order_.size() > batches_at_first()) make_planes();  // hold the picture of the first batches for the later ones
     VisiblePixels pixels = undefined_pixels(visible_.view);
     std::atomic<std::uint32_t> other_count{0};
     const PixelPlanes planes{
@@ -106,8 +106,7 @@ class DirectFrame {
     } while (next < order_.size());
   }
 
-  /// What goes into which batch, and in which order to draw them: near ones first, as far as a few triangles of each
-  /// tell.
+  /// Divides triangles into batches, and sorts the batches nearest first, judging by a few triangles of each.
   void survey() {
     constexpr std::size_t kGrain = 64;
     sources_ = batch_sources(scene_.ranges);
@@ -119,7 +118,7 @@ class DirectFrame {
               [](const Near& a, const Near& b) { return a.slice != b.slice ? a.slice > b.slice : a.batch < b.batch; });
   }
 
-  /// The greatest key of some triangles of a batch; more than any where one is behind the eye.
+  /// The greatest key of some triangles of a batch; more than any key if a triangle is behind the eye.
   [[nodiscard]] float nearest_of(const BatchSource& source) const {
     constexpr std::size_t kTriangles = 4;
     float nearest = 0;
@@ -139,9 +138,9 @@ class DirectFrame {
     return nearest;
   }
 
-  /// False where blocks that were found to be nearer cover all of the vertices, or none of them is on the screen.
+  /// False if nearer blocks cover all of the vertices, or if none of the vertices is on the screen.
   [[nodiscard]] bool may_be_seen(const SnappedVertices& vertices) const {
-    // A negative key is a vertex with out codes: not seen where all of them have one, and one plane in common.
+    // A negative key holds out codes. A batch is not seen if all vertices have out codes with one plane in common.
     if (!vertices.all_plain) return vertices.common >= 0 || (vertices.common & kOutside) == 0;
     const View& view = visible_.view;
     const PixelRect rect =
@@ -199,7 +198,7 @@ class DirectFrame {
     batch.list_tiles();
   }
 
-  /// What was placed, by kind, near things first.
+  /// Collects the placed triangles by kind, nearest first.
   void sort_out(std::size_t count) {
     const std::span<const DirectBatch> placed(batches_.data(), count);
     records_.records.clear();
@@ -230,10 +229,10 @@ class DirectFrame {
     });
   }
 
-  /// `is_last`: nothing comes after it, so what is still empty stays so.
+  /// `is_last`: no batch comes afterwards, so tiles that are empty stay empty.
   void draw_placed(const PixelPlanes* pixels, bool is_last) {
     const View& view = visible_.view;
-    // As in zbuffer.cpp: memory that is touched for the first time.
+    // The memory is touched for the first time; zbuffer.cpp explains the threshold.
     const bool streams = view.sample_count() * (sizeof(PrimitiveId) + sizeof(float)) >= std::size_t(32) << 20;
     const Picture picture{view,
                           sample_offsets(view.samples),
@@ -267,12 +266,12 @@ class DirectFrame {
   PlaceTarget target_;
   Visible visible_;
   std::vector<std::uint8_t> is_drawn_;  // by tile
-  std::vector<float> farthest_;         // by tile and block: no sample of it is farther than this key
+  std::vector<float> farthest_;         // by tile and block: no sample of the block is farther than this key
   std::vector<BatchSource> sources_;
   std::vector<Near> order_;
-  // Of the batches that are placed.
+  // State of the batches that are placed.
   std::vector<DirectBatch> batches_;
-  std::vector<const TriangleBatch*> nearest_first_;  // from `first_cutout_` on those of cutouts
+  std::vector<const TriangleBatch*> nearest_first_;  // batches with cutouts from `first_cutout_` on
   std::size_t first_cutout_ = 0;
   RecordLists records_;
   TileLists batch_lists_;

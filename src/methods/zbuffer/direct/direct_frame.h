@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// One picture of a scene, straight from its own arrays, and the kernel that draws a tile of it from batches.
+// One picture of a scene straight from its own arrays, and the kernel that draws a tile of it from batches.
 //
 //    scene's arrays --survey--> batches, nearest first --place--> on the screen --lists--> tiles --draw_batches-->
-//       again for the next some hundred batches, on what the planes and `farthest` hold by then
+//       repeated for the next some hundred batches, with the planes and `farthest` as they are by then
 //
-// Clusters are worth their making from the second picture on. The first one is drawn without them, from the arrays as
-// they were loaded, and has the same bits.
+// Making clusters pays off from the second picture on. The first picture is drawn without clusters, straight from the
+// loaded arrays, and has the same bits.
 #pragma once
 
 #include <span>
@@ -18,32 +18,32 @@
 
 namespace frontmost::zbuffer_detail {
 
-/// What ZBuffer::draw() gives of the clusters, to the bit. O(triangles + covered samples). Memory beside the result:
-/// some 30 MiB, at most as much again for triangles with holes, and 100 bytes for each large or clipped triangle of
-/// half a million in a row.
+/// The picture of ZBuffer::draw(), to the bit, without clusters. O(triangles + covered samples). Memory beside the
+/// result: some 30 MiB, at most as much again for triangles with holes, and 100 bytes for each large or clipped
+/// triangle of half a million in a row.
 [[nodiscard]] Visible draw_directly(const PlacedScene& scene, const View& view, const Execution& execution);
-/// The same by pixels. Scenes of more than a quarter of a million triangles take the planes beside it for a while.
+/// draw_directly(), by pixels. Scenes of more than a quarter of a million triangles also need the planes for a while.
 [[nodiscard]] VisiblePixels draw_pixels_directly(const PlacedScene& scene, const View& view,
                                                  const Execution& execution);
 
-/// What all tiles have in common that are drawn from the same batches.
+/// The input that all tiles drawn from the same batches share.
 struct BatchFrame : Picture {
   std::span<const TriangleBatch* const> batches;
   std::span<const TriangleRecord> records;
 };
 
-/// One tile, and what may be seen in it.
+/// One tile, and the records and batches that may be seen in it.
 struct BatchJob : Tile {
-  /// Near things first.
+  /// Nearest first.
   struct Items {
     std::span<const std::uint32_t> records, batches;
 
     [[nodiscard]] bool is_empty() const { return records.empty() && batches.empty(); }
   };
   Items solid, cutouts;
-  bool is_drawn;    ///< it shows something already, which the planes hold
+  bool is_drawn;    ///< the tile shows something already, which the planes hold
   bool is_last;     ///< nothing will be drawn to it any more
-  float* farthest;  ///< of the 64 blocks: what was found before, and is found now unless this is the last time
+  float* farthest;  ///< keys of the 64 blocks: read, and updated unless is_last
 
   [[nodiscard]] bool is_empty() const { return solid.is_empty() && cutouts.is_empty(); }
 };

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way out of a tile into a VisiblePixels: sample 0 as planes, and the others where a pixel's samples differ.
+// Writes a tile to a VisiblePixels: sample 0 as planes, and the other samples if a pixel's samples differ.
 //
-// Rows are looked at twice: first for which pixels are mixed, which tells how much of `others` the row takes, then for
-// what those hold. Tiles take their parts of it in the order in which they come, so that its order depends on threads;
-// what it says of a pixel does not.
+// Rows are read twice: first to find mixed pixels, which gives the row's share of `others`, then to fill that share.
+// Tiles take their shares as they come, so the order of `others` depends on threads; the samples of a pixel do not.
 
 // Included once for every target.
 #if defined(FRONTMOST_ZBUFFER_TILE_PIXELS_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -35,7 +34,7 @@ class TilePixels {
     }
   }
 
-  /// Of a tile in which nothing is seen.
+  /// Fills a tile in which nothing is seen.
   void Fill() const {
     for (int y = 0; y < tile_.height; ++y) {
       const std::size_t at = FirstPixel(y);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Putting triangles into batches: vertices, pixel rectangles and facing, many at a time.
+// Places triangles into batches: vertices, pixel rectangles and facing, many at a time.
 //
-//    vertices     each once, snapped to 1/256 pixel, with a mark where it cannot be
-//    triangles    corners gathered --> bounds, facing, samples between them?
-//                 small and whole:   turned, and appended to the columns of the batch
+//    vertices     each once, snapped to 1/256 pixel, or marked if it cannot be snapped
+//    triangles    vertices gathered --> bounds, facing, samples between them?
+//                 small and whole:   oriented, and appended to the columns of the batch
 //                 anything else:     its number goes to `apart`, and it is clipped by itself
 //
 // A triangle that has no sample between its bounds is left out at once.
@@ -16,7 +16,7 @@
 
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After Highway: a block of its own.
+// The include follows Highway in a block of its own.
 #include "base/compactor-inl.h"
 #include "view/snap-inl.h"
 #include "zbuffer/packet-inl.h"
@@ -27,7 +27,8 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace screen = view_detail::HWY_NAMESPACE;
 
-/// Calls visit(first, pointer to a whole vector of triples) over all of them; the last may be repeated to fill up.
+/// Calls visit(first, pointer to a whole vector of triples) for all triples. The last vector may overlap the one
+/// before.
 template <class Triple, class Visit>
 HWY_INLINE void ForTriples(std::span<const Triple> triples, const Visit& visit) {
   const std::size_t lanes = hn::Lanes(DF());
@@ -44,7 +45,7 @@ struct WorldVertices {
   VF x, y, z;
 };
 
-/// Which planes of the clip volume a vertex lies outside of for certain, a bit each, in the bits of a negative float.
+/// The planes of the clip volume that a vertex is certainly outside of, a bit each, in the bits of a negative float.
 class OutCodes {
  public:
   explicit OutCodes(const ScreenTransform& t) : t_(t) {}
@@ -56,7 +57,8 @@ class OutCodes {
     const VF slack_x = Slack(t_.x_row, t_.x_offset, from_eye), slack_y = Slack(t_.y_row, t_.y_offset, from_eye);
     const VF slack_d = Slack(t_.d_row, t_.d_offset, from_eye);
     const VF guard = hn::Set(d, float(kGuardBand) * 1.000001f);
-    // Behind the eye as well: a linear function of a whole triangle that no corner makes small enough.
+    // The test is valid behind the eye as well: v.x - reach is linear over the whole triangle, so it is positive
+    // everywhere if it is positive at all vertices.
     const VF reach = t_.orthographic ? guard : hn::Mul(guard, hn::Add(v.d, slack_d));
     VI code = hn::Set(DI(), kNone);
     code = hn::Or(code, Bit(hn::Lt(hn::Add(v.d, slack_d), hn::Set(d, t_.near)), 1));
@@ -68,7 +70,7 @@ class OutCodes {
     return hn::BitCast(d, code);
   }
 
-  /// Triangles, by the keys of their corners, all of whose corners are outside of one plane.
+  /// Triangles whose vertices are all outside of one plane, found from the vertices' keys.
   [[nodiscard]] static HWY_INLINE MI Outside(VF a, VF b, VF c) {
     const DI d;
     const VI all = hn::And(hn::BitCast(d, a), hn::And(hn::BitCast(d, b), hn::BitCast(d, c)));
@@ -82,7 +84,7 @@ class OutCodes {
   [[nodiscard]] static HWY_INLINE VI Bit(hn::Mask<DF> mask, std::int32_t bit) {
     return hn::IfThenElseZero(hn::RebindMask(DI(), mask), hn::Set(DI(), bit));
   }
-  /// More than what rounding adds to a coordinate.
+  /// A bound greater than the rounding error of a coordinate.
   [[nodiscard]] static HWY_INLINE VF Slack(const std::array<float, 3>& row, float offset, const VF from_eye[3]) {
     const DF d;
     VF sum = hn::Set(d, std::abs(offset));
@@ -135,7 +137,7 @@ void SnapVertices(const PlaceTarget& target, std::span<const glm::vec3> position
   for (std::size_t k = 0; k < hn::Lanes(di); ++k) vertices.common &= lanes[k];
 }
 
-/// Puts packets into the columns of a batch: what SortOut() finds.
+/// Puts the packets that SortOut() finds into the columns of a batch.
 class Placer {
  public:
   Placer(const PlaceTarget& target, const WorldTriangles& triangles, const SnappedVertices& vertices,
@@ -158,7 +160,7 @@ class Placer {
     batch_.nearest = hn::GetLane(hn::MaxOfLanes(d, nearest_));
   }
 
-  // What SortOut() asks for.
+  // The sink functions of SortOut().
 
   [[nodiscard]] HWY_INLINE PixelRange ColumnsOf(const CoordinateRange& x) const {
     return PixelsOf(x, target_.low.x, target_.high.x, target_.view.width);
@@ -181,7 +183,7 @@ class Placer {
     const std::size_t at = batch_.count;
     for (int k = 0; k < 3; ++k) {
       const Corners& corner = placed.corners[k];
-      // As bits, which order as the keys do while none is negative; kept triangles have none that is.
+      // Bits of keys order as the keys do while no key is negative; kept triangles have no negative key.
       const VI key = hn::GatherIndex(d, reinterpret_cast<const std::int32_t*>(vertices_.key.data()), corner.number);
       compact.Store(corner.x, to.x[k] + at);
       compact.Store(corner.y, to.y[k] + at);
@@ -217,7 +219,8 @@ class Placer {
     return hn::GatherIndex(DF(), vertices_.key.data(), corners.number);
   }
 
-  /// Those whose corners are on the screen as they are; the others are clipped, unless all of them is away.
+  /// Triangles whose vertices could all be snapped. Other triangles are clipped, unless they are wholly outside of a
+  /// plane.
   [[nodiscard]] HWY_NOINLINE MI Plain(MI live, const Corners (&c)[3]) {
     const DI d;
     const DF df;
@@ -232,7 +235,7 @@ class Placer {
     others_ = 0;
   }
 
-  /// Widens what is known of the whole batch.
+  /// Widens the bounds of the whole batch.
   HWY_INLINE void Note(const PlacedPacket& placed) {
     least_x_ = hn::IfThenElse(placed.kept, hn::Min(least_x_, placed.columns.first), least_x_);
     least_y_ = hn::IfThenElse(placed.kept, hn::Min(least_y_, placed.rows.first), least_y_);
@@ -240,7 +243,7 @@ class Placer {
     greatest_y_ = hn::IfThenElse(placed.kept, hn::Max(greatest_y_, placed.rows.last), greatest_y_);
   }
 
-  /// BatchColumns::tiles. Eight bits a number are enough: the largest image has 128 tiles either way.
+  /// BatchColumns::tiles. Eight bits a number are enough, as the largest image has 128 tiles either way.
   [[nodiscard]] static HWY_INLINE VI TilesOf(const PixelRange& columns, const PixelRange& rows) {
     static_assert(kTileSize == 1 << 7);
     const VI first = hn::Or(hn::ShiftRight<7>(columns.first), hn::ShiftLeft<8>(hn::ShiftRight<7>(rows.first)));
@@ -255,7 +258,7 @@ class Placer {
   std::vector<std::uint32_t>& apart_;
   VI least_x_, least_y_, greatest_x_, greatest_y_;  // pixels
   VI nearest_;                                      // bits of keys
-  // Of the packet: its first triangle, and the lanes of those that are drawn one by one.
+  // First triangle of the packet, and the lanes of its triangles that are drawn one by one.
   std::size_t first_ = 0;
   std::uint64_t others_ = 0;
 };

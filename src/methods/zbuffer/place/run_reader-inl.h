@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading the triangles of a batch that lie in one tile, a packet at a time and in their order.
+// Reads the triangles of a batch that lie in one tile, a packet at a time and in their order.
 //
 //    run of 20, vectors of 16    [ whole vector as it stands ][4 numbers wait]
 //    next run of 7               [4 + 7 numbers wait]
 //    next run of 9               [16 numbers: gathered together][4 wait]
 //
-// Long runs are read as they stand in memory; what is left of them waits, so that vectors are always full. The order of
-// triangles stays that of the runs, which the depth buffer needs.
+// Long runs are read directly from memory; the rest of a run waits, so that vectors are always full. Triangles keep the
+// order of the runs, which the depth buffer needs.
 
 // Included once for every target.
 #if defined(FRONTMOST_ZBUFFER_RUN_READER_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -25,17 +25,18 @@ namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Calls visit(count, fetch) for packets of `count` triangles, where fetch(tag, column) reads a vector of a column of
+/// Calls visit(count, fetch) for packets of `count` triangles. fetch(tag, column) reads a vector of a column of
 /// BatchColumns; lanes behind the last triangle repeat the first.
 class RunReader {
  public:
-  /// Whole vectors of a run as they stand; what is left of it is gathered, with others, when it fills a vector.
+  /// Reads whole vectors of a run directly. Gathers the rest together with the rest of other runs, once it fills a
+  /// vector.
   template <class Visit>
   HWY_INLINE void Read(const TileRun& run, const Visit& visit) {
     const DI d;
     std::size_t i = run.first;
     const std::size_t end = i + run.count;
-    if (run.count == 1) {  // as most are where triangles are strewn
+    if (run.count == 1) {  // most runs are this short if triangles are strewn
       numbers_[pending_++] = std::int32_t(i);
       if (pending_ == hn::Lanes(d)) Finish(visit);
       return;
@@ -51,7 +52,7 @@ class RunReader {
     }
   }
 
-  /// What still waits.
+  /// Reads the triangles that still wait.
   template <class Visit>
   HWY_INLINE void Finish(const Visit& visit) {
     if (pending_ == 0) return;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // From the scene's own arrays to triangles on the screen, in the order of their ids.
 //
-// A batch is placed in one call for each range of a mesh that it holds. Triangles that must be clipped, or are large,
-// are single ones with lists of their own; where a tile has some, its runs of small triangles are parted at their ids,
-// so that all come in the order of submission.
+// A batch is placed in one call for each range of a mesh that it holds. Large or clipped triangles are singles with
+// lists of their own. In a tile with singles, runs of small triangles are split at the singles' ids, so that all come
+// in the order of submission.
 
 #include "zbuffer/place/submission.h"
 
@@ -34,7 +34,7 @@ void OrderedBatch::list_tiles(const View& view) {
 
 void OrderedBatch::append_single(const PlaceTarget& target, const ClippedPolygon& polygon, PrimitiveId id) {
   if (polygon.count == 0) return;
-  // Of the whole polygon, not of each piece: the polygon offset of f32 looks at the greatest depth of the primitive.
+  // Keys of the whole polygon, not of each piece: the polygon offset of f32 depends on the primitive's greatest depth.
   float low = polygon.corners[0].key, high = low;
   for (int i = 0; i < polygon.count; ++i) {
     low = std::min(low, polygon.corners[std::size_t(i)].key);
@@ -60,7 +60,8 @@ std::vector<MeshRange> ranges_within(const PlacedScene& placed, const PrimitiveR
 std::size_t batches_at_once(const View& view) {
   constexpr std::size_t kMostItems = std::size_t(1) << 26;  // 256 MiB
   constexpr std::size_t kMost = 128;                        // 2^18 triangles
-  // Clipping makes seven pieces of a triangle at most, but they do not overlap: a tile and a half each, on average.
+  // Clipping makes at most seven pieces of a triangle. Pieces do not overlap, so each is in one and a half tiles on
+  // average.
   return std::clamp<std::size_t>(kMostItems / (Tile::count(view) * MeshRange::most_triangles), 1, kMost);
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batches of triangles in the order of their ids, for what must draw them so: in the order of submission, as OpenGL
-// calls it.
+// Batches of triangles in the order of their ids, for drawing in the order of submission, as OpenGL calls it.
 //
 //    ids         0 1 2 3 4 5 6 7 8 9 ...
 //    small       0 1 2   4 5   7 8 9            runs of the columns
@@ -24,9 +23,9 @@ struct PrimitiveRange {
   PrimitiveId begin, end;
 };
 
-/// A large triangle, or one of those that clipping has made of one.
+/// A large triangle, or one of the pieces that clipping leaves of a triangle.
 struct SingleTriangle {
-  TriangleRecord record;  ///< corners from the image's top left
+  TriangleRecord record;  ///< vertices from the image's top left
   float low, high;        ///< keys of the primitive's whole visible part
 };
 
@@ -34,17 +33,17 @@ struct SingleTriangle {
 class OrderedBatch {
  public:
   void clear();
-  /// Transforms, clips, culls and appends triangles whose ids follow those of the ones before.
+  /// Transforms, clips, culls and appends triangles. Their ids must follow the ids appended before.
   void place(const PlaceTarget& target, const WorldTriangles& triangles, PlaceScratch& scratch);
-  /// Makes the lists by tile, when all triangles are there.
+  /// Makes the lists by tile, once all triangles are appended.
   void list_tiles(const View& view);
 
   [[nodiscard]] const TriangleBatch& small() const { return small_; }
   [[nodiscard]] bool is_in(const Tile& tile) const {
     return !small_.in_tile(tile.column(), tile.row()).empty() || !singles_in(tile).empty();
   }
-  /// Calls visit_runs(runs) for small triangles of the columns, and visit_single(triangle), in order of ids, for all
-  /// that may touch a tile.
+  /// Visits all triangles that may touch a tile, in order of ids: calls visit_runs(runs) for small triangles of the
+  /// columns and visit_single(triangle) for singles.
   template <class VisitRuns, class VisitSingle>
   void visit_tile(const Tile& tile, const VisitRuns& visit_runs, const VisitSingle& visit_single) const;
 
@@ -57,7 +56,7 @@ class OrderedBatch {
 
   TriangleBatch small_;
   std::vector<SingleTriangle> singles_;
-  TileLists lists_;  // of single ones
+  TileLists lists_;  // lists of singles_
 };
 
 template <class VisitRuns, class VisitSingle>
@@ -82,13 +81,13 @@ void OrderedBatch::visit_tile(const Tile& tile, const VisitRuns& visit_runs, con
   for (; next < singles.size(); ++next) visit_single(singles_[singles[next]]);
 }
 
-/// What of the scene's ranges lies within `range`, in order.
+/// The parts of the scene's ranges that lie within `range`, in order.
 [[nodiscard]] std::vector<MeshRange> ranges_within(const PlacedScene& placed, const PrimitiveRange& range);
-/// How many batches may be placed at once: their lists stay within 256 MiB even where every triangle fills the image.
+/// How many batches may be placed at once: their lists stay within 256 MiB even if every triangle fills the image.
 [[nodiscard]] std::size_t batches_at_once(const View& view);
 
-/// Calls draw(tile, batch) for every tile and every batch of the range that is in it. In each tile batches come in
-/// order; different tiles are drawn at the same time.
+/// Calls draw(tile, batch) for every tile and every batch of the range that is in the tile. Batches come in order in
+/// each tile; different tiles are drawn at the same time.
 template <class Draw>
 void submit(const Surfaces& surfaces, const View& view, const PrimitiveRange& range, const Execution& execution,
             const Draw& draw) {

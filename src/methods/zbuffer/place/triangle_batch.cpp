@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists by tile of a batch: runs of triangles where neighbours in the file lie in the same tiles.
+// Lists of a batch by tile: runs of consecutive triangles that lie in the same tiles.
 //
 //    triangle    0     1     2     3     4          consecutive triangles that touch the same tiles are one run
 //    tiles       A     A     A,B   A,B   B          runs of A: [0,1] [2,3]      runs of B: [2,3] [4]
 //
-// Where triangles are strewn, every run has one of them, and lists get as long as the batch. Then triangles are sorted
-// by their tiles first. That loses their order, which only the picture without an order of submission can afford.
+// If triangles are strewn, every run has one triangle, and lists get as long as the batch. Such triangles are first
+// sorted by their tiles. Sorting loses the order of submission, which only pictures without such an order can afford.
 
 #include "zbuffer/place/triangle_batch.h"
 
@@ -14,7 +14,7 @@
 namespace frontmost::zbuffer_detail {
 namespace {
 
-/// BatchColumns::tiles, taken apart: two by two at most.
+/// BatchColumns::tiles, unpacked: at most two by two tiles.
 struct SmallTiles {
   explicit SmallTiles(std::uint32_t t)
       : x0(int(t & 255)), y0(int(t >> 8 & 255)), x1(int(t >> 16 & 255)), y1(int(t >> 24)) {}
@@ -57,7 +57,7 @@ std::size_t TriangleBatch::visit_runs(const Visit& visit) const {
 }
 
 void TriangleBatch::gather_strewn(Buffer<BatchColumns>& spare) {
-  // Runs of fewer than this on average are gathered lane by lane when drawn, which costs more than sorting once.
+  // Shorter runs, on average, are gathered lane by lane when drawn, which costs more than sorting once.
   constexpr std::size_t kShortRun = 4;
   if (visit_runs([](const SmallTiles&, const TileRun&) {}) <= count / kShortRun) return;
   sort_by_tiles(spare[0]);
@@ -75,7 +75,7 @@ void TriangleBatch::list_tiles() {
     });
   };
   const auto tile_count = std::size_t(all.count());
-  // One place behind, so that filling a list moves its beginning to where it belongs.
+  // Filling a list advances its beginning, so beginnings are stored one place further on at first.
   begin_.assign(tile_count + 2, 0);
   visit([&](std::size_t tile, const TileRun&) { ++begin_[tile + 2]; });
   for (std::size_t tile = 0; tile < tile_count; ++tile) begin_[tile + 2] += begin_[tile + 1];
@@ -83,7 +83,7 @@ void TriangleBatch::list_tiles() {
   visit([&](std::size_t tile, const TileRun& run) { runs_[begin_[tile + 1]++] = run; });
 }
 
-/// By the first tile, and among those by whether they reach into the next ones.
+/// Sorts by the first tile, then by whether triangles reach into the next tiles.
 void TriangleBatch::sort_by_tiles(BatchColumns& sorted) {
   const TileRect all = tiles();
   const BatchColumns& from = columns();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A batch: some two thousand triangles as they stand in the scene, put on the screen and sorted into tiles.
+// A batch: some two thousand consecutive triangles of the scene, placed on the screen and sorted into tiles.
 //
-// Neighbours in a file are mostly neighbours on the screen, too, so that most tiles of a batch hold long runs of its
-// columns; where they are not, the batch is merely in more tiles.
+// Neighbours in a file are mostly neighbours on the screen, too, so most tiles of a batch hold long runs of its
+// columns. Otherwise the batch is merely in more tiles.
 #pragma once
 
 #include <vector>
@@ -13,15 +13,15 @@
 
 namespace frontmost::zbuffer_detail {
 
-/// Triangles with corners no farther apart than 124 pixels, set apart by corner; from the image's top left, areas
-/// positive, each with a sample within its bounds.
+/// Triangles with vertices no farther apart than 124 pixels, one array a vertex, from the image's top left. Areas are
+/// positive, and each triangle has a sample within its bounds.
 struct BatchColumns {
   static constexpr std::size_t room = MeshRange::most_triangles + 16;  ///< a store may write a whole vector
 
   alignas(64) std::int32_t x[3][room], y[3][room];
   alignas(64) std::int32_t key[3][room];  ///< bits of the float
   alignas(64) std::uint32_t id[room];
-  /// The first and the last tile column and row that it may touch: x0 | y0 << 8 | x1 << 16 | y1 << 24.
+  /// The first and the last tile column and row that the triangle may touch: x0 | y0 << 8 | x1 << 16 | y1 << 24.
   alignas(64) std::uint32_t tiles[room];
 
   void copy_triangle(std::size_t i, BatchColumns& to, std::size_t place) const {
@@ -45,8 +45,8 @@ class TriangleBatch {
   static constexpr std::size_t most_triangles = MeshRange::most_triangles;
 
   // Filled by place_triangles().
-  std::size_t count = 0;         ///< of the columns
-  PixelRect rect{0, 0, -1, -1};  ///< no pixel of those lies outside
+  std::size_t count = 0;         ///< triangles in the columns
+  PixelRect rect{0, 0, -1, -1};  ///< bounds of their pixels
   std::int32_t nearest = 0;      ///< bits of their greatest key
 
   TriangleBatch() : columns_(1) {}
@@ -54,17 +54,17 @@ class TriangleBatch {
   [[nodiscard]] BatchColumns& columns() { return columns_[0]; }
   [[nodiscard]] const BatchColumns& columns() const { return columns_[0]; }
   [[nodiscard]] TriangleRecord record(std::size_t i) const;
-  /// Moves those for which `is_out(id)` to another batch, which is empty.
+  /// Moves the triangles for which `is_out(id)` holds to another batch, which is empty.
   template <class IsOut>
   void extract(const IsOut& is_out, TriangleBatch& out);
 
-  /// Where neighbours are strewn over the picture, as in a soup, puts together those of one tile, in `spare`, which
-  /// takes the place of the columns. Their order is lost.
+  /// Groups triangles by tile if neighbours are strewn over the picture, as in a soup. Loses their order. `spare` takes
+  /// the place of the columns.
   void gather_strewn(Buffer<BatchColumns>& spare);
-  /// Makes the lists by tile, when all triangles are there.
+  /// Makes the lists by tile, once all triangles are placed.
   void list_tiles();
   [[nodiscard]] TileRect tiles() const { return TileRect(rect); }
-  /// Of a tile, once they are listed: runs from the first triangle to the last.
+  /// The runs of a tile, from the first triangle to the last. Precondition: list_tiles().
   [[nodiscard]] std::span<const TileRun> in_tile(int column, int row) const {
     if (count == 0) return {};
     const TileRect all = tiles();
@@ -83,12 +83,12 @@ class TriangleBatch {
   std::vector<TileRun> runs_;
 };
 
-/// What goes into one batch: ranges [begin, end) of the scene.
+/// The source of one batch: ranges [begin, end) of the scene.
 struct BatchSource {
   std::size_t begin, end;
 };
 
-/// Consecutive ranges go into one batch together: most scenes have a few large instances, some many small ones.
+/// Joins consecutive ranges into batches: most scenes have a few large instances, some many small ones.
 [[nodiscard]] std::vector<BatchSource> batch_sources(std::span<const MeshRange> ranges);
 
 template <class IsOut>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of more than a few pixels, one at a time: all blocks of the tile are classified at once, and what is left
-// of them is filled in whole rows.
+// Triangles of more than a few pixels, one at a time. All blocks of the tile are classified at once; the open blocks
+// are then filled in whole rows.
 //
-//    +--+--+--+--+      Of the 64 blocks of a tile one bit each tells which the triangle touches (t), which lie inside
-//    |  |tt|tt|  |      of all three edges (f), and which are hidden by what is there. Hidden blocks are left out, full
-//    |tt|ff|ff|tt|      ones need no edges, and what is left is filled a row of samples at a time. A block that the
-//    |tt|tt|tt|  |      triangle covers wholly also bounds what may be seen behind it.
+//    +--+--+--+--+      One bit for each of the 64 blocks of a tile tells whether the triangle touches it (t),
+//    |  |tt|tt|  |      whether it lies inside of all three edges (f), and whether it is hidden. Hidden blocks are left
+//    |tt|ff|ff|tt|      out, full blocks need no edges, and open blocks are filled a row of samples at a time. A block
+//    |tt|tt|tt|  |      that the triangle covers wholly also bounds the depth of visible triangles behind it.
 //    +--+--+--+--+
 
 // Included once for every target.
@@ -37,11 +37,11 @@ class LargeTriangles {
     for (const glm::ivec2& s : picture.samples) low_ = glm::min(low_, s), high_ = glm::max(high_, s);
   }
 
-  /// Of `records`, nearest first and with corners from the image's top left, those that `numbers` names.
+  /// Draws the records that `numbers` names. Records are nearest first, vertices from the image's top left.
   void DrawAll(std::span<const TriangleRecord> records, std::span<const std::uint32_t> numbers) {
     for (const std::uint32_t i : numbers) {
       TriangleRecord record = records[i];
-      // Nearest first: what hides this one everywhere hides the others, too.
+      // Later records are farther, so blocks that all hide this record hide the others, too.
       if (buffer_.KnownToHide(record.nearest()) == ~std::uint64_t(0)) return;
       for (int k = 0; k < 3; ++k) {
         record.x[k] -= tile_.x * kSubPixels;
@@ -51,9 +51,9 @@ class LargeTriangles {
     }
   }
 
-  /// Leaves out one with the corners of the last that it was asked for, and a higher id: of equal keys the lower id is
-  /// seen. Copies follow each other in clusters, so that a million of them are drawn once. With holes they may have
-  /// different ones. Precondition as for Draw().
+  /// Draws a record unless its vertices equal those of the record before and its id is higher: at equal keys the lower
+  /// id is seen. Copies follow each other in clusters, so a million copies are drawn once. Records with holes are
+  /// always drawn, as the holes may differ. Precondition as for Draw().
   HWY_NOINLINE void DrawOnce(const TriangleRecord& r) {
     if (!buffer_.minds_holes() && last_.id < r.id && std::memcmp(last_.x, r.x, sizeof r.x) == 0 &&
         std::memcmp(last_.y, r.y, sizeof r.y) == 0 && std::memcmp(last_.key, r.key, sizeof r.key) == 0)
@@ -62,7 +62,7 @@ class LargeTriangles {
     Draw(r);
   }
 
-  /// Precondition: oriented; corners relative to the tile.
+  /// Precondition: the record is oriented, with vertices relative to the tile.
   void Draw(const TriangleRecord& r) {
     const PixelRect rect = pixel_rect(r, tile_.width, tile_.height);
     if (rect.is_empty()) return;
@@ -80,7 +80,7 @@ class LargeTriangles {
     explicit Plane(const TriangleRecord& r) : KeyPlane(r), not_id(~r.id) {
       if (!is_steep) return;
       steep = SteepKeys(r);
-      // What bounds the keys of blocks is the same plane, told at the tile's corner to a float's precision.
+      // The keys of blocks are bounded by the same plane, evaluated at the tile's corner with a float's precision.
       x0 = y0 = 0;
       k0 = float(steep.exactly_at(0, 0));
       gx = float(steep.gx());
@@ -90,10 +90,10 @@ class LargeTriangles {
     SteepKeys steep;
   };
 
-  /// The keys of a block's pixels at one sample, a vector of a row at a time: of gentle planes.
+  /// Keys of a block's pixels at one sample, a vector of a row at a time, for gentle planes.
   class GentleRows {
    public:
-    /// `first`: the sample of the block's first pixel, in 1/256 pixel of the tile.
+    /// `first` is the sample of the block's first pixel, in 1/256 pixel of the tile.
     GentleRows(const Plane& plane, const glm::ivec2& first) : plane_(plane), first_(first) {
       const DI d;
       const DF df;
@@ -116,7 +116,7 @@ class LargeTriangles {
     HWY_ALIGN_MAX float down_[kBlockSize];
   };
 
-  /// The same of steep ones.
+  /// Keys of a block's pixels at one sample, a vector of a row at a time, for steep planes.
   class SteepRows {
    public:
     SteepRows(const Plane& plane, const glm::ivec2& first) : keys_(plane.steep), first_(first) {}
@@ -131,18 +131,18 @@ class LargeTriangles {
     glm::ivec2 first_;
   };
 
-  /// By block: how near a triangle can be there, its keys at the four outermost samples, and what rounding may add to
-  /// the difference of one of those from the exact plane, and of any sample of the block as well.
+  /// Key bounds of one triangle, by block: the nearest key, the keys at the four outermost samples, and `slack`. The
+  /// slack bounds the rounding error of the difference between such a key, or any sample's key, and the exact plane.
   struct Reach {
     HWY_ALIGN_MAX float nearest[BlockBounds::count], corner[4][BlockBounds::count], slack[BlockBounds::count];
   };
 
-  /// Blocks that no sample of the triangle lies in, and those whose every sample does.
+  /// `none`: blocks in which no sample lies in the triangle. `all`: blocks of which every sample does.
   struct Cover {
     std::uint64_t none = 0, all = 0;
   };
 
-  /// What is kept of a block: every sample that is nearer, those that are covered, or of these the solid ones.
+  /// Which samples of a block are kept: all nearer ones, nearer and covered ones, or nearer, covered and solid ones.
   enum class Filling { whole, covered, solid };
 
   template <class Rows>
@@ -152,12 +152,12 @@ class LargeTriangles {
     std::uint64_t whole = open;
     for (std::size_t s = 0; s < picture_.samples.size() && open != 0; ++s)
       whole &= DrawSample<Rows>(r, plane, rect, s, open, reach);
-    if (buffer_.minds_holes()) return;  // what lies behind them is not hidden
+    if (buffer_.minds_holes()) return;  // what lies behind a triangle with holes is not hidden
     for (whole &= open; whole != 0; whole &= whole - 1)
       KeepPlane(int(hwy::Num0BitsBelowLS1Bit_Nonzero64(whole)), plane, reach);
   }
 
-  /// Calls visit(first block, column, row of the block in each lane) for all blocks that may be of `rect`.
+  /// Calls visit(first block, column, row of the block in each lane) for all blocks that may touch `rect`.
   template <class Visit>
   static HWY_INLINE void ForBlocks(const PixelRect& rect, const Visit& visit) {
     const DI d;
@@ -169,8 +169,8 @@ class LargeTriangles {
     }
   }
 
-  /// The blocks known to hide the triangle: by their farthest key, or by a triangle that covers them and whose plane
-  /// is nearer at all four corners. Planes are affine, so what holds at the corners holds between them.
+  /// The blocks known to hide the triangle: by their farthest key, or by a triangle that covers them and has a nearer
+  /// plane at all four corners. Planes are affine, so a plane that is nearer at the corners is nearer between them.
   [[nodiscard]] HWY_INLINE std::uint64_t KnownHidden(const Plane& p, const PixelRect& rect, Reach& reach) const {
     const DI d;
     const DF df;
@@ -185,9 +185,9 @@ class LargeTriangles {
       const VF k0 = hn::Set(df, p.k0);
       const VF key[4] = {hn::Add(hn::Add(k0, left), top), hn::Add(hn::Add(k0, right), top),
                          hn::Add(hn::Add(k0, left), bottom), hn::Add(hn::Add(k0, right), bottom)};
-      // Three roundings, each of at most 2^-24 of this sum, at the corner and at any sample: 6 * 2^-24. As many where
-      // the plane of a steep triangle was rounded and its keys are. Some to spare, also for numbers so small that their
-      // roundings are not relative.
+      // Three roundings, each of at most 2^-24 of this sum, at the corner and at any sample make 6 * 2^-24. Steep
+      // triangles have as many, as both their plane and their keys are rounded. The factor 8 and the constant leave a
+      // margin, also for numbers so small that roundings are not relative.
       const VF sum =
           hn::Add(hn::Abs(k0), hn::Add(hn::Max(hn::Abs(left), hn::Abs(right)), hn::Max(hn::Abs(top), hn::Abs(bottom))));
       const VF slack = hn::Add(hn::Mul(sum, hn::Set(df, 8.0f / 16777216.0f)), hn::Set(df, 1e-42f));
@@ -211,8 +211,8 @@ class LargeTriangles {
     return hn::Mul(hn::ConvertTo(df, hn::Add(block, hn::Set(DI(), offset))), hn::Set(df, gradient));
   }
 
-  /// The triangle covers all samples of the block: what is behind its plane from now on is hidden, as far as that is
-  /// the nearer plane of the two.
+  /// Keeps the plane of a triangle that covers all samples of the block. Everything behind the plane is hidden from
+  /// then on, if the plane is the nearer one of the two.
   HWY_INLINE void KeepPlane(int block, const Plane& p, const Reach& reach) const {
     BlockBounds& bounds = buffer_.bounds();
     float corner[4], gain = 0;
@@ -220,7 +220,8 @@ class LargeTriangles {
       corner[c] = reach.corner[c][block] - reach.slack[block];
       gain += corner[c] - bounds.corner[c][block];
     }
-    // One plane a block: the one whose corners are nearer in sum. Any is right, as each is a bound of its own.
+    // A block keeps one plane: the one with the nearer sum of corner keys. Either is valid, as each is a bound of its
+    // own.
     if (bounds.greatest[block] > 0 && gain <= 0) return;
     for (int c = 0; c < 4; ++c) bounds.corner[c][block] = corner[c];
     bounds.greatest[block] = p.k_max;
@@ -242,7 +243,8 @@ class LargeTriangles {
         const VI e =
             hn::Add(hn::Add(hn::Set(d, edges.first[k]), hn::Mul(column, hn::Set(d, kBlockSize * edges.step_x[k]))),
                     hn::Mul(row, hn::Set(d, kBlockSize * edges.step_y[k])));
-        // The block's corners lie where the edge function is greatest and least; signs are or-ed, not compared.
+        // The block's corners give the greatest and the least value of the edge function. Signs are or-ed, not
+        // compared.
         outside = hn::Or(outside, hn::Add(e, hn::Set(d, HWY_MAX(right, 0) + HWY_MAX(down, 0))));
         not_inside = hn::Or(not_inside, hn::Add(e, hn::Set(d, HWY_MIN(right, 0) + HWY_MIN(down, 0))));
       }
@@ -252,8 +254,8 @@ class LargeTriangles {
     return cover;
   }
 
-  /// \returns the blocks whose every pixel is covered at this sample. The first sample closes blocks that were drawn
-  /// to lately and turn out to hide the triangle.
+  /// \returns the blocks whose every pixel is covered at this sample. The first sample closes blocks that were drawn to
+  /// lately and turn out to hide the triangle.
   template <class Rows>
   [[nodiscard]] std::uint64_t DrawSample(const TriangleRecord& r, const Plane& plane, const PixelRect& rect,
                                          std::size_t sample, std::uint64_t& open, const Reach& reach) {
@@ -261,7 +263,7 @@ class LargeTriangles {
     const Cover cover = CoverOf(edges, rect);
     for (std::uint64_t left = open & ~cover.none; left != 0; left &= left - 1) {
       const int block = int(hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
-      // Only before the first sample: afterwards the triangle itself may be what hides.
+      // Only before the first sample: afterwards the triangle may be hidden by itself.
       if (sample == 0 && buffer_.Hides(block, reach.nearest[block])) {
         open &= ~(std::uint64_t(1) << block);
         continue;
@@ -324,7 +326,7 @@ class LargeTriangles {
   const Picture& picture_;
   const Tile& tile_;
   TileBuffer& buffer_;
-  glm::ivec2 low_, high_;  // of the sample offsets
+  glm::ivec2 low_, high_;  // least and greatest sample offset
   TriangleRecord last_{{}, {}, {}, no_primitive};
 };
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of a few pixels, as many at once as the vector holds: all of a packet are walked pixel by pixel in step,
-// and the covered pixels of all are then merged into the tile together.
+// Triangles of a few pixels, as many at once as the vector holds. All triangles of a packet are walked pixel by pixel
+// in step; their covered pixels are then merged into the tile together.
 //
 //    queue --full--> packet: edges, planes, rectangles --> walk --> (triangle, pixel) pairs --> merged together
 //                       +-- too large, or steep --> LargeTriangles, one by one
 //
-// Pairs of different triangles may be of one pixel. They are merged as words of key and id of which the greater stays,
-// so the order in which they come does not matter.
+// Pairs of different triangles may belong to one pixel. The merge keeps the greater word of key and id, so the order of
+// pairs does not matter.
 
 // Included once for every target.
 #if defined(FRONTMOST_ZBUFFER_SMALL_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -28,13 +28,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 using frontmost::HWY_NAMESPACE::CompactInto;
 using frontmost::HWY_NAMESPACE::Compactor;
 
-// A triangle whose pixel rectangle is at most this wide and high is drawn with others at once. All of them are walked
-// over the widest and the highest of their rectangles: long ones both ways would multiply. Walls are higher than wide.
+// A triangle whose pixel rectangle is at most this wide and high is drawn in a packet. A packet is walked over the
+// widest width and the greatest height of its rectangles, so triangles that are long both ways would multiply the cost.
+// Walls are higher than wide.
 constexpr int kWalkWidth = kMostWalked.x, kWalkHeight = kMostWalked.y;
-// One of more pixels than this is first looked for in the hierarchical depth.
+// A triangle of more pixels than this is first tested against the hierarchical depth.
 constexpr std::int32_t kWalkUnseen = 96;
 
-/// Small triangles waiting to be drawn, set apart by corner. Room for one vector more than is drawn at a time.
+/// Small triangles that wait to be drawn, one array a vertex. The room is one vector more than is drawn at a time.
 struct TriangleQueue {
   static constexpr std::size_t kRoom = 3 * kMaxLanes;
   HWY_ALIGN_MAX std::int32_t x[3][kRoom], y[3][kRoom];
@@ -43,7 +44,7 @@ struct TriangleQueue {
   std::size_t count = 0;
 };
 
-/// Those that are drawn together, with their pixel rectangles within the tile.
+/// Triangles that are drawn together, with their pixel rectangles within the tile.
 struct SmallPacket : Packet {
   VI px, py, width, height;
   VU not_id;
@@ -58,9 +59,9 @@ class SmallTriangles {
     for (const glm::ivec2& s : picture.samples) low_ = glm::min(low_, s), high_ = glm::max(high_, s);
   }
 
-  /// Where triangles are to be appended, less than a vector of them before DrawFull() is called.
+  /// The queue that triangles are appended to: less than a vector of them between calls of DrawFull().
   [[nodiscard]] HWY_INLINE TriangleQueue& queue() { return queue_; }
-  /// Draws as long as a vector can be filled.
+  /// Draws packets as long as a vector can be filled.
   HWY_INLINE void DrawFull() {
     while (queue_.count >= hn::Lanes(DI())) DrawQueued();
   }
@@ -68,7 +69,7 @@ class SmallTriangles {
     while (queue_.count > 0) DrawQueued();
   }
 
-  /// The pixels of the tile that have a sample within the ranges of triangles.
+  /// The pixels of the tile that have a sample within the coordinate ranges of triangles.
   [[nodiscard]] HWY_INLINE PixelRange ColumnsOf(const CoordinateRange& x) const {
     return PixelsOf(x, low_.x, high_.x, tile_.width);
   }
@@ -99,7 +100,7 @@ class SmallTriangles {
     Shift(drawn);
   }
 
-  /// Of those that take long to walk.
+  /// Drops hidden triangles from the packet; asks only for triangles that take long to walk.
   HWY_INLINE void LeaveOutHidden(SmallPacket& packet) {
     const DI d;
     const MI asked = hn::Gt(hn::Mul(packet.width, packet.height), hn::Set(d, kWalkUnseen));
@@ -129,7 +130,7 @@ class SmallTriangles {
     return record;
   }
 
-  /// Moves what is left in the queue, less than a vector unless all of it was drawn, to its front.
+  /// Moves the rest of the queue to its front. The rest is less than a vector unless all was drawn.
   HWY_INLINE void Shift(std::size_t drawn) {
     const DI d;
     const DU du;
@@ -159,7 +160,7 @@ class SmallTriangles {
     const MI live = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(used)));
     b.px = columns.first;
     b.py = rows.first;
-    // Lanes behind the last triangle hold what was there before: without width and height none of it is walked.
+    // Lanes behind the last triangle hold old values; a width and height of 0 keeps them from being walked.
     b.steep = hn::And(b.steep, live);
     b.width = hn::IfThenElseZero(live, hn::Add(hn::Sub(columns.last, b.px), one));
     b.height = hn::IfThenElseZero(live, hn::Add(hn::Sub(rows.last, b.py), one));
@@ -228,14 +229,14 @@ class SmallTriangles {
         continue;
       }
       for (std::size_t k = 0; k < live; ++k) {
-        // One by one: two of the triangles may have covered the same pixel.
+        // One by one, as two of the triangles may have covered the same pixel.
         std::uint64_t& kept = words[at[k]];
         kept = HWY_MAX(kept, found[k]);
       }
     }
   }
 
-  /// The corner of a pixel, by the offset of its word.
+  /// The corner of a pixel, from the offset of its word.
   [[nodiscard]] static HWY_INLINE glm::ivec2 PlaceOf(std::uint32_t word) {
     return glm::ivec2(int(word % kTileStride), int(word / kTileStride)) * kSubPixels;
   }
@@ -245,7 +246,7 @@ class SmallTriangles {
   std::uint32_t* references_;
   TileBuffer& buffer_;
   LargeTriangles& large_;
-  glm::ivec2 low_, high_;  // of the sample offsets
+  glm::ivec2 low_, high_;  // least and greatest sample offset
   TriangleQueue queue_;
 };
 

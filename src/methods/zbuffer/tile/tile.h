@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tiles of the picture: where they are, what they are drawn to, and the memory that drawing one takes.
+// Tiles of the picture: their places, the picture that they are drawn to, and the memory that drawing one takes.
 //
 //    picture      tiles of 128 x 128 pixels, row by row, each drawn by one thread
 //    tile         8 x 8 blocks of 16 x 16 pixels, one bit each in masks of 64 bits
-//    word         | key: 32 bits | ~id: 32 bits |      the greater word is nearer, or as near with the lower id
+//    word         | key: 32 bits | ~id: 32 bits |      the greater word is nearer; at equal keys the lower id wins
 //
-// A tile's words are the private memory of a thread until the tile is written out: threads never share a sample, and
+// A tile's words are the private memory of one thread until the tile is written out. Threads never share a sample, so
 // nothing is locked.
 #pragma once
 
@@ -26,7 +26,7 @@ inline constexpr int kBlockSize = 16;              ///< pixels; a tile is 8 x 8 
 inline constexpr int kTileStride = kTileSize + 8;  ///< words; a power of two would collide in the cache
 inline constexpr std::size_t kTileWords = std::size_t(kTileSize) * kTileStride;
 
-/// The greatest pixel rectangle of triangles that are drawn many at a time, in x and y.
+/// The greatest pixel rectangle, in x and y, of triangles that are drawn many at a time.
 inline constexpr glm::ivec2 kMostWalked{16, 32};
 
 /// Pixels [x0, x1] x [y0, y1], both ends included.
@@ -36,12 +36,12 @@ struct PixelRect {
   [[nodiscard]] bool is_empty() const { return x1 < x0 || y1 < y0; }
 };
 
-/// What two rectangles have in common.
+/// The intersection of two rectangles.
 [[nodiscard]] inline PixelRect common_part(const PixelRect& a, const PixelRect& b) {
   return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
 }
 
-/// Where a VisiblePixels is written. Borrows everything.
+/// The planes that a VisiblePixels is written to. Borrows everything.
 struct PixelPlanes {
   PrimitiveId* primitives;  ///< of sample 0
   float* keys;
@@ -58,10 +58,11 @@ struct Picture {
   std::span<const glm::ivec2> samples;  ///< offsets within a pixel
   PrimitiveId* primitives;              ///< planes, [sample][y][x]
   float* keys;
-  bool streams;                         ///< write them past the cache: they are too large to stay in it
+  bool streams;                         ///< write planes past the cache: they are too large to stay in it
   const Cutouts* cutouts;               ///< null where no triangle has holes
-  ScreenRays rays;                      ///< of the view: they find the holes
-  const PixelPlanes* pixels = nullptr;  ///< what is seen in the end goes there, and planes hold what comes before it
+  ScreenRays rays;                      ///< rays of the view, which find the holes
+  const PixelPlanes* pixels = nullptr;  ///< if not null, takes the final result; the planes then hold intermediate
+                                        ///< results
 };
 
 /// The pixels of one tile.
@@ -87,34 +88,35 @@ struct Tile {
   [[nodiscard]] int row() const { return y / kTileSize; }
 };
 
-/// What is known of the 64 blocks of a tile, row by row.
+/// Depth bounds of the 64 blocks of a tile, row by row.
 struct BlockBounds {
   static constexpr std::size_t count = 64;
   /// No sample of the block is farther than this key; 0 where some sample sees nothing.
   alignas(64) float farthest[count];
-  /// A triangle that covers all of the block: its keys at the four outermost samples, less what rounding may add, and
-  /// the greatest it can have. No sample of the block is farther than the plane through the four, or than `greatest`.
+  /// Keys at the four outermost samples, less what rounding may add, of a triangle that covers all of the block;
+  /// `greatest` is the greatest key of that triangle. No sample of the block is farther than the plane through the four
+  /// keys, or than `greatest`.
   alignas(64) float corner[4][count];
   alignas(64) float greatest[count];
 };
 
 /// The private memory of one thread, reused from tile to tile.
 struct TileScratch {
-  /// References: every pixel of the largest walk for every lane, and a vector of slack for whole stores.
+  /// `references` has room for every pixel of the largest walk in every lane, and one vector of slack for whole stores.
   TileScratch() : bounds(1), references(std::size_t(16 * kMostWalked.x * kMostWalked.y) + 64) {}
-  /// Makes room for that many samples a pixel.
+  /// Makes room for `sample_count` samples a pixel.
   void reserve(std::size_t sample_count) {
     if (words.size() < sample_count * kTileWords) words = Buffer<std::uint64_t>(sample_count * kTileWords);
   }
 
-  /// By sample, kTileWords each: key bits << 32 | ~id, the greatest wins. 0 is "nothing".
+  /// By sample, kTileWords each: key bits << 32 | ~id, where the greatest word wins and 0 means "nothing".
   Buffer<std::uint64_t> words;
   Buffer<BlockBounds> bounds;        ///< one
   Buffer<std::uint32_t> references;  ///< covered (triangle, pixel) pairs of one packet
 };
 
-/// Whether samples of a tile look through holes: asked only where a triangle with holes would be seen. Keeps how the
-/// last triangles lie on the screen, for fragments of a few come in turn.
+/// Tells whether samples of a tile look through holes. Tiles ask only where a triangle with holes would be seen.
+/// Fragments of the same few triangles follow each other, so the class keeps how the last triangles lie on the screen.
 class TileHoles {
  public:
   /// Borrows the picture. Precondition: it has cutouts.
@@ -122,7 +124,7 @@ class TileHoles {
       : picture_(picture), first_(glm::ivec2(tile.x, tile.y) * kSubPixels) {
     ids_.fill(no_primitive);
   }
-  /// Whether the triangle has a hole at a place of the tile, in 1/256 pixel. Precondition: it is a cutout.
+  /// Whether the triangle has a hole at a place of the tile, in 1/256 pixel. Precondition: the triangle is a cutout.
   [[nodiscard]] bool has(PrimitiveId id, const glm::ivec2& place) {
     const std::size_t slot = id % kSlots;
     if (ids_[slot] != id) {
@@ -136,7 +138,7 @@ class TileHoles {
   static constexpr std::size_t kSlots = 32;
 
   const Picture& picture_;
-  glm::ivec2 first_;  // the tile's first place in the image
+  glm::ivec2 first_;  // first place of the tile in the image
   std::array<PrimitiveId, kSlots> ids_;
   std::array<std::optional<ScreenCutout>, kSlots> cutouts_;
 };

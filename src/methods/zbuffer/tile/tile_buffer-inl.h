@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The private buffer of one tile: a 64-bit word for every sample, and how far the farthest of each block lies.
+// The private buffer of one tile: a 64-bit word for every sample, and the farthest key of each block.
 //
 // N. Greene, M. Kass, G. Miller. Hierarchical Z-Buffer Visibility. 1993.
 //
 //    words      one a sample, row by row; rows are 8 words longer than the tile is wide, so that samples of a column
 //               do not fall onto the same lines of the cache
-//    farthest   of each block, the farthest key of all of its samples
-//    corner     of a triangle that covers a block wholly, its plane: what is behind it is hidden, too
+//    farthest   by block: the farthest key of all of its samples
+//    corner     plane of a triangle that covers a block wholly: triangles behind it are hidden, too
 
 // Included once for every target.
 #if defined(FRONTMOST_ZBUFFER_TILE_BUFFER_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -33,10 +33,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 using DW = hn::ScalableTag<std::uint64_t>;
 using DWI = hn::RebindToSigned<DW>;
 
-// Pixels of the tile that lie outside the image: nearer than anything, so that they never keep a block from hiding.
+// Words of pixels of the tile outside the image. They are nearer than anything, so they never keep a block from hiding.
 constexpr std::uint64_t kOutsideImage = std::uint64_t(0x7F7FFFFF) << 32;
 
-/// The order in which vectors of 32 bits take pixels, so that interleaving keys and ids puts their words in line.
+/// The order in which vectors of 32 bits take pixels. Interleaving keys and ids in this order puts words in line.
 struct PixelOrder {
   HWY_ALIGN_MAX std::int32_t column[kMaxLanes];
   constexpr PixelOrder() : column{} {
@@ -60,7 +60,7 @@ struct Words {
   hn::Vec<DWI> word[kVectors];
 };
 
-/// Key bits and ids are in kPixelOrder, their words in line.
+/// Key bits and ids are in kPixelOrder, the resulting words in line.
 HWY_INLINE Words WordsOf(VU key_bits, VU not_ids) {
   const DWI d;
 #if HWY_TARGET == HWY_SCALAR
@@ -79,17 +79,17 @@ class LeastKey {
   using D = DWI;
   static constexpr std::uint32_t kLowHalf = 0xFFFFFFFF;
 #else
-  // Words are folded by their halves, keys being the odd ones: unlike words, halves have a minimum everywhere. What the
-  // even ones fold to means nothing.
+  // Words are folded by their halves, as all targets have a minimum of halves but not of words. Odd halves are keys;
+  // the minima of even halves mean nothing.
   using D = hn::Repartition<std::int32_t, DWI>;
-  static constexpr std::uint32_t kLowHalf = 0x80000000;  // the least that even lanes can be
+  static constexpr std::uint32_t kLowHalf = 0x80000000;  // the least value of an even lane
 #endif
 
  public:
   LeastKey() : least_(hn::BitCast(D(), hn::Set(DWI(), std::int64_t(kOutsideImage)))) {}
   HWY_INLINE void Fold(hn::Vec<DWI> words) { least_ = hn::Min(least_, hn::BitCast(D(), words)); }
 
-  /// False when some key is no greater than this; in rare cases also when all are.
+  /// False if some key is no greater than `key`; in rare cases also if all are greater.
   [[nodiscard]] HWY_INLINE bool IsAbove(float key) const {
     const auto limit = hn::BitCast(D(), hn::Set(DWI(), std::int64_t(std::uint64_t(BitsOfKey(key)) << 32 | kLowHalf)));
     return hn::AllTrue(D(), hn::Gt(least_, limit));
@@ -113,7 +113,7 @@ class LeastKey {
   hn::Vec<D> least_;
 };
 
-/// Keeps the greater words of a row of pixels, and folds what is kept into `least`.
+/// Keeps the greater words of a row of pixels, and folds the kept words into `least`.
 HWY_INLINE void MergeRow(const Words& words, std::uint64_t* row, LeastKey& least) {
   const DWI d;
   auto* kept = reinterpret_cast<std::int64_t*>(row);
@@ -142,7 +142,7 @@ HWY_INLINE void FillRow(D d, hn::TFromD<D> value, hn::TFromD<D>* row, std::size_
   for (; x < width; ++x) row[x] = value;
 }
 
-/// A tile in which nothing can be seen.
+/// Writes a tile in which nothing is seen.
 HWY_INLINE void FillTile(const Picture& picture, const Tile& tile) {
   for (std::size_t s = 0; s < picture.samples.size(); ++s)
     for (int y = 0; y < tile.height; ++y) {
@@ -155,7 +155,7 @@ HWY_INLINE void FillTile(const Picture& picture, const Tile& tile) {
   hwy::FlushStream();
 }
 
-/// The words of as many pixels of a row as a vector of 32 bits has lanes.
+/// The words of a row's pixels, as many as a vector of 32 bits has lanes.
 class RowPart {
  public:
 #if HWY_TARGET == HWY_SCALAR
@@ -176,10 +176,10 @@ class RowPart {
 #endif
 };
 
-/// The tile's samples as 64-bit words, the key's bits above the complement of the id: the greater word is the nearer
-/// fragment, at equal keys the lower id, and 0 is nothing. Keys are not negative, so words compare alike as signed
-/// numbers, which is all that AVX2 has. Beside them the hierarchical depth: by block the farthest key, found when
-/// asked.
+/// The tile's samples as 64-bit words: the key's bits above the complement of the id. The greater word is the nearer
+/// fragment, or at equal keys the one with the lower id; 0 is nothing. Keys are not negative, so words compare alike as
+/// signed numbers, the only comparison that AVX2 has. The buffer also holds the hierarchical depth: the farthest key of
+/// each block, found on demand.
 class TileBuffer {
  public:
   TileBuffer(const Picture& picture, const Tile& tile, TileScratch& scratch)
@@ -197,7 +197,7 @@ class TileBuffer {
     return columns * kFirstColumn & rows;
   }
 
-  /// Those of the tile that a rectangle of the image touches. Precondition: there are some.
+  /// The blocks of the tile that a rectangle of the image touches. Precondition: there is at least one.
   [[nodiscard]] HWY_INLINE std::uint64_t BlocksInTile(const PixelRect& rect) const {
     return BlocksOf({HWY_MAX(rect.x0 - tile_.x, 0), HWY_MAX(rect.y0 - tile_.y, 0),
                      HWY_MIN(rect.x1 - tile_.x, tile_.width - 1), HWY_MIN(rect.y1 - tile_.y, tile_.height - 1)});
@@ -218,13 +218,13 @@ class TileBuffer {
       }
     std::fill(std::begin(bounds_.farthest), std::end(bounds_.farthest), 0.0f);
     std::fill(std::begin(bounds_.greatest), std::end(bounds_.greatest), 0.0f);  // no plane
-    // An empty block of a whole tile hides nothing, which 0 says already; at the image's rim pixels outside may make up
-    // a whole block, which hides all.
+    // An empty block of a whole tile hides nothing, as its 0 says. At the image's rim, pixels outside may make up a
+    // whole block, which hides everything.
     const bool whole = tile_.width == kTileSize && tile_.height == kTileSize;
     dirty_ = whole ? 0 : ~std::uint64_t(0);
   }
 
-  /// After Clear(): takes up again what WriteOut() left in the planes, and FindFarthest() found.
+  /// Restores, after Clear(), the words that WriteOut() left in the planes and the keys that FindFarthest() found.
   void ReadBack(const float* farthest) {
     for (std::size_t s = 0; s < picture_.samples.size(); ++s)
       for (int y = 0; y < tile_.height; ++y) ReadRow(s, y);
@@ -232,7 +232,7 @@ class TileBuffer {
     dirty_ = 0;
   }
 
-  /// The farthest key of every block; 0 where something is not covered.
+  /// The farthest key of every block; 0 for a block with a sample that is not covered.
   void FindFarthest(float* farthest) {
     Refresh();
     std::copy_n(bounds_.farthest, BlockBounds::count, farthest);
@@ -242,22 +242,22 @@ class TileBuffer {
 
   [[nodiscard]] HWY_INLINE BlockBounds& bounds() const { return bounds_; }
 
-  /// These blocks were drawn to: what is known of their farthest key is no more than a bound.
+  /// Notes that these blocks were drawn to. Their stored farthest key is only a bound from then on.
   HWY_INLINE void MarkDrawn(std::uint64_t blocks) { dirty_ |= blocks; }
 
-  /// The least key of a block, all its samples seen.
+  /// Sets the farthest key of a block, if all its samples were seen.
   HWY_INLINE void SetLeast(int block, const LeastKey& least) {
     bounds_.farthest[block] = least.key();
     dirty_ &= ~(std::uint64_t(1) << block);
   }
 
-  /// True when every sample of the block is strictly nearer than `nearest`.
+  /// True if every sample of the block is strictly nearer than `nearest`.
   [[nodiscard]] HWY_INLINE bool Hides(int block, float nearest) {
     if (bounds_.farthest[block] > nearest) return true;
     return (dirty_ >> block & 1) && FindHiding(block, nearest);
   }
 
-  /// The blocks that are known to hide whatever is no nearer than `nearest`.
+  /// The blocks that are known to hide everything no nearer than `nearest`.
   [[nodiscard]] HWY_INLINE std::uint64_t KnownToHide(float nearest) const {
     const DF d;
     const VF key = hn::Set(d, nearest);
@@ -275,8 +275,7 @@ class TileBuffer {
     }
   }
 
-  /// Of triangles with these pixels and these greatest keys, those that blocks hide for certain; asks of two by two
-  /// blocks at most.
+  /// The triangles that blocks hide for certain, given their pixels and greatest keys. Tests two by two blocks at most.
   [[nodiscard]] HWY_INLINE MI Hidden(const PixelRange& columns, const PixelRange& rows, VF nearest) const {
     static_assert(kBlockSize == 1 << 4 && kTileSize / kBlockSize == 8);
     const DI d;
@@ -288,10 +287,10 @@ class TileBuffer {
     return hn::AndNot(wide, hn::RebindMask(d, hn::Gt(farthest, nearest)));
   }
 
-  /// True when every sample of the blocks is strictly nearer than `nearest`.
+  /// True if every sample of the blocks is strictly nearer than `nearest`.
   [[nodiscard]] HWY_INLINE bool AllHide(std::uint64_t blocks, float nearest) {
     std::uint64_t left = blocks & ~KnownToHide(nearest);
-    // Nothing was drawn to them since their farthest key was found: looking again finds the same.
+    // A block that was not drawn to since its farthest key was found gives the same answer again.
     if (left & ~dirty_) return false;
     for (; left != 0; left &= left - 1)
       if (!Hides(int(hwy::Num0BitsBelowLS1Bit_Nonzero64(left)), nearest)) return false;
@@ -300,16 +299,16 @@ class TileBuffer {
 
   // -- holes --------------------------------------------------------------------------------------------------------
 
-  /// What is drawn from now on has holes.
+  /// From this call on, triangles that are drawn have holes.
   void MindHoles(TileHoles& holes) { holes_ = &holes; }
   [[nodiscard]] HWY_INLINE bool minds_holes() const { return holes_ != nullptr; }
 
-  /// Keeps a word that is the greater one, unless its sample looks through a hole.
+  /// Keeps `word` if it is the greater one, unless its sample looks through a hole.
   HWY_INLINE void KeepSolid(std::uint64_t word, std::uint64_t& kept, const glm::ivec2& place) const {
     if (word > kept && !holes_->has(~std::uint32_t(word), place)) kept = word;
   }
 
-  /// The same of a row of pixels; folds what is kept into `least`. `place`: of the first sample.
+  /// KeepSolid() for a row of pixels; folds the kept words into `least`. `place` belongs to the first sample.
   HWY_INLINE void KeepSolidRow(const Words& words, std::uint64_t* row, const glm::ivec2& place, LeastKey& least) const {
     const DWI d;
     HWY_ALIGN_MAX std::uint64_t word[kMaxLanes];
@@ -330,7 +329,7 @@ class TileBuffer {
   void WriteOut() const {
     for (std::size_t s = 0; s < picture_.samples.size(); ++s)
       for (int y = 0; y < tile_.height; ++y) WriteRow(s, y);
-    // Streamed stores are weakly ordered: another thread may read the planes next.
+    // Streamed stores are weakly ordered, and another thread may read the planes next.
     hwy::FlushStream();
   }
 
@@ -339,7 +338,7 @@ class TileBuffer {
     return hn::BitCast(DF(), LookUp64(reinterpret_cast<const std::int32_t*>(bounds_.farthest), block));
   }
 
-  /// Looks at all samples of a block, as long as they hide; notes the farthest key when they all do.
+  /// Reads samples of a block until one does not hide. Stores the farthest key if all samples hide.
   [[nodiscard]] bool FindHiding(int block, float nearest) {
     constexpr int kRowsAtOnce = 4;
     const DWI d;
@@ -356,7 +355,7 @@ class TileBuffer {
     return true;
   }
 
-  /// Where a row of the tile is in the planes.
+  /// Index of a row of the tile in the planes.
   [[nodiscard]] std::size_t PlaceOf(std::size_t sample, int y) const {
     return (sample * std::size_t(picture_.view.height) + std::size_t(tile_.y + y)) * std::size_t(picture_.view.width) +
            std::size_t(tile_.x);
@@ -382,7 +381,7 @@ class TileBuffer {
     std::size_t x = 0;
 #if HWY_TARGET != HWY_SCALAR
     const std::size_t lanes = hn::Lanes(DU());
-    // Streamed vectors have to be aligned: planes are to 64 bytes, rows only where the width is a multiple of 16.
+    // Streamed vectors must be aligned. Planes are aligned to 64 bytes, rows only if the width is a multiple of 16.
     const bool streams = picture_.streams && at % 16 == 0;
     for (; x + lanes <= width; x += lanes) {
       const RowPart part(row + x);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawing one tile: triangles into a private buffer of 64-bit words, many triangles at a time while they are small.
+// Draws one tile: triangles into a private buffer of 64-bit words, many triangles at a time while they are small.
 //
 // J. Pineda. A Parallel Algorithm for Polygon Rasterization. 1988 (edge functions).
 //
-// Coordinates are relative to the tile, in 1/256 pixel. Coverage: E >= 0 for three edge functions, biased by the
-// top-left rule (y down, area positive: an edge is left where it goes up, top where it is level and goes right). Pixels
-// are 256 units apart, so an edge value may be shifted right by 8 before stepping: a step is then -dy or dx, and the
-// sign is still exact.
+// Coordinates are relative to the tile, in 1/256 pixel. A sample is covered if E >= 0 for three edge functions, biased
+// by the top-left rule (y down, area positive: an edge is left if it goes up, top if it is level and goes right).
+// Pixels are 256 units apart, so an edge value may be shifted right by 8 before stepping: a step is then -dy or dx, and
+// the sign is still exact.
 //
-// The key at a sample is that of view/triangle_keys.h. Every path evaluates exactly this, so they agree to the bit.
+// view/triangle_keys.h defines the key at a sample. Every path evaluates exactly this definition, so all agree to the
+// bit.
 
 #include "zbuffer/frame_plan.h"
 
@@ -27,7 +28,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace screen = view_detail::HWY_NAMESPACE;
 
-/// A cluster's vertices on the screen. Only those that it has are set.
+/// A cluster's vertices on the screen. Only the cluster's own entries are set.
 struct ScreenCluster {
   HWY_ALIGN_MAX std::int32_t x[Cluster::max_vertices], y[Cluster::max_vertices];
   HWY_ALIGN_MAX std::int32_t key[Cluster::max_vertices];  ///< bits of the float
@@ -53,7 +54,7 @@ class TilePainter {
     buffer_.WriteOut();
   }
 
-  // What SortOut() asks for.
+  // The sink functions of SortOut().
 
   [[nodiscard]] HWY_INLINE PixelRange ColumnsOf(const CoordinateRange& x) const { return small_.ColumnsOf(x); }
   [[nodiscard]] HWY_INLINE PixelRange RowsOf(const CoordinateRange& y) const { return small_.RowsOf(y); }
@@ -111,7 +112,7 @@ class TilePainter {
       const std::uint64_t blocks = buffer_.BlocksInTile(frame_.culled.rect(cluster));
       if (buffer_.AllHide(blocks, frame_.culled.nearest[cluster])) continue;
       DrawCluster(frame_.set.clusters[cluster]);
-      // Triangles in the queue stay within the cluster's blocks, whenever they are drawn.
+      // Queued triangles stay within the cluster's blocks, so these marks stay valid until they are drawn.
       buffer_.MarkDrawn(blocks);
     }
     small_.Finish();
@@ -150,7 +151,7 @@ class TilePainter {
     return {number, LookUp64(vertices_.x, number), LookUp64(vertices_.y, number)};
   }
 
-  /// Puts the triangles that may cover a sample of this tile into the queue; large ones are drawn at once.
+  /// Queues the triangles that may cover a sample of this tile; draws large ones at once.
   HWY_INLINE void Gather(const Cluster& cluster, std::size_t first) {
     first_ = cluster.first_triangle + first;
     const Corners corners[3] = {Fetch(frame_.set.i0, first_), Fetch(frame_.set.i1, first_),
@@ -164,7 +165,7 @@ class TilePainter {
   LargeTriangles large_;
   SmallTriangles small_;
   ScreenCluster vertices_;
-  std::size_t first_ = 0;  // of the packet, in the columns of the set
+  std::size_t first_ = 0;  // first triangle of the packet, in the columns of the set
 };
 
 void DrawTile(const FrameInput& frame, const TileJob& job, TileScratch& scratch) {

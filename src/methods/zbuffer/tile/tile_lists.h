@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// For every tile of a range a list of numbers.
+// A list of numbers for every tile of a range.
 //
 //    begin    tile 0: 0    tile 1: 3    tile 2: 3    tile 3: 7 ...
 //    items    | a b c |    |            | a d e f |  ...
 //
-// Items are counted by tile first and then filled, in their own order: so lists need no memory of their own, and what
-// was sorted stays sorted.
+// Items are counted by tile first and then filled in their own order. So lists need no memory of their own, and sorted
+// items stay sorted.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,7 @@ struct TileRect {
   [[nodiscard]] bool holds(int column, int row) const { return x0 <= column && column <= x1 && y0 <= row && row <= y1; }
 };
 
-/// A list in which cutouts stand behind everything else, taken apart.
+/// Splits a list in which all cutouts stand behind the solid items.
 struct PartedList {
   std::span<const std::uint32_t> solid, cutouts;
 
@@ -46,14 +46,14 @@ struct PartedList {
 /// The lists stand one after another in one array.
 struct TileLists {
   std::size_t first_tile = 0;
-  std::vector<std::size_t> begin;  ///< by tile, and the end of the last
+  std::vector<std::size_t> begin;  ///< first item of each tile, then the end of the last tile
   std::vector<std::uint32_t> items;
 
   [[nodiscard]] std::span<const std::uint32_t> of(std::size_t tile) const {
     const std::size_t i = tile - first_tile;
     return std::span(items).subspan(begin[i], begin[i + 1] - begin[i]);
   }
-  /// Lists of the tiles that `visit(item, add)` names by add(tile), items in their order: counted first, then filled.
+  /// Makes the lists of the tiles that `visit(item, add)` names by add(tile), items in their order.
   template <class Visit>
   void make(const TileRange& tiles, std::size_t item_count, const Visit& visit);
 };
@@ -62,7 +62,7 @@ template <class Visit>
 void TileLists::make(const TileRange& tiles, std::size_t item_count, const Visit& visit) {
   first_tile = tiles.begin;
   const std::size_t tile_count = tiles.end - tiles.begin;
-  // One place behind, so that filling a list moves its beginning to where it belongs.
+  // Filling a list advances its beginning, so beginnings are stored one place further on at first.
   begin.assign(tile_count + 2, 0);
   for (std::size_t i = 0; i < item_count; ++i) visit(i, [&](std::size_t tile) { ++begin[tile - tiles.begin + 2]; });
   for (std::size_t tile = 0; tile < tile_count; ++tile) begin[tile + 2] += begin[tile + 1];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where finished tiles go: planes of linear floats, or bytes for screens, without planes in between.
+// Canvases for finished tiles: planes of linear floats, or bytes for screens without intermediate planes.
 
 #include "shade/canvas/canvas.h"
 
@@ -11,9 +11,9 @@
 namespace frontmost::shading {
 namespace {
 
-constexpr int kBytes = 4;  ///< of a pixel: R, G, B, A
+constexpr int kBytes = 4;  ///< per pixel: R, G, B, A
 
-/// One channel of a pixel laid over the background.
+/// One channel of a pixel, composited over the background.
 float over(const glm::vec4& pixel, const glm::vec4& background, int k) {
   return pixel[k] + background[k] * (1.0f - pixel.a);
 }

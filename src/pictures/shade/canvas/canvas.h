@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What finished tiles are painted on: planes of floats, or bytes as they are shown.
+// Canvases for finished tiles: planes of floats, or bytes for display.
 #pragma once
 
 #include <initializer_list>
@@ -11,39 +11,39 @@
 
 namespace frontmost::shading {
 
-/// Different tiles may be painted from different threads at once.
+/// Threads may paint different tiles at once.
 class TileCanvas {
  public:
   virtual ~TileCanvas() = default;
-  /// `pixels` of the tile, row by row, premultiplied, are laid over the background.
+  /// Composites the `pixels` of the tile, row by row and premultiplied, over the background.
   virtual void write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) = 0;
   virtual void fill(const TileRectangle& tile, const glm::vec4& value) = 0;
-  /// Pixels with an alpha for each channel, through which what is behind is seen tinted. A background that is not
-  /// opaque stays without tint: a picture has one alpha.
+  /// Writes pixels with an alpha for each channel, which tint what is behind them. A background that is not opaque is
+  /// not tinted, because a picture has a single alpha.
   virtual void write_tinted(const TileRectangle& tile, const abuffer_detail::PaintedPixels& pixels,
                             const glm::vec4& background);
 };
 
-/// How a picture is made of what is seen.
+/// How visible fragments become a picture.
 struct Painting {
   TileCanvas& canvas;
   const FragmentShader::Colorist& colorist;
-  glm::vec4 background;  ///< what an empty pixel gets
-  float opacity = 1;     ///< of everything, where it is not the A-buffer's
+  glm::vec4 background;  ///< value of an empty pixel
+  float opacity = 1;     ///< of all surfaces, unless the A-buffer applies it
   ShadingRate rate = ShadingRate::each_pixel;
 };
 
-/// An image of up to four channels, named as they are to be.
+/// An image of up to four channels with the given names.
 class PlanesCanvas final : public TileCanvas {
  public:
-  /// `memory` is that of the image, where it fits.
+  /// Reuses the image `memory` if it has the right size.
   PlanesCanvas(const View& view, std::initializer_list<const char*> names, Image memory = {});
   void write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) override;
   void fill(const TileRectangle& tile, const glm::vec4& value) override;
   [[nodiscard]] Image take() { return std::move(image_); }
 
  private:
-  /// Where row y of the tile begins in a plane.
+  /// The index in a plane at which row y of the tile begins.
   [[nodiscard]] std::size_t row(const TileRectangle& tile, int y) const;
   Image image_;
 };
@@ -61,9 +61,9 @@ class BitmapCanvas final : public TileCanvas {
   Isa isa_;
 };
 
-/// One premultiplied pixel as four bytes R, G, B, A: sRGB, straight alpha.
+/// Stores one premultiplied pixel as four bytes R, G, B, A: sRGB, not premultiplied.
 void store_rgba8(const glm::vec4& color, std::uint8_t* out);
-/// The same of `count` pixels laid over a background.
+/// Stores `count` pixels like store_rgba8(), composited over a background.
 void store_row(const glm::vec4* pixels, int count, const glm::vec4& background, std::uint8_t* out, Isa isa);
 
 }  // namespace frontmost::shading

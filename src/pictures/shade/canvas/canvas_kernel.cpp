@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finished pixels to bytes, a whole vector at a time: laid over the background, and taken to sRGB by the table of
-// base/srgb.h, an entry for each lane. What has an alpha between 0 and 1 even then is divided by it: those vectors,
-// which hold rims on no background, are stored pixel by pixel.
+// Finished pixels become bytes, a whole vector at a time: composited over the background, then converted to sRGB by the
+// table of base/srgb.h, one entry per lane. A pixel with an alpha between 0 and 1 must be divided by it. Vectors with
+// such pixels, at edges over no background, are stored pixel by pixel.
 
 #include "shade/canvas/canvas.h"
 
@@ -23,7 +23,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace frontmost::HWY_NAMESPACE;
 namespace {
 
-/// As srgb8_of_linear().
+/// Vector form of srgb8_of_linear(), with the same results.
 HWY_INLINE VU SrgbOf(VF linear) {
   const DU du;
   const VF least = All(detail::least_srgb8), one = All(1.0f);
@@ -57,7 +57,7 @@ void StoreOneByOne(const PixelVector& colors, std::uint8_t* out) {
   for (std::size_t i = 0; i < hn::Lanes(d); ++i) store_rgba8({r[i], g[i], b[i], a[i]}, out + 4 * i);
 }
 
-/// As many pixels as there are lanes, laid over the background.
+/// Stores one pixel per lane, composited over the background.
 HWY_INLINE void StoreVector(const glm::vec4* pixels, const glm::vec4& background, std::uint8_t* out) {
   const DF d;
   const DU du;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures that show their environment wherever nothing hides it.
+// A canvas for pictures that show the environment as background.
 #pragma once
 
 #include "base/pool.h"
@@ -9,8 +9,8 @@
 
 namespace frontmost::shading {
 
-/// Lays the environment behind every tile, and hands the tile on to another canvas, which it borrows. What is seen of
-/// it goes through exposure and tone mapping as surfaces do.
+/// Composites every tile over the environment and passes the tile to another canvas, which it borrows. The environment
+/// gets the same exposure and tone mapping as surfaces.
 class EnvironmentCanvas final : public TileCanvas {
  public:
   EnvironmentCanvas(TileCanvas& canvas, const View& view, const Lighting& lighting, Isa isa)
@@ -27,9 +27,9 @@ class EnvironmentCanvas final : public TileCanvas {
     std::vector<glm::vec4> pixels;
   };
 
-  /// Sets work.pixels to what is seen of the environment alone.
+  /// Sets work.pixels to the environment alone.
   void draw(const TileRectangle& tile, Work& work) const;
-  /// Radiance at the middle of a pixel.
+  /// The radiance seen at the middle of a pixel.
   [[nodiscard]] glm::vec3 radiance(int x, int y) const;
 
   TileCanvas& canvas_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours have a straight alpha while they are turned: a premultiplied one would be turned at the wrong place of the
-// curve. So a pixel is divided by its alpha first, and multiplied again; one that is clear stays clear.
+// Colours are not premultiplied while they are converted, because the curve is not linear. So a pixel is first divided
+// by its alpha and multiplied afterwards; a clear pixel stays clear.
 
 #include "shade/canvas/srgb_blend.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blending as viewers of figures blend, in the numbers that are shown: colours are turned to sRGB before they are laid
-// over each other, and back when a pixel is done, so that nothing in between has to know.
+// Blending in sRGB values, like viewers of vector figures. Colours are converted to sRGB before they are composited,
+// and back when a pixel is done, so the steps in between are unchanged.
 //
 //   colorist --linear--> SrgbColorist --sRGB--> samples, layers, background --sRGB--> LinearCanvas --linear--> canvas
 #pragma once
@@ -9,14 +9,14 @@
 
 namespace frontmost::shading {
 
-/// Colours as another colorist, which is borrowed, but in sRGB.
+/// Colours like another colorist, which it borrows, but in sRGB.
 struct SrgbColorist {
   const FragmentShader::Colorist& linear;
   void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
 };
 
-/// Takes pixels in sRGB, premultiplied, over a background in sRGB, and paints them in linear light on another canvas,
-/// which is borrowed.
+/// Takes premultiplied sRGB pixels over a background in sRGB, and paints them in linear light on another canvas, which
+/// it borrows.
 class LinearCanvas final : public TileCanvas {
  public:
   explicit LinearCanvas(TileCanvas& canvas) : canvas_(canvas) {}

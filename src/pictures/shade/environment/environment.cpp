@@ -19,7 +19,7 @@ using shading::PrefilteredEnvironment;
 
 constexpr int kMostWidth = 16384;
 
-/// \throws Error as the constructor says.
+/// \throws Error as documented for the constructor.
 void check_picture(const Image& picture) {
   validate(picture);
   const auto fail = [](ErrorCode code, const std::string& reason) { throw Error(code, "environment", reason); };
@@ -84,7 +84,7 @@ glm::vec3 Environment::radiance(const glm::vec3& towards, float roughness) const
   constexpr int last = PrefilteredEnvironment::level_count - 1;
   const float level = (roughness > 0 ? std::min(roughness, 1.0f) : 0.0f) * float(last);  // 0 for NaN
   const int first = std::min(int(level), last - 1);
-  const glm::vec3 ahead(unit(glm::dvec3(towards)));  // sums of floats could leave their range
+  const glm::vec3 ahead(unit(glm::dvec3(towards)));  // sums of floats could overflow
   const glm::vec3 finer = made_->levels[std::size_t(first)].color(ahead);
   return finer + (made_->levels[std::size_t(first) + 1].color(ahead) - finer) * (level - float(first));
 }

@@ -12,15 +12,15 @@ namespace {
 
 constexpr float kHalfTurn = 3.14159265f;
 
-/// Of numbers from 0 to 1, to about 2e-6: no C library is asked, as they differ in the last bit.
-/// (C. Hastings. Approximations for Digital Computers. 1955.)
+/// The arc tangent of numbers from 0 to 1, to about 2e-6. C libraries are not used, as they differ in the last bit. (C.
+/// Hastings. Approximations for Digital Computers. 1955.)
 float arc_tangent(float t) {
   const float t2 = t * t;
   const float high = 0.05265332f - 0.01172120f * t2;
   return t * (0.99997726f + t2 * (-0.33262347f + t2 * (0.19354346f + t2 * (-0.11643287f + t2 * high))));
 }
 
-/// The angle of (x, y) from the x axis to the y axis, -pi to pi; 0 of (0, 0).
+/// The angle of (x, y) from the x axis towards the y axis, -pi to pi; 0 for (0, 0).
 float angle_of(float x, float y) {
   const float ax = std::abs(x), ay = std::abs(y), longer = std::max(ax, ay);
   if (!(longer > 0)) return 0;
@@ -30,7 +30,7 @@ float angle_of(float x, float y) {
   return y < 0 ? -half : half;
 }
 
-/// Four texels around a place, and how far it is from the first; columns go once around.
+/// The four texels around a place, and its offset from the first; columns wrap around.
 struct TexelsAround {
   int left, right, upper, lower;
   glm::vec2 part;
@@ -42,7 +42,7 @@ TexelsAround texels_around(const glm::vec2& place, int width, int height) {
   return {x < 0 ? width - 1 : x, x + 1 < width ? x + 1 : 0, std::max(y, 0), std::min(y + 1, height - 1), at - first};
 }
 
-/// Bilinear, of anything that gives the colour of a pixel.
+/// Bilinear interpolation; `color_at` gives the colour of a pixel.
 template <class ColorAt>
 glm::vec3 interpolated(const TexelsAround& n, const ColorAt& color_at) {
   const glm::vec3 a = color_at(n.left, n.upper), b = color_at(n.right, n.upper);
@@ -73,7 +73,7 @@ EquirectangularMap::EquirectangularMap(const Image& picture, int most_width, con
     : width_(std::min(picture.width, most_width)), height_(std::min(picture.height, most_width / 2)) {
   texels_ = Buffer<glm::vec3>(std::size_t(width_) * std::size_t(height_));
   const Planes planes(picture);
-  // Blocks of whole pixels: where the width is no multiple, some are a pixel wider than others.
+  // Blocks hold whole pixels: if the width is no multiple, some are a pixel wider than others.
   const auto begin_of = [](int i, int blocks, int pixels) { return std::size_t(std::int64_t(i) * pixels / blocks); };
   constexpr std::size_t rows_at_once = 8;
   parallel_for(execution, std::size_t(height_), rows_at_once, [&](std::size_t first_row, std::size_t last_row) {
@@ -104,7 +104,7 @@ glm::vec3 equirectangular_color(const Image& picture, const glm::vec3& towards) 
 }
 
 OctahedralMap draw_map(const Image& equirectangular, const Execution& execution) {
-  constexpr int most_width = 2048, least_size = 64, per_side = 3;  // places in a texel, closer than pixels
+  constexpr int most_width = 2048, least_size = 64, per_side = 3;  // sampled places per texel side, closer than pixels
   const EquirectangularMap source(equirectangular, most_width, execution);
   int size = least_size;
   while (size < source.width() / 4) size *= 2;

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Equirectangular pictures: where a direction is in one, and how bright it is there.
+// Equirectangular pictures: the place of a direction in a picture, and the colour there.
 #pragma once
 
 #include "frontmost/image.h"
 
 namespace frontmost::shading {
 
-/// 0 to 1 from left to right and from top to bottom; `towards` has any length but zero. To 1/50000 of a turn or better,
-/// the same bits on every machine.
+/// The place of a direction, 0 to 1 from left to right and from top to bottom; `towards` has any length but zero. The
+/// error is at most 1/50000 of a turn, and the bits are the same on every machine.
 [[nodiscard]] glm::vec2 equirectangular_place(const glm::vec3& towards);
 
-/// An equirectangular picture as bilinear look-ups want it.
+/// A copy of an equirectangular picture, prepared for bilinear look-ups.
 class EquirectangularMap {
  public:
-  /// Of the channels R, G and B; pictures wider than this are reduced to about this width. In parallel.
+  /// Reads the channels R, G and B. Pictures wider than `most_width` are reduced to about that width. In parallel.
   EquirectangularMap(const Image& picture, int most_width, const Execution& execution);
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] glm::vec3 color(const glm::vec3& towards) const;
@@ -23,7 +23,7 @@ class EquirectangularMap {
   Buffer<glm::vec3> texels_;
 };
 
-/// One pixel's worth of a background: bilinear in the picture itself.
+/// The colour of one background pixel: bilinear in the picture itself.
 [[nodiscard]] glm::vec3 equirectangular_color(const Image& picture, const glm::vec3& towards);
 
 }  // namespace frontmost::shading

@@ -23,17 +23,17 @@ struct DirectionLanes {
   float x[kTexelsAtOnce], y[kTexelsAtOnce], z[kTexelsAtOnce];
 };
 
-/// Normals of texels that follow each other in a row, and two directions across each.
+/// The normals of consecutive texels of a row, and two directions across each.
 struct Frames {
   DirectionLanes normal, across, along;
   int count;
 };
 
-/// From the normal and any other direction.
+/// Computes both directions from the normal.
 void FindFrames(Frames& frames) {
   for (int i = 0; i < frames.count; ++i) {
     const Direction n{frames.normal.x[i], frames.normal.y[i], frames.normal.z[i]};
-    // The axis across which the normal is, more or less.
+    // Chooses an axis that is roughly perpendicular to the normal.
     const bool is_upright = std::abs(n.y) > 0.7f;
     const float x = is_upright ? 0.0f : n.z, y = is_upright ? -n.z : 0.0f, z = is_upright ? n.y : -n.x;
     const float scale = 1.0f / std::sqrt(x * x + y * y + z * z);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Environments that need no file: the studio, and a sky.
+// Environments without files: the studio, and a sky.
 
 #include <algorithm>
 #include <array>
@@ -11,16 +11,17 @@
 namespace frontmost::shading {
 namespace {
 
-/// From 0 to 1 as t goes from 0 to 1, level at both ends.
+/// A smooth step from 0 to 1 as t goes from 0 to 1, with slope 0 at both ends.
 float eased(float t) {
   const float inside = std::clamp(t, 0.0f, 1.0f);
   return inside * inside * (3 - 2 * inside);
 }
 
-/// A lamp behind a rectangle of cloth, as a photographer puts them around a product.
+/// A lamp behind a rectangle of cloth, as photographers use around a product.
 class SoftBox {
  public:
-  /// The direction of its middle, half of its width and height as tangents, and how far its rim reaches inwards.
+  /// `middle`: direction of its middle; `extent`: half width and height as tangents; `softness`: width of its fading
+  /// rim.
   SoftBox(const glm::vec3& middle, const glm::vec2& extent, float softness, float radiance)
       : ahead_(glm::normalize(middle)),
         right_(glm::normalize(std::abs(ahead_.y) > 0.9f ? glm::vec3(1, 0, 0) : glm::vec3(ahead_.z, 0, -ahead_.x))),
@@ -29,7 +30,7 @@ class SoftBox {
         softness_(softness),
         radiance_(radiance) {}
 
-  /// What is seen of `light` with the box before it.
+  /// The radiance towards a direction, with the box in front of `light`.
   [[nodiscard]] float before(float light, const glm::vec3& towards) const {
     const float distance = glm::dot(towards, ahead_);
     if (distance <= 0) return light;
@@ -44,8 +45,8 @@ class SoftBox {
   float softness_, radiance_;
 };
 
-/// Beside the key light; at both sides, for the outlines of bottles and pipes; overhead; and a large dim one behind the
-/// camera, for what faces it.
+/// In order: beside the key light; one at each side, for the outlines of bottles and pipes; overhead; and a large dim
+/// one behind the camera, for surfaces that face it.
 const std::array<SoftBox, 5>& soft_boxes() {
   static const std::array<SoftBox, 5> boxes{{{{-0.48f, 0.68f, 0.72f}, {0.40f, 0.40f}, 0.14f, 1.25f},
                                              {{0.95f, 0.12f, 0.30f}, {0.20f, 0.85f}, 0.09f, 1.1f},

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Looking up octahedral maps for many directions: where to read is found in plain loops over lanes, what is read there
-// comes four channels of two neighbours at a time.
+// Look-ups in octahedral maps for many directions. Addresses are computed in plain loops over lanes; reads bring the
+// four channels of two neighbouring texels at a time.
 
-// Included once for every target.
+// This file is included once for every target.
 #if defined(FRONTMOST_SHADE_ENVIRONMENT_OCTAHEDRAL_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FRONTMOST_SHADE_ENVIRONMENT_OCTAHEDRAL_LOOKUP_INL_H_
 #undef FRONTMOST_SHADE_ENVIRONMENT_OCTAHEDRAL_LOOKUP_INL_H_
@@ -36,8 +36,8 @@ inline OctahedralPlace octahedral_place(const Direction& d) {
   return {clamp01(0.5f + 0.5f * u), clamp01(0.5f + 0.5f * v)};
 }
 
-/// The first of the four texels around a place, as a number of floats from the beginning of a map with border, and how
-/// far the place is from it.
+/// The first of the four texels around a place, as an offset in floats from the beginning of a map with border, and the
+/// place's distance from that texel.
 struct TexelSquare {
   std::int32_t first;
   float x, y;
@@ -49,14 +49,14 @@ inline TexelSquare texel_square(const OctahedralPlace& place, std::int32_t size)
   return {4 * (row * (size + 2) + column), x - float(column), y - float(row)};
 }
 
-/// Four channels of two texels side by side, in one vector or in as many as it takes.
+/// The four channels of two adjacent texels, in one vector or in several parts.
 constexpr int kPairLanes = 8;
 using DTexels = hn::CappedTag<float, kPairLanes>;
 using VTexels = hn::Vec<DTexels>;
 constexpr int kTexelLanes = int(hn::MaxLanes(DTexels())), kTexelParts = kPairLanes / kTexelLanes;
 constexpr float kSecondTexel[kPairLanes] = {0, 0, 0, 0, 1, 1, 1, 1};
 
-/// Adds `weight` times the bilinear mean of a square of texels; the two columns are summed apart.
+/// Adds `weight` times the bilinear mean of a square of texels; the sums of the two columns stay separate.
 HWY_INLINE void AddSquare(const float* texels, std::int32_t floats_per_row, const TexelSquare& square, float weight,
                           VTexels* sums) {
   const DTexels d;
@@ -73,10 +73,10 @@ HWY_INLINE void AddSquare(const float* texels, std::int32_t floats_per_row, cons
   }
 }
 
-/// Both columns together: four channels.
+/// Stores the sum of both columns: four channels.
 HWY_INLINE void StoreSum(const VTexels* sums, float* out) {
   const DTexels d;
-#if HWY_TARGET != HWY_SCALAR  // which has no halves
+#if HWY_TARGET != HWY_SCALAR  // the scalar target has no halves
   if constexpr (kTexelParts == 1) {
     const hn::Half<DTexels> half;
     return hn::StoreU(hn::Add(hn::LowerHalf(half, sums[0]), hn::UpperHalf(half, sums[0])), half, out);

@@ -18,7 +18,7 @@ glm::vec3 octahedron_point(float u, float v) {
 }
 
 float solid_angle(const glm::vec3& octahedron_point) {
-  // The faces have one distance from the middle, and are seen from above under one angle: only 1 / length^3 is left.
+  // All faces are equally far from the centre and at one angle to the square, so only 1 / length^3 varies.
   const float squared = glm::dot(octahedron_point, octahedron_point);
   return 1.0f / (squared * std::sqrt(squared));
 }
@@ -28,7 +28,7 @@ glm::vec3 OctahedralMap::color(const glm::vec3& towards) const {
   glm::vec2 at(towards.x * scale, towards.z * scale);
   if (towards.y < 0) at = {signed_as(1 - std::abs(at.y), towards.x), signed_as(1 - std::abs(at.x), towards.z)};
   const glm::vec2 place = (at * 0.5f + 0.5f) * float(size_) - 0.5f;
-  // The first texel for NaN.
+  // NaN gives the first texel.
   const glm::vec2 first = glm::min(glm::max(glm::vec2(-1), glm::floor(place)), glm::vec2(float(size_ - 1)));
   const glm::vec2 part = place - first;
   const int x = int(first.x), y = int(first.y);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours of all directions on a square: the octahedron |x| + |y| + |z| = 1 seen from above, its lower faces unfolded
-// to the corners. Neighbours on the square are neighbours in direction, texels are of similar size, and finding one
-// takes a single division.
+// The colours of all directions on a square: the octahedron |x| + |y| + |z| = 1 seen from above, with its lower faces
+// unfolded to the corners. Neighbours on the square are neighbours in direction, texels have similar sizes, and a
+// look-up takes a single division.
 //
 //      +-------+-------+
 //      | down/ | \down |        the middle is straight up, the four corners are straight down;
@@ -18,21 +18,21 @@
 
 namespace frontmost::shading {
 
-/// Texels are four floats (red, green, blue, unused), in rows with a border of one on each side that repeats what lies
-/// beyond the fold, so that two neighbours are read at once without asking where they lie.
+/// Texels are four floats (red, green, blue, unused). The map has a border of one texel, which repeats the texels
+/// beyond the fold, so that two neighbours can be read at once anywhere.
 class OctahedralMap {
  public:
   static constexpr int channels = 4;
 
   OctahedralMap() = default;
-  /// With undefined texels.
+  /// The texels are undefined.
   explicit OctahedralMap(int size)
       : size_(size), texels_(std::size_t(size + 2) * std::size_t(size + 2) * std::size_t(channels)) {}
 
-  [[nodiscard]] int size() const { return size_; }        ///< texels a side, without the border
-  [[nodiscard]] int stride() const { return size_ + 2; }  ///< texels a row, with it
+  [[nodiscard]] int size() const { return size_; }        ///< texels per side, without the border
+  [[nodiscard]] int stride() const { return size_ + 2; }  ///< texels per row, with the border
   [[nodiscard]] const float* texels() const { return texels_.data(); }
-  /// x and y from -1 to size.
+  /// x and y are -1 to size.
   [[nodiscard]] float* texel(int x, int y) { return texels_.data() + index(x, y); }
   [[nodiscard]] const float* texel(int x, int y) const { return texels_.data() + index(x, y); }
   void set(int x, int y, const glm::vec3& color) {
@@ -46,12 +46,13 @@ class OctahedralMap {
     const float* const in = texel(x, y);
     return {in[0], in[1], in[2]};
   }
-  /// Bilinear. `towards` has any length but zero.
+  /// Bilinear look-up. `towards` has any length but zero.
   [[nodiscard]] glm::vec3 color(const glm::vec3& towards) const;
 
-  /// Copies what lies beyond the folds into the border.
+  /// Copies the texels beyond the folds into the border.
   void close_border();
-  /// The mean over four texels each, by solid angle, with its border. Precondition: an even size.
+  /// A map of half the size with its border: means of four texels each, weighted by solid angle. Precondition: an even
+  /// size.
   [[nodiscard]] OctahedralMap half() const;
 
  private:
@@ -63,9 +64,9 @@ class OctahedralMap {
   Buffer<float> texels_;
 };
 
-/// The point of the octahedron at u, v, which are 0 to 1 over the square: a direction that is not of unit length.
+/// The point of the octahedron at u, v, which are 0 to 1 over the square: a direction, not of unit length.
 [[nodiscard]] glm::vec3 octahedron_point(float u, float v);
-/// The same of the middle of a texel.
+/// The point of the octahedron at the middle of a texel.
 [[nodiscard]] inline glm::vec3 octahedron_point(int size, int x, int y) {
   return octahedron_point((float(x) + 0.5f) / float(size), (float(y) + 0.5f) / float(size));
 }

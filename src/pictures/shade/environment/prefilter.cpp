@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blurred maps and moments from the map of an environment. The specular light is split into what arrives, weighted by
-// the lobe as if the surface were seen from straight ahead, and what the surface makes of light that is 1 everywhere:
-// B. Karis. Real Shading in Unreal Engine 4. SIGGRAPH 2013 course.
+// Computes blurred maps and moments from the map of an environment. Specular light is split into two factors: arriving
+// light, weighted by the lobe at normal incidence, and the surface's reflection of light that is 1 everywhere. (B.
+// Karis. Real Shading in Unreal Engine 4. SIGGRAPH 2013 course.)
 
 #include <algorithm>
 #include <cmath>
@@ -16,15 +16,15 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Each half as wide as the one before, down to 4 texels.
+/// Maps that are each half as wide as the one before, down to 4 texels.
 std::vector<OctahedralMap> halves_of(const OctahedralMap& map) {
   std::vector<OctahedralMap> maps{map};
   while (maps.back().size() > 4) maps.push_back(maps.back().half());
   return maps;
 }
 
-/// How a level is made: texels a side, as far as level 0 has some multiple of it, and directions of the lobe. Texels
-/// are narrower than a quarter of what the level blurs, and wide lobes need more directions.
+/// How a level is made: the most texels per side, the least ratio of level 0's side to it, and the directions of the
+/// lobe. Texels are narrower than a quarter of the level's blur, and wide lobes need more directions.
 struct LevelPlan {
   int most_texels, least_ratio, directions;
 };

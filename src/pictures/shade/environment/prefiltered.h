@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an Environment holds: octahedral maps for surfaces of nine roughnesses, and moments for matt ones.
+// The data of an Environment: octahedral maps for nine roughnesses, and moments for diffuse surfaces.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@
 
 namespace frontmost::shading {
 
-/// What a white matt surface sends back is a polynomial of its normal: mean + 2 first . n + 15/8 n . second n. These
-/// are spherical harmonics up to order 2, written so that they are easy to turn.
+/// The light reflected by a white diffuse surface is a polynomial of its normal: mean + 2 first . n + 15/8 n . second
+/// n. These are spherical harmonics up to order 2, in a form that is easy to rotate.
 struct IrradianceMoments {
-  /// Of one colour channel: means over all directions d of the light, of the light times d, and of the light times
-  /// d d^T - 1/3.
+  /// For one colour channel: means over all directions d of the light, of the light times d, and of the light times d
+  /// d^T - 1/3.
   struct Moments {
     double mean = 0;
     glm::dvec3 first{0};
@@ -27,19 +27,20 @@ struct IrradianceMoments {
 struct PrefilteredEnvironment {
   static constexpr int level_count = 9;
 
-  /// Level k is what surfaces of roughness k / 8 mirror, seen from straight ahead; level 0 is the environment itself.
+  /// Level k is the light mirrored by surfaces of roughness k / 8 at normal incidence; level 0 is the environment
+  /// itself.
   std::array<OctahedralMap, level_count> levels;
   IrradianceMoments irradiance;
   bool turns_with_camera = false;
-  bool is_dark = false;  ///< no light at all; without levels
-  Image picture;         ///< equirectangular; empty where it was made by code
+  bool is_dark = false;  ///< no light at all; then there are no levels
+  Image picture;         ///< equirectangular; empty if the environment was made by code
 };
 
-/// What an environment holds, for the shading of fragments.
+/// The data of an environment, for shading.
 [[nodiscard]] const PrefilteredEnvironment& prefiltered(const Environment& environment);
 
-/// Makes levels 1 and up, and the moments, of level 0, whose size is a power of two, at least 64. The same bits on
-/// every machine.
+/// Computes levels 1 and up, and the moments, from level 0. The size of level 0 is a power of two, at least 64. The
+/// bits are the same on every machine.
 void prefilter(PrefilteredEnvironment& environment, const Execution& execution);
 
 /// Radiance from a direction of unit length.

@@ -8,7 +8,7 @@
 namespace frontmost::shading {
 namespace {
 
-/// Without branches, so that the compiler can compare many at a time.
+/// Has no branches, so that the compiler can vectorize it.
 bool all_equal(const PrimitiveId* ids, std::size_t count, PrimitiveId id) {
   PrimitiveId different = 0;
   for (std::size_t i = 0; i < count; ++i) different |= ids[i] ^ id;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From primitive ids to set-up triangles, and from those to what the geometry says of each fragment.
+// From primitive ids to set-up triangles, and from these to the geometric data of each fragment.
 #pragma once
 
 #include <span>
@@ -15,38 +15,37 @@
 
 namespace frontmost::shading {
 
-/// Every primitive that holds a sample. O(samples), in parallel.
-/// `memory` is that of the result, where it fits.
+/// The set of primitives that hold a sample. Reuses `memory` for the result if its size fits. O(samples), in parallel.
 [[nodiscard]] BitSet seen_primitives(const Surfaces& surfaces, const Visible& visible, const Execution& execution,
                                      BitSet memory = {});
 
-/// The same of any ids. O(ids), in parallel.
+/// The set of the given ids. O(ids), in parallel.
 [[nodiscard]] BitSet seen_primitives(std::size_t primitive_count, std::span<const PrimitiveId> ids,
                                      const Execution& execution, BitSet memory = {});
 
-/// Every primitive whose first samples cover three pixels in a row or around a corner. On smaller ones a smooth
-/// normal could hardly be told from a flat one: scans of millions of triangles are spared it.
-/// O(pixels + primitives / 64), in parallel. `memory` is that of the result, where it fits.
+/// The set of primitives whose first samples cover three pixels in a row or around a corner. On smaller ones a smooth
+/// normal hardly differs visibly from a flat one, so scans of millions of triangles are spared smoothing. Reuses
+/// `memory` for the result if its size fits. O(pixels + primitives / 64), in parallel.
 [[nodiscard]] BitSet large_primitives(std::size_t primitive_count, const Visible& visible, const Execution& execution,
                                       BitSet memory = {});
 
-/// The same of `ids` in rows of `width` pixels.
+/// large_primitives() for `ids` in rows of `width` pixels.
 [[nodiscard]] BitSet large_primitives(std::size_t primitive_count, std::span<const PrimitiveId> ids, int width,
                                       const Execution& execution, BitSet memory = {});
 
-/// For every material of the scene, whether one of the seen triangles has it that are not `known` yet.
-/// O(primitives / 64 + new ones).
+/// For every material of the scene, whether a seen triangle that is not in `known` has it. O(primitives / 64 + new
+/// triangles).
 [[nodiscard]] std::vector<bool> seen_materials(const Surfaces& surfaces, const BitSet& seen, const BitSet& known);
 
-/// A triangle that is to be set up as number `number`.
+/// A triangle to be set up, and its number in the batch.
 struct NewTriangle {
   PrimitiveId id = no_primitive;
   std::uint16_t number = 0;
   glm::vec2 reference{0};  ///< a screen position on the triangle
 };
 
-/// What the triangles of surfaces are set up from in every view: where their meshes stand, and smooth normals for
-/// meshes that have none.
+/// View-independent data for setting up triangles: the placements of meshes, and smooth normals for meshes without
+/// normals.
 class TriangleStore {
  public:
   struct Placement {
@@ -65,17 +64,17 @@ class TriangleStore {
   /// Borrows the surfaces and their scene. O(instances).
   explicit TriangleStore(const Surfaces& surfaces);
 
-  /// Makes smooth normals for the large primitives of meshes that have none. Those that were not asked for before are
-  /// made alone the first time; whoever asks again will ask for more, so that the second time makes the whole mesh's.
+  /// Makes smooth normals for the large primitives of meshes without normals. The first call for a mesh makes only the
+  /// requested ones. The second makes all normals of the mesh, since more requests are likely to follow.
   void smooth(const BitSet& large, const Execution& execution);
 
-  /// Follows an instance to where it is now.
+  /// Updates the placement of an instance that has moved.
   void follow(const Surfaces& surfaces, std::uint32_t instance);
 
-  /// The placement that holds `id`; `guess` is looked at first.
+  /// The placement that holds `id`; tries `guess` first.
   [[nodiscard]] const Placement& placement_with(PrimitiveId id, const Placement& guess) const;
   [[nodiscard]] const Placement& first_placement() const { return placements_.front(); }
-  /// Those of a mesh: empty where it has normals of its own, or none were asked for.
+  /// The smooth normals of a mesh: empty if the mesh has its own normals, or none were requested.
   [[nodiscard]] const PackedCornerNormals& smooth_normals_of(std::uint32_t mesh) const { return smooth_[mesh]; }
 
  private:
@@ -85,20 +84,20 @@ class TriangleStore {
   std::vector<Placement> placements_;             ///< by instance
   std::vector<std::vector<PrimitiveId>> firsts_;  ///< by mesh: the first primitive of each of its instances
   std::vector<PackedCornerNormals> smooth_;       ///< by mesh
-  BitSet smoothed_;                               ///< primitives whose normals are there, the mesh's own or smooth ones
+  BitSet smoothed_;                               ///< primitives that have normals, the mesh's own or smooth ones
 };
 
 /// Sets up triangles with their attributes in world space, for one view.
 class TriangleSource {
  public:
-  /// Borrows `store` and `large`. The large primitives of meshes without normals are smooth, and the store has smooth
-  /// normals for them; others of those meshes, and all of them with no `large`, stay flat.
+  /// Borrows `store` and `large`. Large primitives of meshes without normals are smooth, and the store must have their
+  /// normals. Other primitives of these meshes are flat; all are if `large` is null.
   TriangleSource(const TriangleStore& store, const View& view, const BitSet* large)
       : rays_(view), large_(large), store_(store) {}
 
-  /// From now on no triangle has texture coordinates: for pictures that look at none.
+  /// Leaves out texture coordinates from now on, for pictures that do not need them.
   void leave_out_texcoords() { has_texcoords_ = false; }
-  /// Fills setups[number] of each triangle. Many at once are quicker than one by one.
+  /// Fills setups[number] of each triangle. One call with many triangles is faster than many calls.
   void set_up(std::span<const NewTriangle> triangles, std::vector<TriangleSetup>& setups) const;
   [[nodiscard]] const ScreenRays& rays() const { return rays_; }
 
@@ -115,19 +114,19 @@ class TriangleSource {
   bool has_texcoords_ = true;
 };
 
-/// Fills batch.geometry from batch.coverage, with the first set of texture coordinates. Quickest where the fragments of
-/// a triangle lie together.
+/// Fills batch.geometry from batch.coverage, with the first set of texture coordinates. Fastest if the fragments of a
+/// triangle are adjacent.
 void interpolate_geometry(const ScreenRays& rays, const std::vector<TriangleSetup>& setups, FragmentBatch& batch,
                           Isa isa);
 
-/// Fragments [begin, end) of a batch, and a set of the texture coordinates of their triangles.
+/// The fragments [begin, end) of a batch, and a set of texture coordinates.
 struct TexcoordRequest {
   const std::vector<TriangleSetup>& setups;
   const Coverage& coverage;
   std::uint32_t set;
   int begin, end;
 };
-/// Fills `out` of these fragments as interpolate_geometry() does for the first set; what it holds behind them is lost.
+/// Fills `out` for these fragments, as interpolate_geometry() does for the first set; overwrites entries behind them.
 void interpolate_texcoords(const TexcoordRequest& request, TexcoordLanes& out, Isa isa);
 
 }  // namespace frontmost::shading

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From set-up triangles to fragments, a whole vector at a time. The fragments of a vector may be of several triangles:
-// each number that a formula takes from its triangle is then put together lane by lane, before the formula is evaluated
-// once:
+// From set-up triangles to fragments, a whole vector at a time. The fragments of a vector may be of several triangles.
+// So each triangle value of a formula is assembled lane by lane, and then the formula is evaluated once:
 //
 //   triangles      A A A B B C C C
 //   corner.x       a a a b b c c c
@@ -50,7 +49,7 @@ HWY_INLINE void Store(VF x, VF y, Lane2& lanes, int i) {
   hn::StoreU(y, DF(), &lanes.y[i]);
 }
 
-/// The triangles of a vector of fragments.
+/// The triangles of the fragments in a vector.
 class VectorTriangles {
  public:
   VectorTriangles(const std::uint16_t* numbers, const std::vector<TriangleSetup>& setups) {
@@ -66,14 +65,14 @@ class VectorTriangles {
     }
   }
 
-  /// What get(triangle) gives of each lane's.
+  /// The value get(triangle) of each lane's triangle.
   template <class Get>
   [[nodiscard]] HWY_INLINE VF operator()(const Get& get) const {
     VF value = All(get(*triangles_[0]));
     for (std::size_t t = 1; t < count_; ++t) value = hn::IfThenElse(masks_[t], All(get(*triangles_[t])), value);
     return value;
   }
-  /// The same of a vector of three.
+  /// The value get(triangle) of each lane's triangle, a vector of three.
   template <class Get>
   [[nodiscard]] HWY_INLINE VF3 three(const Get& get) const {
     return {(*this)([&](const TriangleSetup& t) { return get(t).x; }),
@@ -92,7 +91,7 @@ class VectorTriangles {
   const TriangleSetup* triangles_[kMaxLanes];
 };
 
-/// Barycentric weights as barycentric() of triangle_setup.h gives them.
+/// Lane form of barycentric() in triangle_setup.h.
 struct Weights {
   VF3 weight;
   VF divisor;
@@ -123,7 +122,7 @@ HWY_INLINE VF Between(VF a, VF b, VF c, const VF3& weight) {
   return hn::Add(hn::Add(hn::Mul(a, weight.x), hn::Mul(b, weight.y)), hn::Mul(c, weight.z));
 }
 
-/// Three vectors of the corners of each lane's triangle.
+/// For each lane, three vectors at the corners of its triangle.
 struct VF3Corners {
   VF3 a, b, c;
 };
@@ -142,10 +141,10 @@ HWY_INLINE VF3 Chosen(MF mask, const VF3& yes, const VF3& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-/// The normal between those of the corners, at unit length; the plane's where they cancel out.
+/// The unit normal interpolated from the corner normals; the plane's where these cancel out.
 HWY_INLINE VF3 SmoothNormal(const VF3Corners& normals, const VF3& plane, const VF3& weight) {
   const VF3 n = Between(normals, weight);
-  // Of unit vectors: shorter than one, never long.
+  // An interpolation of unit vectors is never longer than 1.
   const VF length2 = Dot(n, n);
   const MF is_valid = hn::Gt(length2, All(1e-12f));
   const VF scale = hn::IfThenElseZero(is_valid, hn::Div(All(1.0f), hn::Sqrt(length2)));
@@ -154,9 +153,9 @@ HWY_INLINE VF3 SmoothNormal(const VF3Corners& normals, const VF3& plane, const V
   return {mixed(n.x, plane.x), mixed(n.y, plane.y), mixed(n.z, plane.z)};
 }
 
-/// Towards where the point would lie on the curved surface that the corner normals suggest: the mean of its projections
-/// onto the corners' tangent planes, taken only outwards. Shadows looked up there do not show the facets along the
-/// terminator. (J. Hanika, Hacking the Shadow Terminator, in Ray Tracing Gems II, 2021.)
+/// The point, moved towards the curved surface that the corner normals suggest: the mean of its projections onto the
+/// corners' tangent planes, outwards only. Shadows looked up there hide the facets along the terminator. (J. Hanika,
+/// Hacking the Shadow Terminator, in Ray Tracing Gems II, 2021.)
 HWY_INLINE VF3 Lifted(const VF3Corners& corners, const VF3Corners& normals, const VF3& position, const VF3& weight) {
   VF3 lifted = position;
   const auto lift = [&](const VF3& corner, const VF3& normal, VF of_corner) {
@@ -169,25 +168,25 @@ HWY_INLINE VF3 Lifted(const VF3Corners& corners, const VF3Corners& normals, cons
   return lifted;
 }
 
-/// The unit vector from a point, measured from the eye, to the eye.
+/// The unit vector towards the eye from a point that is relative to the eye.
 HWY_INLINE VF3 ToEye(const VF3& p) {
   const VF length2 = Dot(p, p), least = All(1e-36f);
   const VF scale = hn::Div(All(-1.0f), hn::Sqrt(hn::IfThenElse(hn::Gt(length2, least), length2, least)));
   return {hn::Mul(p.x, scale), hn::Mul(p.y, scale), hn::Mul(p.z, scale)};
 }
 
-/// One coordinate, and its change per pixel in x and y: exact derivatives of the quotient.
+/// One texture coordinate and its change per pixel in x and y: exact derivatives of the quotient.
 struct Coordinate {
   VF value, dx, dy;
 };
-/// Which set of texture coordinates, and which of the two.
+/// Selects a set of texture coordinates and one of its two axes.
 struct CoordinateKind {
   std::uint32_t set;
   float glm::vec2::*axis;
 };
 HWY_INLINE Coordinate CoordinateAt(const VectorTriangles& of, CoordinateKind kind, const Weights& w) {
   const auto corner = [&](std::size_t k) {
-    // Of the first set those are zero that are not there, so that nobody has to ask.
+    // Missing coordinates of the first set are zero, so no test is needed.
     return of([=](const TriangleSetup& t) {
       return (kind.set == 0 ? t.texcoord[0][k] : t.texcoord_at(kind.set, k)).*kind.axis;
     });
@@ -204,14 +203,14 @@ HWY_INLINE Coordinate CoordinateAt(const VectorTriangles& of, CoordinateKind kin
   return {value, change(&Affine::step_x), change(&Affine::step_y)};
 }
 
-/// Fragments from number `i` on, and the set that is wanted of them.
+/// The first fragment, and the requested set of texture coordinates.
 struct TexcoordPlace {
   int i;
   std::uint32_t set;
   const PixelSteps* steps;
 };
 
-/// From changes per unit of the screen to changes per step.
+/// Converts changes per unit of the screen to changes per step.
 HWY_INLINE VF AlongStep(const Coordinate& c, const Lane2& step, int i) {
   const DF d;
   return hn::Add(hn::Mul(c.dx, hn::LoadU(d, &step.x[i])), hn::Mul(c.dy, hn::LoadU(d, &step.y[i])));
@@ -230,7 +229,7 @@ HWY_INLINE void StoreTexcoords(const VectorTriangles& of, const Weights& w, Texc
   Store(u.dy, v.dy, out.dy, place.i);
 }
 
-/// Triangles without colours are white, exactly.
+/// Triangles without colours are exactly white.
 void StoreColors(const VectorTriangles& of, const VF3& weight, Geometry& out, int i) {
   Lane* lanes[4] = {&out.color.x, &out.color.y, &out.color.z, &out.alpha};
   const MF has_color = hn::Gt(of([](const TriangleSetup& t) { return float(t.has_color); }), hn::Zero(DF()));
@@ -242,7 +241,7 @@ void StoreColors(const VectorTriangles& of, const VF3& weight, Geometry& out, in
   }
 }
 
-/// Which attributes any triangle of a batch has.
+/// The attributes that at least one triangle of a batch has.
 struct BatchAttributes {
   bool texcoord = false, color = false;
 };

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Corners are sorted into buckets by a hash of their position; each bucket is small enough for the first cache levels
-// and is worked on by one thread. Corners keep the order of their triangles throughout, so the sums do not depend on
-// the number of threads. Positions that no wanted triangle touches are dropped at the door: on a closed mesh that is
-// about half of the work.
+// Corners are sorted into buckets by a hash of their position. A bucket fits into the first cache levels, and one
+// thread works on it. Corners keep the order of their triangles, so sums do not depend on the number of threads.
+// Positions without a requested triangle are dropped first, which on a closed mesh saves about half of the work.
 
 #include "shade/geometry/smooth_normals.h"
 
@@ -20,9 +19,9 @@ namespace {
 
 constexpr std::size_t kTrianglesAtOnce = 1u << 13;
 constexpr std::size_t kCornersPerBucket = 4096;
-/// Corners at one position beyond which every facet keeps its own normal: comparing all pairs must not be a trap.
+/// With more corners at one position, every facet keeps its own normal, because all pairs would be compared.
 constexpr std::size_t kMostCorners = 256;
-/// Corners are numbered in 32 bits. Larger meshes keep their facets' normals.
+/// Corners have 32-bit numbers. Larger meshes keep their facets' normals.
 constexpr std::size_t kMostTriangles = std::size_t(1) << 30;
 
 using PositionBits = std::array<std::uint32_t, 3>;
@@ -41,7 +40,7 @@ std::uint32_t hash_of(const PositionBits& bits) {
   return h ^ (h >> 16);
 }
 
-/// The angle between 0 and pi whose sine and cosine are in this ratio, to 0.005: a weight, not a measurement.
+/// The angle from 0 to pi with this ratio of sine and cosine, to 0.005: precise enough for a weight.
 double angle_of(double sine, double cosine) {
   const double c = std::abs(cosine);
   const bool steep = sine > c;
@@ -144,7 +143,7 @@ class Smoother {
     while (bucket_bits_ < 9 && (kCornersPerBucket << bucket_bits_) < 6 * wanted_count_) ++bucket_bits_;
     const std::size_t count = (mesh_.triangles.size() + kTrianglesAtOnce - 1) / kTrianglesAtOnce;
     std::vector<std::vector<Touched>> parts(count);
-    // First how many of each part go to each bucket, then where they start, then the corners themselves.
+    // Counts the corners of each part in each bucket, then finds their places, then writes the corners.
     std::vector<std::uint32_t> place(count * bucket_count());
     parallel_for(execution_, mesh_.triangles.size(), kTrianglesAtOnce, [&](std::size_t begin, std::size_t end) {
       const std::size_t part = begin / kTrianglesAtOnce;
@@ -166,7 +165,7 @@ class Smoother {
     });
   }
 
-  /// The corners of a bucket lie all over the mesh: asks for what they and their facets read, well ahead.
+  /// Prefetches the data of corners further on in a bucket, since they are spread over the mesh.
   void prefetch(const std::uint32_t* corners, std::uint32_t i, std::uint32_t count) const {
     constexpr std::uint32_t kTrianglesAhead = 32, kPositionsAhead = 16;
     if (i + kTrianglesAhead < count) prefetch_line(&mesh_.triangles[corners[i + kTrianglesAhead] / 3]);
@@ -183,14 +182,14 @@ class Smoother {
   BitSet wanted_;
   std::size_t wanted_count_ = 0;
   PackedCornerNormals normals_;
-  BitSet touched_;  ///< hashes of positions that a wanted triangle has
+  BitSet touched_;  ///< hashes of positions of requested triangles
   std::uint32_t touched_mask_ = 0;
   int bucket_bits_ = 1;
   std::vector<std::uint32_t> bucket_begin_;
   Buffer<std::uint32_t> corners_;  ///< by bucket, ascending in each
 };
 
-/// Corners of one bucket chained by position: an open-addressing table of chains.
+/// The corners of one bucket in chains of equal position: an open-addressing table.
 class Chains {
  public:
   static constexpr std::uint32_t none = 0xFFFFFFFFu;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Normals for meshes that have none: smooth where facets meet at a small angle, sharp where they meet at a large one,
-// so that scans look smooth and the edges of machined parts stay edges.
+// Normals for meshes without normals: smooth where facets meet at a small angle, sharp where they meet at a large one.
+// So scans look smooth, and the edges of machined parts stay edges.
 #pragma once
 
 #include <array>
@@ -11,23 +11,23 @@
 
 namespace frontmost::shading {
 
-/// A direction in 4 bytes, to about 0.003 degrees: the octahedron's faces unfolded into a square.
+/// A direction in 4 bytes, to about 0.003 degrees: octahedral mapping to a square.
 struct PackedNormal {
   std::int16_t x = 0, y = 0;
 };
 [[nodiscard]] PackedNormal pack(const glm::vec3& direction);
-/// Not normalised.
+/// The result is not normalized.
 [[nodiscard]] glm::vec3 unpack(PackedNormal packed);
 
-/// Facets that meet at more than this angle keep an edge between them.
+/// Facets that meet at a larger angle keep an edge between them.
 inline constexpr double crease_cosine = 0.766044443118978;  // 40 degrees
 
-/// Corner normals in the mesh's own space, by triangle. Those of triangles that were not asked for are undefined.
+/// Corner normals in mesh space, by triangle. Normals of triangles that were not requested are undefined.
 using PackedCornerNormals = Buffer<std::array<PackedNormal, 3>>;
 
-/// For each corner of the triangles for which `is_wanted` says so: the mean of the normals of all facets that share
-/// the corner's position, to the bit, and lie within the crease angle of the corner's own facet, weighted by area and
-/// by the angle at the corner. Degenerate facets count for nothing and point anywhere. O(triangles).
+/// A normal for each corner of the triangles for which `is_wanted` is true: the mean of the facet normals at the
+/// corner's exact position, weighted by area and by the angle at the corner. Only facets within the crease angle of the
+/// corner's own facet count. Degenerate facets do not count; their normals are arbitrary. O(triangles).
 [[nodiscard]] PackedCornerNormals smooth_normals(const Mesh& mesh, const std::function<bool(std::uint32_t)>& is_wanted,
                                                  const Execution& execution = {});
 

@@ -6,7 +6,7 @@
 namespace frontmost::shading {
 namespace {
 
-/// False when a value is not finite.
+/// \returns false if a value is not finite.
 bool store(const RayVolumes& v, double scale, std::array<Affine, 3>& weight) {
   bool finite = true;
   for (int k = 0; k < 3; ++k) {
@@ -39,7 +39,7 @@ void set_up_plane(TriangleSetup& setup, const ScreenRays& rays, const std::array
   const double away = glm::dot(normal, rays.is_parallel() ? rays.forward() : c[0]);
   setup.is_backside = away > 0;
   setup.plane_normal = unit_or(away > 0 ? -normal : normal, -rays.forward());
-  // At the reference, inside the triangle, the sum has the sign of `away`; dividing by it makes the weights positive.
+  // At the reference, inside the triangle, the sum has the sign of `away`, so the quotients are positive.
   const bool valid = sum * away > 0 && store(v, 1 / sum, setup.weight);
   if (!valid) setup.weight.fill(Affine{1.0f / 3, 0, 0});
 }

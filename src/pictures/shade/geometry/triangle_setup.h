@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One visible triangle made ready for interpolation.
+// A visible triangle prepared for interpolation.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace frontmost::shading {
 
-/// A value that is affine in the screen position, about a reference point.
+/// A value that is affine in the screen position, relative to a reference point.
 struct Affine {
   float at_reference = 0, step_x = 0, step_y = 0;
 };
@@ -22,16 +22,16 @@ struct TriangleSetup {
   std::array<glm::vec3, 3> normal;  ///< world, unit, on the viewer's side
   glm::vec3 plane_normal{0};        ///< unit, towards the viewer
   bool is_smooth = false;           ///< the corner normals differ from the plane's
-  bool is_backside = false;         ///< the side that the winding calls back is seen
+  bool is_backside = false;         ///< the visible side is the back by the winding
   PrimitiveId id = no_primitive;
   std::uint32_t instance = no_index, mesh = no_index, triangle = no_index;
   std::uint32_t material = no_index;  ///< number in the scene
   std::array<glm::vec4, 3> color;
   bool has_color = false;
   std::array<bool, max_texcoord_sets> has_texcoord{};                ///< by set
-  std::array<std::array<glm::vec2, 3>, max_texcoord_sets> texcoord;  ///< the first: zero where it is not there
+  std::array<std::array<glm::vec2, 3>, max_texcoord_sets> texcoord;  ///< zero in the first set if it is missing
 
-  /// Zero where the mesh has no such set.
+  /// The texture coordinates of corner k; zero if the mesh has no such set.
   [[nodiscard]] glm::vec2 texcoord_at(std::uint32_t set, std::size_t k) const {
     return has_texcoord[set] ? texcoord[set][k] : glm::vec2(0);
   }
@@ -42,8 +42,8 @@ struct TriangleSetup {
 void set_up_plane(TriangleSetup& setup, const ScreenRays& rays, const std::array<glm::vec3, 3>& corners_world,
                   const glm::vec2& reference);
 
-/// Weights at a screen position: none negative, sum 1, so that nothing extrapolates past the triangle's edges.
-/// `divisor` is what they were divided by, which the gradients need.
+/// Weights at a screen position: none is negative and they sum to 1, so interpolation stays within the triangle.
+/// `divisor` is their sum before normalization, which gradients need.
 struct Barycentric {
   glm::vec3 weight;
   float divisor;

@@ -10,8 +10,8 @@ namespace {
 
 float dot3(const glm::vec3& a, const glm::vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// Whatever its length: very long and short ones are scaled first, so that their squares stay finite. Zero when it has
-/// none.
+/// The unit vector; zero if there is none. Very long and short vectors are scaled first, so that their squares stay
+/// finite.
 glm::vec3 unit_or_zero(const glm::vec3& v) {
   const float length2 = dot3(v, v);
   if (length2 > 1e-20f && length2 < 1e20f) return v * (1.0f / std::sqrt(length2));
@@ -22,7 +22,7 @@ glm::vec3 unit_or_zero(const glm::vec3& v) {
   return length > 0 ? scaled / length : glm::vec3(0);  // false for NaN
 }
 
-/// Nothing sends back more light than it gets, nor less than none, which NaN counts as.
+/// A reflectance is from 0 to 1; NaN counts as 0.
 glm::vec4 reflected_part(const glm::vec4& color) {
   const auto part = [](float value) { return value > 0 ? std::min(value, 1.0f) : 0.0f; };
   return {part(color.r), part(color.g), part(color.b), color.a};
@@ -55,7 +55,7 @@ TriangleStore::TriangleStore(const Surfaces& surfaces)
     placements_.push_back(placement_of(surfaces, i));
     firsts_[scene_.instances[i].mesh].push_back(surfaces.first_primitive(i));
   }
-  // Normals of their own are as good as made.
+  // Meshes with normals need no smoothing.
   for (const Placement& placement : placements_)
     if (!lacks_normals(*placement.mesh))
       for (std::uint32_t t = 0; t < placement.count; ++t) smoothed_.add(placement.first + t);
@@ -98,8 +98,8 @@ const TriangleStore::Placement& TriangleStore::placement_with(PrimitiveId id, co
 
 void TriangleSource::set_up(std::span<const NewTriangle> triangles, std::vector<TriangleSetup>& setups) const {
   if (triangles.empty()) return;
-  // What neighbours on the screen need is often far apart in memory, so that all of it is asked for first: corner
-  // numbers, then the positions that they lead to.
+  // Neighbours on the screen are often far apart in memory, so all data is prefetched: first the corner numbers, then
+  // the positions.
   const Placement* placement = &store_.first_placement();
   for (const NewTriangle& t : triangles) {
     placement = &store_.placement_with(t.id, *placement);
@@ -149,7 +149,7 @@ void TriangleSource::set_normals(PrimitiveId id, const Placement& placement, Tri
     setup.normal[k] = unit_or_zero(normal_matrix * own);
     sum += setup.normal[k];
   }
-  // All three are turned together to the side that is seen, whatever the winding says; a single one may lean away.
+  // All three normals are flipped together to the visible side, whatever the winding; a single one may lean away.
   const bool turned = dot3(sum, setup.plane_normal) < 0;
   setup.is_smooth = false;
   for (glm::vec3& n : setup.normal) {

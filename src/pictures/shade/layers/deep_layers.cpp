@@ -25,10 +25,10 @@ struct DeepSample {
   PrimitiveId primitive;
 };
 
-/// What one sub-sample sees, nearest first.
+/// The fragments at one sub-sample, nearest first.
 class Order {
  public:
-  /// Ordered by the key, greatest first, and by the id.
+  /// Sorted by negated key, so the greatest key is first, then by id.
   using Place = std::tuple<float, PrimitiveId, std::uint32_t>;
 
   Order(std::span<const Fragment> fragments, const KeyAt& key_at) : fragments_(fragments), key_at_(key_at) {}
@@ -37,7 +37,7 @@ class Order {
     order_.clear();
     for (std::uint32_t i = 0; i < fragments_.size(); ++i)
       if (fragments_[i].mask >> sample & 1) order_.push_back({-key_at_(i, sample), fragments_[i].primitive, i});
-    // Mostly the order is that of the list: few fragments change places within a pixel.
+    // Mostly the list is already in order: few fragments change places within a pixel.
     if (!std::is_sorted(order_.begin(), order_.end())) std::sort(order_.begin(), order_.end());
     return order_;
   }
@@ -48,7 +48,7 @@ class Order {
   std::vector<Place> order_;
 };
 
-/// The samples of one rectangle.
+/// Makes the samples of one rectangle.
 class PartMaker {
  public:
   PartMaker(const View& view, const FragmentPass& pass, const LayerShader& shader)
@@ -69,7 +69,7 @@ class PartMaker {
   }
 
  private:
-  /// `corner`: of the pixel, in 1/256 pixel from the rectangle's.
+  /// `corner`: the pixel's corner relative to the rectangle's, in 1/256 pixel.
   void add_pixel(const PixelLists& lists, std::size_t pixel, const std::vector<glm::vec4>& all_colors,
                  const glm::ivec2& corner, std::vector<DeepSample>& out) const {
     const std::size_t begin = lists.begin[pixel], count = lists.begin[pixel + 1] - begin;
@@ -84,7 +84,7 @@ class PartMaker {
     float left = 1;
     for (std::size_t i = 0; i < fragments.size(); ++i) {
       if (!(parts[i] > 0 && left > 0)) continue;
-      // Of what is left uncovered, so that laying over one another gives this part again.
+      // Relative to the uncovered rest, so that compositing gives this part again.
       const float alpha = std::min(parts[i] / left, 1.0f);
       out.push_back({glm::vec4(glm::vec3(colors[i]) * alpha, alpha), depth_of_key(view_, fragments[i].key),
                      fragments[i].primitive});
@@ -98,7 +98,7 @@ class PartMaker {
   const LayerShader& shader_;
 };
 
-/// The planes of a deep image, by sample.
+/// The planes of a deep image, indexed by sample.
 struct DeepPlanes {
   Buffer<float> red, green, blue, alpha, z;
   Buffer<PrimitiveId> primitive;
@@ -114,7 +114,7 @@ struct DeepPlanes {
   }
 };
 
-/// The ids of one kind, given those of the primitives.
+/// The ids of one kind for these primitives.
 Channel ids_of(const Surfaces& surfaces, const Buffer<PrimitiveId>& primitives, IdKind kind) {
   return id_image(surfaces, {int(primitives.size()), 1}, {primitives.data(), primitives.size()}, kind).channels.front();
 }

@@ -11,8 +11,8 @@ using abuffer_detail::Rectangle;
 
 namespace {
 
-/// The first fragment of the same primitive that covers the same samples, as many layers deep, in the two by two pixels
-/// to which pixel p belongs; `i` itself where there is none before it.
+/// The first fragment within the 2 x 2 pixels around pixel p that has the same primitive, the same samples and the same
+/// depth rank as fragment `i`; `i` itself if none comes before it.
 std::size_t shared_fragment(const Rectangle& pixels, const PixelLists& lists, std::size_t p, std::size_t i) {
   const auto width = std::size_t(pixels.width), x = p % width, y = p / width;
   const std::size_t left = x - x % 2, top = y - y % 2;
@@ -50,7 +50,7 @@ void LayerShader::shade(const Rectangle& pixels, const PixelLists& lists, std::s
                         FragmentColors& colors) const {
   const auto shader = shaders_.borrow([] { return std::make_unique<FragmentShader>(); });
   const auto receive = [&](const FragmentShader::Shaded& s) { colors.set(s.number, s.light, s.alpha, s.alphas); };
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> shared;  // from whom and to whom
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> shared;  // from, to
   shader->begin(source_, colorist_, isa_);
   for (std::size_t p = 0; p + 1 < lists.begin.size(); ++p) {
     const glm::vec2 corner(float(pixels.x + int(p) % pixels.width), float(pixels.y + int(p) / pixels.width));

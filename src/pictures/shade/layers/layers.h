@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of scenes that can be seen through. The A-buffer knows what is before what and which sub-samples it covers;
-// here every fragment gets its colour and its alpha, textures included.
+// Pictures of scenes with see-through materials. The A-buffer knows the order of fragments and their sub-samples; here
+// every fragment gets its colour and its alpha, textures included.
 #pragma once
 
 #include <functional>
@@ -11,19 +11,19 @@
 
 namespace frontmost::shading {
 
-/// Adds every primitive that is seen, and perhaps some that something opaque hides. O(fragments).
+/// Adds every visible primitive to `seen`, and possibly some behind opaque ones. O(fragments).
 void add_seen_primitives(const abuffer_detail::FragmentPass& pass,
                          const abuffer_detail::FragmentPass::LeaveOut& leave_out, BitSet& seen,
                          const Execution& execution);
 
-/// Colours the fragments of one rectangle after another, from several threads at once.
+/// Colours the fragments of rectangles, one after another; several threads may call at once.
 class LayerShader {
  public:
   LayerShader(const TriangleSource& source, const abuffer_detail::FragmentPass& pass,
               const FragmentShader::Colorist& colorist, ShadingRate rate, Isa isa);
 
-  /// Sets the colours of number numbers[i] for every fragment i: shaded at the middle of what it covers of its pixel.
-  /// Two by two pixels share one where the same primitive covers the same samples, as many layers deep.
+  /// Sets the colour numbers[i] of every fragment i, shaded at the mean of its samples. At each_2x2, 2 x 2 pixels share
+  /// a colour where the same primitive covers the same samples at the same depth rank.
   void shade(const abuffer_detail::Rectangle& pixels, const abuffer_detail::PixelLists& lists,
              std::span<const std::uint32_t> numbers, abuffer_detail::FragmentColors& colors) const;
 
@@ -39,23 +39,22 @@ class LayerShader {
   mutable Pool<FragmentShader> shaders_;
 };
 
-/// Shades every such fragment once and lays them over each other. `paint_otherwise` says of a tile whether it has
-/// painted it, so that no layers of it are needed.
+/// Shades every visible fragment once and composites them. `paint_otherwise` returns whether it has painted a tile,
+/// which then needs no layers.
 void shade_layers(const TriangleSource& source, const abuffer_detail::FragmentPass& pass,
                   const abuffer_detail::FragmentPass::LeaveOut& paint_otherwise, const Painting& painting,
                   const Execution& execution);
 
-// Layers as data: every fragment with its colour, in the order of depth.
+// Layers as data: every fragment with its colour, in depth order.
 
-/// The parts of a pixel that its fragments show, nearest first: how much of the whole each contributes when they are
-/// laid over each other in true order at every sub-sample. `alphas` are the fragments' own; `key_at(i, s)` is the key
-/// of fragment i at sub-sample s. O(n * sub-samples) for n fragments that keep their order, O(n log n * sub-samples)
-/// for others.
+/// The visible share of a pixel for each of its fragments, which come nearest first: its contribution when fragments
+/// are composited in exact order at every sub-sample. `alphas` are the fragments' own; `key_at(i, s)` is the key of
+/// fragment i at sub-sample s. O(n * sub-samples) for n fragments that keep their order, else O(n log n * sub-samples).
 using KeyAt = std::function<float(std::size_t fragment, std::size_t sample)>;
 [[nodiscard]] std::vector<float> shown_parts(std::span<const Fragment> fragments, std::span<const float> alphas,
                                              std::size_t sample_count, const KeyAt& key_at);
 
-/// What shade_deep() gives, `opacity` being already in the pass.
+/// The result of shade_deep(); the pass already has the opacity.
 [[nodiscard]] DeepImage deep_layers(const Surfaces& surfaces, const View& view,
                                     const abuffer_detail::FragmentPass& pass, const LayerShader& shader,
                                     const Execution& execution);

@@ -54,7 +54,7 @@ Scene opaque_part(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) part.meshes.push_back(opaque_part(scene, mesh));
   part.instances = scene.instances;
   part.materials = scene.materials;
-  part.textures.resize(scene.textures.size());  // their numbers must exist; most pixels stay where they are
+  part.textures.resize(scene.textures.size());  // the numbers must exist; most pixels are not copied
   for (const Material& m : scene.materials) {
     const std::uint32_t texture = m.base_color_texture.texture;
     if (m.alpha == Material::Alpha::mask && m.base_color_texture.is_set())

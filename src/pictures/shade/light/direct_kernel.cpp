@@ -14,10 +14,10 @@ namespace frontmost::shading {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// What does not depend on the colour channel, for one fragment.
+/// The terms of one fragment that do not depend on the colour channel.
 struct DirectTerms {
-  float diffuse;   ///< N.L and shadow
-  float specular;  ///< the same times the GGX lobe without Fresnel
+  float diffuse;   ///< N.L times shadow
+  float specular;  ///< N.L times shadow and the GGX lobe, without Fresnel
   float fresnel;   ///< (1 - V.H)^5
 };
 
@@ -25,7 +25,7 @@ struct LobeInput {
   float n_l, n_v, n_h, roughness;
 };
 
-/// GGX distribution times Smith's height-correlated masking, without the factor 1 / pi that the light's unit holds.
+/// GGX distribution times Smith's height-correlated masking. The factor 1 / pi is part of the light's unit.
 inline float ggx(const LobeInput& in) {
   const float alpha = in.roughness * in.roughness, alpha2 = alpha * alpha;
   const float t = in.n_h * in.n_h * (alpha2 - 1.0f) + 1.0f;
@@ -48,15 +48,15 @@ inline DirectTerms direct_terms(const Direction& l, const FragmentBatch& batch, 
   return t;
 }
 
-/// Schlick's approximation.
+/// The mirrored share by Schlick's approximation.
 inline float mirrored(const Reflection& m, const DirectTerms& t) { return m.f0 + (m.f90 - m.f0) * t.fresnel; }
 
-/// `below`: how much reaches the matt part.
+/// `below`: the share of the light that reaches the diffuse part.
 inline float sent_back(const DirectTerms& t, float matt, float mirrored, float below) {
   return t.diffuse * matt * below + t.specular * mirrored;
 }
 
-/// `direction_at(i)` is the way to the light from fragment i.
+/// `direction_at(i)` is the direction from fragment i to the light.
 template <class Surface, class DirectionAt>
 void AddToSurface(const glm::vec3& color, const DirectionAt& direction_at, FragmentBatch& batch) {
   const float red = color.x, green = color.y, blue = color.z;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all passes of light compute alike. Plain loops over lanes with nothing but + - * / and square roots, compiled
-// once for each instruction set: the compiler takes several fragments at a time, and every machine gives the same bits.
+// Terms that all passes of light share. Plain loops over lanes with only + - * / and square roots are compiled once for
+// each instruction set: the compiler vectorizes them, and every machine gives the same bits.
 
-// Included once for every target.
+// This file is included once for every target.
 #if defined(FRONTMOST_SHADE_LIGHT_FRAGMENT_TERMS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FRONTMOST_SHADE_LIGHT_FRAGMENT_TERMS_INL_H_
 #undef FRONTMOST_SHADE_LIGHT_FRAGMENT_TERMS_INL_H_
@@ -31,26 +31,26 @@ inline float mix(float a, float b, float t) { return a + (b - a) * t; }
 inline Direction direction_of(const Lane3& lanes, int i) { return {lanes.x[i], lanes.y[i], lanes.z[i]}; }
 inline Direction direction_of(const glm::vec3& v) { return {v.x, v.y, v.z}; }
 
-/// (1 - c)^5, of Schlick's approximation.
+/// (1 - c)^5, for Schlick's approximation.
 inline float fifth_power_below_one(float c) {
   const float x = clamp01(1.0f - c), x2 = x * x;
   return x2 * x2 * x;
 }
 
-/// Roughness 0 would put the highlight between two pixels.
+/// The least roughness is 0.09, because the highlight of a smoother surface could fall between two pixels.
 inline float shown_roughness(float roughness) { return at_most(at_least(roughness, 0.09f), 1.0f); }
-/// A bumpy normal may lean away from the viewer.
+/// At least a little above 0: a bumpy normal may lean away from the viewer.
 inline float towards_viewer(const Direction& normal, const Direction& to_viewer) {
   return at_least(dot(normal, to_viewer), 1e-3f);
 }
 
-/// One colour channel of what a material sends back.
+/// The reflection of a material in one colour channel.
 struct Reflection {
-  float matt;        ///< in all directions
-  float f0;          ///< mirrored, seen from straight ahead
-  float f90 = 1.0f;  ///< at a grazing angle
+  float matt;        ///< diffuse share
+  float f0;          ///< mirrored share at normal incidence
+  float f90 = 1.0f;  ///< mirrored share at grazing incidence
 };
-/// All of them.
+/// The reflection in all colour channels.
 struct Reflections {
   Reflection red, green, blue;
 };
@@ -59,7 +59,7 @@ inline Reflection reflection_of(float base, float metallic) {
   return {base * (1.0f - metallic), mix(dielectric, base, metallic)};
 }
 
-/// Fragments of a batch whose materials all mirror as most do.
+/// Surfaces of batches in which all materials mirror like ordinary ones.
 struct PlainSurface {
   static inline Reflections at(const FragmentBatch& batch, int i) {
     const Reflectance& m = batch.material;
@@ -67,11 +67,11 @@ struct PlainSurface {
     return {reflection_of(m.base.x[i], metallic), reflection_of(m.base.y[i], metallic),
             reflection_of(m.base.z[i], metallic)};
   }
-  /// How much reaches the matt part of a channel: what the channel itself does not mirror, or the least of all.
+  /// The share of light that reaches the diffuse part of a channel: `own`, the share that the channel does not mirror.
   static inline float below(const FragmentBatch& /*batch*/, int /*i*/, float own, float /*least*/) { return own; }
 };
 
-/// Those of batches where some mirror otherwise, or let light through: LayerLanes::has_dielectric.
+/// Surfaces of batches with LayerLanes::has_dielectric: some mirror differently, or transmit light.
 struct LayeredSurface {
   static inline Reflections at(const FragmentBatch& batch, int i) {
     const Reflectance& m = batch.material;
@@ -82,7 +82,7 @@ struct LayeredSurface {
             {m.base.y[i] * (1.0f - metallic) * stays, mix(layers.f0.y[i], m.base.y[i], metallic), f90},
             {m.base.z[i] * (1.0f - metallic) * stays, mix(layers.f0.z[i], m.base.z[i], metallic), f90}};
   }
-  /// Coloured mirroring does not give the matt part the other colour.
+  /// For such fragments the least share of all channels, so that coloured mirroring does not tint the diffuse part.
   static inline float below(const FragmentBatch& batch, int i, float own, float least) {
     return batch.layers.is_dielectric[i] > 0.5f ? least : own;
   }

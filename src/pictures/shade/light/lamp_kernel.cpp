@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What arrives of a lamp at each fragment: a distance, the window of its range, and its cone.
+// The light of a lamp at each fragment, by its distance, range window and cone.
 
 #include "shade/light/lamps.h"
 
@@ -21,7 +21,7 @@ void FindLampLight(const Lamp& lamp, const FragmentBatch& batch, LampLight& out)
   const float scale = lamp.cone_scale, offset = lamp.cone_scale > 0 ? -lamp.cosine_outer * scale : 1.0f;
   for (int i = 0; i < batch.coverage.count; ++i) {
     const Direction to{at.x - position.x[i], at.y - position.y[i], at.z - position.z[i]};
-    // A point at the lamp itself has no direction to it, and infinite light: a ten-thousandth of a unit is near enough.
+    // A point at the lamp would get infinite light from no direction, so the least distance is 1e-4 units.
     const float distance2 = at_least(dot(to, to), 1e-8f), per_distance = 1.0f / std::sqrt(distance2);
     const Direction l{to.x * per_distance, to.y * per_distance, to.z * per_distance};
     const float in_range = distance2 * per_range2;

@@ -10,9 +10,9 @@ namespace {
 
 constexpr std::size_t kMostLights = 4096;
 
-/// What a white matt surface that faces the light sends back, of suns or at a distance of one.
+/// The radiance of a white diffuse surface that faces the light; for lamps, at distance 1.
 glm::vec3 color_of(const Light& light) {
-  // Beyond, products with what smooth surfaces mirror would leave the range of floats.
+  // Brighter lights would overflow floats in products with the mirrored share of smooth surfaces.
   constexpr double brightest = 1e12;
   glm::vec3 color;
   for (int k = 0; k < 3; ++k)
@@ -25,10 +25,10 @@ Lamp lamp_of(const Light& light, const glm::dvec3& eye) {
   lamp.position = glm::vec3(glm::dvec3(light.world_from_light[3]) - eye);
   lamp.axis = -glm::vec3(light.world_from_light[2]);
   lamp.color = color_of(light);
-  // Squares of it stay numbers, and above 0.
+  // Keeps squares of the range finite and above 0.
   if (light.range) lamp.range = float(std::clamp(*light.range, 1e-18, 1e18));
   if (light.kind != Light::Kind::spot) return lamp;
-  // The extension's reference code keeps cones without a soft edge from dividing by zero in the same way.
+  // Avoids a division by zero for cones without a soft edge, in the same way as the extension's reference code.
   const double inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
   lamp.cosine_outer = float(outer);
   lamp.cone_scale = float(1 / std::max(0.001, inner - outer));
@@ -47,11 +47,11 @@ BatchBounds bounds_of(const FragmentBatch& batch) {
 }
 
 bool may_reach(const Lamp& lamp, const BatchBounds& bounds) {
-  constexpr float spare = 1.0001f;  // of all that is rounded here
+  constexpr float spare = 1.0001f;  // margin for rounding
   const glm::vec3 nearest = glm::clamp(lamp.position, bounds.low, bounds.high) - lamp.position;
   if (lamp.range > 0 && glm::dot(nearest, nearest) > lamp.range * lamp.range * spare) return false;
   if (lamp.cone_scale == 0) return true;
-  // A sphere around the box, against a cone of at most a half-space: how far its centre is beyond the cone's side.
+  // Tests a sphere around the box against a cone of at most a half-space, by the distance of its centre from the cone.
   const glm::vec3 centre = 0.5f * (bounds.low + bounds.high) - lamp.position;
   const float radius = 0.5f * glm::length(bounds.high - bounds.low), size = glm::length(centre);
   const float along = glm::dot(centre, lamp.axis);

@@ -23,18 +23,18 @@ float cosine_of_view(const Geometry& g, int i) { return std::max(glm::dot(g.norm
 
 float greatest(const glm::vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 
-/// What fibres leave of the light below them.
+/// The share of light that fibres leave for the surface below.
 float below_sheen(const FragmentBatch& batch, int i) {
   const float roughness = shown_sheen_roughness(batch.layers.sheen_roughness[i]);
   return 1 - greatest(batch.layers.sheen.at(i)) * sheen_albedo().at(cosine_of_view(batch.geometry, i), roughness);
 }
 
-/// What a varnish leaves of it.
+/// The share of light that a varnish leaves for the surface below.
 float below_coat(const FragmentBatch& batch, int i) {
   return 1 - batch.layers.coat[i] * mirrored(0.04f, 1, cosine_of_view(batch.coat->geometry, i));
 }
 
-/// What is not mirrored, neither by the surface nor by what lies over it.
+/// The share of light that neither the surface nor a layer over it mirrors.
 float passes_surface(const FragmentBatch& batch, int i) {
   const LayerLanes& layers = batch.layers;
   const float cosine = cosine_of_view(batch.geometry, i);
@@ -64,7 +64,7 @@ void lay_layers_over(FragmentBatch& batch) {
 }
 
 void let_through(FragmentBatch& batch, Mirroring mirroring) {
-  // So little is hidden at least where something is mirrored: straight light stays a number, and nobody sees it.
+  // Least opacity where light is mirrored: dividing by it stays finite, and it is invisible.
   constexpr float least = 0x1p-20f;
   const LayerLanes& layers = batch.layers;
   for (int i = 0; i < batch.coverage.count; ++i) {

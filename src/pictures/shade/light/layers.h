@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light on the layers of materials: a varnish and the fibres of a cloth send back light by themselves, and keep some
-// from what lies below; glass lets it through. Only for batches that have such layers.
+// Light on material layers. Varnish and fibres of cloth reflect light themselves and keep some of it from the surface
+// below; glass transmits light. These functions are only for batches with such layers.
 //
-//   begin_layers      nothing yet
-//   add_...           to batch.coat->light and batch.layers.sheen_light, as to batch.light, once for every light
-//   lay_layers_over   all of it together in batch.light
-//   let_through       how much of what is behind shows through, when light is what the picture holds
+//   begin_layers      sets the layers' light to 0
+//   add_...           adds to batch.coat->light and batch.layers.sheen_light, for every light, as for batch.light
+//   lay_layers_over   combines all in batch.light
+//   let_through       computes opacity, once light holds the final colour
 #pragma once
 
 #include "shade/light/lighting.h"
@@ -13,19 +13,20 @@
 namespace frontmost::shading {
 
 void begin_layers(FragmentBatch& batch);
-/// The sheen of what add_direct_light() and add_light_from() add. Precondition: layers.has_sheen.
+/// Add the sheen for the light of add_direct_light() and add_light_from(). Precondition: layers.has_sheen.
 void add_direct_sheen(const DirectLight& light, FragmentBatch& batch, Isa isa);
 void add_sheen_from(const Lane3& to_light, const glm::vec3& color, FragmentBatch& batch, Isa isa);
-/// Fresnel's terms for what is kept from below are those of the view: the same for light from all directions.
+/// Combines the layers. The light kept from below uses Fresnel terms of the view direction, for light from all
+/// directions.
 void lay_layers_over(FragmentBatch& batch);
 
-/// Whether what glass mirrors is taken off what it lets through: in lit pictures.
+/// Whether the light that glass mirrors is subtracted from the light that it transmits; by_view is for lit pictures.
 enum class Mirroring : std::uint8_t { none, by_view };
-/// Where light passes, sets batch.alphas and the material's alpha to how much is hidden, and makes the light straight
-/// by that: what glass mirrors is as bright as it is, however little the glass hides. Precondition:
+/// Sets batch.alphas and the material's alpha of see-through fragments to their opacity, and divides their light by it.
+/// So reflections on glass keep their brightness, however little the glass hides. Precondition:
 /// layers.has_transmission.
 void let_through(FragmentBatch& batch, Mirroring mirroring);
-/// For blends that know no light above white: what glass mirrors beyond it hides what is behind instead.
+/// For blending that clips light at white: reflections brighter than that hide what is behind instead.
 /// Precondition: let_through() was called.
 void hide_by_highlights(FragmentBatch& batch);
 

@@ -8,27 +8,27 @@
 namespace frontmost::shading {
 namespace {
 
-/// The direction that is ahead in an environment, and across `up`.
+/// The forward direction of an environment, perpendicular to `up`.
 glm::dvec3 ahead_of(const View& view, const glm::dvec3& up, bool turns_with_camera) {
   const auto levelled = [&](const glm::dvec3& v) { return v - up * glm::dot(v, up); };
-  // Where NamedView::front looks.
+  // The direction in which NamedView::front looks.
   const glm::dvec3 front = std::abs(up.z) > 0.5 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, -1);
   if (!turns_with_camera) return front;
-  // Straight up or down, what is on top of the picture is ahead, or behind.
+  // Where the view is straight up or down, the picture's top is ahead, or behind.
   const glm::dvec3 forward = levelled(view.forward());
   constexpr double least = 1e-3;
   if (glm::dot(forward, forward) > least) return unit(forward);
   return unit(levelled(glm::dot(view.forward(), up) < 0 ? view.up() : -view.up()));
 }
 
-/// x right, y up, z behind.
+/// The axes of an environment: x right, y up, z backwards.
 glm::dmat3 world_from_environment(const View& view, const glm::dvec3& up, const LightOptions& options, bool turns) {
   const glm::dvec3 ahead = ahead_of(view, up, turns), right = glm::cross(ahead, up);
   const double c = std::cos(options.environment_angle), s = std::sin(options.environment_angle);
   return {right * c + ahead * s, up, right * s - ahead * c};
 }
 
-/// The moments' polynomial in world axes.
+/// The moments' polynomial, rotated to world axes.
 IrradiancePolynomial polynomial_of(const IrradianceMoments& moments, const glm::dmat3& world_from_environment) {
   IrradiancePolynomial p;
   for (int k = 0; k < 3; ++k) {

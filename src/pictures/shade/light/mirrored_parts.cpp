@@ -7,7 +7,7 @@
 namespace frontmost::shading {
 namespace {
 
-/// As parts of 65535, summed over 4000 x 256 normals of the lobe each; lighting tests sum some of them again.
+/// In units of 1 / 65535, each summed over 4000 x 256 normals of the lobe; lighting tests sum some of them again.
 constexpr std::uint16_t kParts[2 * MirroredParts::size * MirroredParts::size] = {
     65535, 65502, 65535, 65195, 65535, 64182, 65535, 62523, 65535, 60258, 65535, 57443, 65535, 54146, 65535, 50446,
     65535, 46432, 65535, 42196, 65535, 37833, 65535, 33439, 65535, 29105, 65535, 24916, 65535, 20949, 65535, 17268,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surface mirrors of light that is 1 everywhere, by the angle of the viewer and the roughness: the second half
-// of the split sum. (B. Karis. Real Shading in Unreal Engine 4. SIGGRAPH 2013 course.)
+// The share of light that a surface mirrors if it is 1 everywhere, by view angle and roughness: the second factor of
+// the split sum. (B. Karis. Real Shading in Unreal Engine 4. SIGGRAPH 2013 course.)
 #pragma once
 
 #include <array>
@@ -8,12 +8,12 @@
 
 namespace frontmost::shading {
 
-/// Of the GGX lobe with Smith's correlated masking, rows by roughness and columns by the square root of N.V, both from
-/// 0 to 1. Bilinear it is right to 0.001, at N.V below 0.02 and roughness below 0.1 to 0.011.
+/// For the GGX lobe with Smith's correlated masking. Rows are by roughness and columns by the square root of N.V, both
+/// from 0 to 1. Bilinear look-ups are correct to 0.001; at N.V below 0.02 and roughness below 0.1, to 0.011.
 struct MirroredParts {
-  static constexpr int size = 32, channels = 4;  ///< as many as colours have, so that both are read alike
-  /// In turn: the part that a surface mirrors which mirrors everything, what of it Schlick's (1 - V.H)^5 takes, and
-  /// twice nothing.
+  static constexpr int size = 32, channels = 4;  ///< four, like colours, so that both are read alike
+  /// Channels: the share mirrored by a surface that mirrors everything, the part of it with Schlick's (1 - V.H)^5, and
+  /// two unused zeros.
   std::array<float, std::size_t(channels* size* size)> values;
 };
 

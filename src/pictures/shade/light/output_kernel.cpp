@@ -26,7 +26,7 @@ struct Uncompressed {
   inline Channels operator()(const Channels& c) const { return c; }
 };
 
-/// Khronos PBR Neutral Tone Mapper, 2024: what a dielectric mirrors of a grey surrounding, 0.04, is taken off; above
+/// Khronos PBR Neutral Tone Mapper, 2024. A dielectric's reflection of grey surroundings, 0.04, is subtracted. Above
 /// 0.8 - 0.04 the greatest channel approaches 1, and the others approach it.
 struct KhronosNeutral {
   inline Channels operator()(const Channels& c) const {
@@ -45,15 +45,15 @@ struct KhronosNeutral {
   }
 };
 
-/// S. Hill's fit of the ACES reference rendering transform with that of an sRGB screen (the BakingLab sample of
-/// M. Pettineo and D. Neubelt, 2016), with the exposure of 1 / 0.6 that viewers take with it.
+/// S. Hill's fit of the ACES reference rendering transform and output transform for sRGB screens (the BakingLab sample
+/// of M. Pettineo and D. Neubelt, 2016), with the usual exposure of 1 / 0.6.
 struct Filmic {
   static inline float curve(float v) {
     return (v * (v + 0.0245786f) - 0.000090537f) / (v * (0.983729f * v + 0.4329510f) + 0.238081f);
   }
   inline Channels operator()(const Channels& in) const {
     constexpr float exposure = 1.0f / 0.6f;
-    // Above this the curve is level, and its squares stay numbers.
+    // Above this value the curve is level; the limit keeps squares finite.
     const Channels c{at_most(in.r * exposure, 1e15f), at_most(in.g * exposure, 1e15f), at_most(in.b * exposure, 1e15f)};
     const float r = curve(0.59719f * c.r + 0.35458f * c.g + 0.04823f * c.b);
     const float g = curve(0.07600f * c.r + 0.90834f * c.g + 0.01566f * c.b);
@@ -63,7 +63,7 @@ struct Filmic {
   }
 };
 
-/// Any number to what the curves can take.
+/// Maps any number to the domain of the curves.
 inline float exposed(float light, float exposure) { return at_most(at_least(light * exposure, 0.0f), 1e30f); }
 
 template <class Map>

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shine of fibres that stand out of a cloth, as KHR_materials_sheen defines it: they mirror where the half vector
-// lies across them, and so shine at the rim.
+// The sheen of fibres that stand out of a cloth, by KHR_materials_sheen: they mirror light if the half vector is
+// perpendicular to them, and so shine at the rim.
 //
 //   distribution   (2 + 1/a) / 2 * sin(N.H)^(1/a), a = roughness squared    A. Estevez, C. Kulla. Production Friendly
-//                  (the factor 1 / pi is the light's)                        Microfacet Sheen BRDF. SIGGRAPH 2017
+//                  (the factor 1 / pi is the light's)                       Microfacet Sheen BRDF. SIGGRAPH 2017.
 //   visibility     1 / (4 (N.L + N.V - N.L N.V))                            M. Ashikhmin, S. Premoze.
-//   Distribution-based
-//                                                                           BRDFs. 2007
+//                                                                           Distribution-based BRDFs. 2007.
 #pragma once
 
 #include <array>
@@ -15,9 +14,9 @@
 
 namespace frontmost::shading {
 
-/// Fibres that all stand one way would shine at a single angle.
+/// The least roughness: fibres that all stand in one direction would shine at a single angle.
 inline constexpr float least_sheen_roughness = 0.1f;
-/// `least_sheen_roughness` for NaN.
+/// Clamped to [least_sheen_roughness, 1]; `least_sheen_roughness` for NaN.
 [[nodiscard]] inline float shown_sheen_roughness(float roughness) {
   const float bounded = roughness < 1.0f ? roughness : 1.0f;
   return bounded > least_sheen_roughness ? bounded : least_sheen_roughness;
@@ -26,7 +25,7 @@ inline constexpr float least_sheen_roughness = 0.1f;
 struct SheenAngles {
   float n_l, n_v, n_h;  ///< N.V above 0, the others 0 or more
 };
-/// What white fibres send back of light that comes from one direction, before N.L.
+/// The light that white fibres scatter from one direction, before the factor N.L.
 [[nodiscard]] inline float sheen_of(const SheenAngles& in, float shown_roughness) {
   const float sharpness = 1.0f / (shown_roughness * shown_roughness);
   const float sine2 = 1.0f - in.n_h * in.n_h;
@@ -34,13 +33,13 @@ struct SheenAngles {
   return (2.0f + sharpness) * lobe / (8.0f * (in.n_l + in.n_v - in.n_l * in.n_v));
 }
 
-/// What white fibres send back of light that is 1 everywhere, and keep from what lies below them.
+/// The share of light that white fibres scatter if it is 1 everywhere, and so keep from the surface below.
 struct SheenAlbedo {
   static constexpr int size = 24;
   /// Rows by roughness, from the least one to 1, and columns by the square root of N.V.
   std::array<float, std::size_t(size* size)> values;
 
-  /// Bilinear, right to 0.015, where the roughness is above 0.2 to 0.006.
+  /// Bilinear; correct to 0.015, and to 0.006 where the roughness is above 0.2.
   [[nodiscard]] float at(float n_v, float shown_roughness) const;
 };
 [[nodiscard]] const SheenAlbedo& sheen_albedo();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table is summed up when the first cloth is shaded, in a few milliseconds, over directions of light in equal steps
-// of N.L and of the angle around the normal. Sines and cosines of that angle come from turning a vector by a known
-// step: so every machine has the same table.
+// The table is computed when the first cloth is shaded, in a few milliseconds, over light directions in equal steps of
+// N.L and of the angle around the normal. Sines and cosines of that angle come from rotating a vector by a constant
+// step, so every machine has the same table.
 #include <algorithm>
 #include <cmath>
 
@@ -10,12 +10,12 @@
 namespace frontmost::shading {
 namespace {
 
-/// Steps over half a turn, and as many of N.L.
+/// Steps over half a turn, and steps of N.L.
 constexpr int kSteps = 24;
 constexpr double kCosine = 0.99144486137381038, kSine = 0.13052619222005157;             // of pi / 24
 constexpr double kFirstCosine = 0.99785892323860348, kFirstSine = 0.065403129230143062;  // of pi / 48
 
-/// The light of one ring of directions: as many as there are steps around the normal.
+/// The light of one ring of directions, one for each step around the normal.
 double ring_sum(float n_l, float n_v, float roughness) {
   const double in_plane_l = std::sqrt(1 - double(n_l) * double(n_l)),
                in_plane_v = std::sqrt(1 - double(n_v) * double(n_v));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sheen of one light, beside what the cloth below sends back of it. Plain loops over lanes, as
-// the other passes of light.
+// Adds the sheen of one light. The cloth below reflects light separately. Plain loops over lanes, like the other
+// passes.
 
 #include "shade/light/sheen.h"
 
@@ -18,7 +18,7 @@ namespace HWY_NAMESPACE {
 
 namespace {
 
-/// `direction_at(i)` is the way to the light from fragment i.
+/// `direction_at(i)` is the direction from fragment i to the light.
 template <class DirectionAt>
 void AddSheen(const glm::vec3& color, const DirectionAt& direction_at, FragmentBatch& batch) {
   LayerLanes& layers = batch.layers;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surface mirrors is read from two maps of the environment, those of the roughnesses next to its own, and from
-// one where the roughness is a map's own. Maps are read fragment by fragment, all else is plain loops over lanes.
+// Mirrored light comes from two maps of the environment, for the roughnesses next to the surface's own, or from one if
+// a map has exactly that roughness. Maps are read fragment by fragment; all else is plain loops over lanes.
 
 #include "shade/light/lighting.h"
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kLastLevel = PrefilteredEnvironment::level_count - 1;
 
-/// Squares of texels, by fragment.
+/// Texel squares by fragment.
 struct TexelSquares {
   std::int32_t first[batch_capacity];
   float x[batch_capacity], y[batch_capacity];
@@ -33,15 +33,15 @@ struct TexelSquares {
   [[nodiscard]] HWY_INLINE TexelSquare at(int i) const { return {first[i], x[i], y[i]}; }
 };
 
-/// Where to look for the light that fragments mirror, and for how much of it they do.
+/// Addresses of the light that fragments mirror, and of the share that they mirror.
 struct MirroredPlaces {
   TexelSquares smoother, rougher;      ///< in the maps of the two roughnesses
   std::int32_t level[batch_capacity];  ///< of the smoother map
-  float blend[batch_capacity];         ///< how much of the rougher one
+  float blend[batch_capacity];         ///< weight of the rougher map
   TexelSquares parts;                  ///< in MirroredParts
 };
 
-/// The square of MirroredParts' entries around a place in it.
+/// The square of MirroredParts' entries around a place.
 HWY_INLINE TexelSquare parts_square(float column, float row) {
   constexpr std::int32_t last = MirroredParts::size - 2;
   const auto x = std::int32_t(column), y = std::int32_t(row);
@@ -49,7 +49,7 @@ HWY_INLINE TexelSquare parts_square(float column, float row) {
   return {MirroredParts::channels * (top * MirroredParts::size + left), column - float(left), row - float(top)};
 }
 
-/// Where mirrored views lead to, and how rough the surface and how flat the view is, as places in what is looked up.
+/// For each fragment, the mirrored view direction as a place in the maps, the level, and the place in MirroredParts.
 struct MirroredViews {
   float u[batch_capacity], v[batch_capacity], level[batch_capacity];
   float column[batch_capacity], row[batch_capacity];  ///< of MirroredParts
@@ -73,7 +73,7 @@ void FindViews(const Surroundings& around, const FragmentBatch& batch, MirroredV
   }
 }
 
-/// A loop of its own: together with the one above it is too much for compilers to take several fragments at a time.
+/// A separate loop, because compilers do not vectorize it together with the one above.
 void FindPlaces(const PrefilteredEnvironment& environment, const MirroredViews& views, int count, MirroredPlaces& out) {
   std::int32_t sizes[kLastLevel + 2];
   for (std::size_t k = 0; k <= kLastLevel; ++k) sizes[k] = environment.levels[k].size();
@@ -89,7 +89,7 @@ void FindPlaces(const PrefilteredEnvironment& environment, const MirroredViews& 
   }
 }
 
-/// What is found there, four channels a fragment.
+/// The values read, four channels per fragment.
 struct MirroredLight {
   alignas(64) float colors[4 * batch_capacity];
   alignas(64) float parts[4 * batch_capacity];
@@ -111,7 +111,7 @@ void ReadMaps(const PrefilteredEnvironment& environment, const MirroredPlaces& p
   }
 }
 
-/// The polynomial of a normal that says what a white matt surface sends back.
+/// The monomials of a normal in IrradiancePolynomial.
 struct Monomials {
   float x, y, z, xx, yy, zz, xy, yz, zx;
 };
@@ -125,14 +125,14 @@ inline float matt_light(const IrradiancePolynomial& p, const Monomials& m, int c
   return at_least(p.constant[channel] + linear + (squares + products), 0.0f);
 }
 
-/// What a fragment mirrors of light that is 1 everywhere, if it mirrors everything, and Schlick's part of it.
+/// The share mirrored of light that is 1 everywhere by a surface that mirrors everything, and Schlick's part of it.
 struct MirroredTerms {
   float part, grazing;
 };
 
-/// What one colour channel sends back of light that is 1 everywhere: mirrored once, and mirrored again between the
-/// facets of a rough surface, whose light is not lost. C. Fdez-Aguera. A Multiple-Scattering Microfacet Model for
-/// Real-Time Image-based Lighting. Journal of Computer Graphics Techniques 2019.
+/// For one colour channel, the reflected share of light that is 1 everywhere: mirrored once, and mirrored again between
+/// the facets of a rough surface. C. Fdez-Aguera. A Multiple-Scattering Microfacet Model for Real-Time Image-based
+/// Lighting. Journal of Computer Graphics Techniques 2019.
 struct MirroredShares {
   float once, again;
   [[nodiscard]] inline float left() const { return 1.0f - once - again; }
@@ -146,7 +146,7 @@ inline MirroredShares mirrored_shares(const MirroredTerms& t, const Reflection& 
 
 template <class Surface>
 void AddToSurface(const Surroundings& around, const MirroredLight& mirrored, FragmentBatch& batch) {
-  const IrradiancePolynomial irradiance = around.irradiance;  // a copy, which nothing written below can change
+  const IrradiancePolynomial irradiance = around.irradiance;  // a copy, which writes below cannot alias
   for (int i = 0; i < batch.coverage.count; ++i) {
     const float* const light = mirrored.colors + 4 * i;
     const MirroredTerms t{mirrored.parts[4 * i], mirrored.parts[4 * i + 1]};
@@ -178,7 +178,7 @@ void AddSurroundings(const Surroundings& around, FragmentBatch& batch) {
                               : AddToSurface<PlainSurface>(around, mirrored, batch);
 }
 
-/// What fibres send back of light from all around is taken for that of a matt surface, times their albedo.
+/// Approximates the light that fibres scatter from all around by that of a diffuse surface times their albedo.
 void AddSheenAround(const Surroundings& around, FragmentBatch& batch) {
   LayerLanes& layers = batch.layers;
   const SheenAlbedo& albedo = sheen_albedo();

@@ -14,7 +14,7 @@ void fill(Lane3& lanes, int count, float value) {
   for (Lane* lane : {&lanes.x, &lanes.y, &lanes.z}) fill(*lane, count, value);
 }
 
-/// Mirrored by the border of air and what has this index; an index of 0 stands for a mirror.
+/// The reflectance at normal incidence between air and this index of refraction; an index of 0 means a mirror.
 float straight_reflectance(float ior) {
   const float ratio = (ior - 1) / (ior + 1);
   return ratio * ratio;
@@ -22,7 +22,7 @@ float straight_reflectance(float ior) {
 
 glm::vec3 absorption_of(const Material::Volume& volume) {
   glm::vec3 absorption;
-  // What is black is lost at once, but by a number.
+  // Black absorbs everything at once, with a finite coefficient.
   constexpr float least = 1e-30f;
   for (int c = 0; c < 3; ++c)
     absorption[c] = log2_of(std::max(volume.attenuation_color[c], least)) / volume.attenuation_distance;
@@ -115,7 +115,7 @@ void LayerRun::fill_factors(int begin, int end) {
   });
 }
 
-/// Out of a closed volume light comes through its back sides; what it loses it has lost behind the front.
+/// Light leaves a closed volume through back sides; the absorption was already applied at the front.
 bool LayerRun::is_way_out(int i) const {
   return m_.volume.thickness > 0 && !m_.double_sided && input_.setups[batch_.coverage.triangle[i]].is_backside;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The layers of a material with their textures made ready, and what they say of each fragment: how it mirrors, what is
-// laid over it, and how much passes through. Materials without layers have none of this, and batches without such
-// materials pay nothing.
+// The layers of a material with prepared textures, and their data for each fragment: reflectance, layers on top, and
+// transmission. Materials without layers have no LayerRow, and batches without layered materials pay nothing.
 #pragma once
 
 #include <memory>
@@ -19,31 +18,31 @@ struct LayerRow {
   TextureSlot specular, specular_color, coat, coat_roughness, coat_normal, sheen_color, sheen_roughness, transmission,
       thickness;
   bool has_dielectric = false, has_coat = false, has_sheen = false, has_transmission = false;
-  /// Once they are made ready.
+  /// Valid once the textures are prepared.
   [[nodiscard]] bool has_textures() const {
     return specular.pyramid || specular_color.pyramid || coat.pyramid || coat_roughness.pyramid ||
            coat_normal.pyramid || sheen_color.pyramid || sheen_roughness.pyramid || transmission.pyramid ||
            thickness.pyramid;
   }
-  float straight = 0.04f;   ///< mirrored seen from straight ahead, by the index of refraction
-  glm::vec3 absorption{0};  ///< log2 of what is lost, by channel and by unit of the world's length
+  float straight = 0.04f;   ///< reflectance at normal incidence, by the index of refraction
+  glm::vec3 absorption{0};  ///< log2 of the absorption, by channel and world unit of length
 };
 
-/// Null: the material has none. Textures are not set yet. Precondition: limit_numbers() was called.
+/// Null if the material has no layers. Textures are not set yet. Precondition: limit_numbers() was called.
 [[nodiscard]] std::unique_ptr<LayerRow> layers_of(const Material& material);
 
-/// By how much an instance makes lengths longer; 0 for what is flattened.
+/// The factor by which an instance scales lengths; 0 if it is flattened.
 [[nodiscard]] float length_scale_of(const Instance& instance);
-/// That of each.
+/// length_scale_of() of every instance.
 [[nodiscard]] std::vector<float> length_scales_of(const Scene& scene);
 
-/// What all runs of fragments share.
+/// The data that all runs of fragments share.
 struct LayerInput {
   const std::vector<TriangleSetup>& setups;
   const std::vector<float>& length_scales;  ///< by instance
 };
 
-/// One run of fragments with the same material, which has layers.
+/// A run of fragments with the same layered material.
 class LayerRun {
  public:
   LayerRun(const Material& factors, const LayerRow& row, const LayerInput& input, FragmentBatch& batch)
@@ -53,16 +52,16 @@ class LayerRun {
         batch_(batch),
         coat_normal_(row.coat_normal, factors.clearcoat.normal_scale) {}
 
-  /// Before textures, and before normals are turned.
+  /// Called before textures are looked up and normals turned.
   void fill_factors(int begin, int end);
   /// `sample(slot, use)` calls use(i, value) for the fragments of a part of the run.
   template <class Sample>
   void look_up(const Sample& sample);
-  /// When everything else of the material is known.
+  /// Called when all other material data is known.
   void settle(int begin, int end);
 
  private:
-  /// Makes room for the layers that the material has; fragments that came before have none of them.
+  /// Makes room for the material's layers; earlier fragments of the batch have none.
   void begin_layers();
   [[nodiscard]] glm::vec3 filter_at(int i) const;
   [[nodiscard]] bool is_way_out(int i) const;

@@ -9,16 +9,16 @@
 namespace frontmost::shading {
 namespace {
 
-/// What looks textures up for one run after another.
+/// Looks up textures for one run after another.
 struct TextureReader {
   TextureSampler sampler;
   Isa isa;
-  TexcoordLanes further[max_texcoord_sets - 1];  ///< sets 1 and up, as far as the run at hand asks for them
+  TexcoordLanes further[max_texcoord_sets - 1];  ///< sets 1 and up, if the current run needs them
 
   explicit TextureReader(Isa for_isa) : sampler(for_isa), isa(for_isa) {}
 };
 
-/// One run of fragments with the same material.
+/// A run of fragments with the same material.
 class MaterialRun {
  public:
   MaterialRun(const MaterialRow& row, const LayerInput& input, FragmentBatch& batch, TextureReader& textures)
@@ -57,7 +57,7 @@ class MaterialRun {
     }
   }
 
-  /// Fragments of triangles without texture coordinates look at the origin, as if all their coordinates were 0.
+  /// Triangles without texture coordinates look at the origin, as if all coordinates were 0.
   void look_up(int begin, int end, MaterialPart part) {
     Reflectance& out = batch_.material;
     glm::vec4 values[sampled_at_once];
@@ -100,13 +100,13 @@ class MaterialRun {
     return set == 0 ? batch_.geometry.texcoord : textures_.further[set - 1];
   }
 
-  /// What can be seen without blending is there.
+  /// Sets alpha by the material's alpha mode; fragments without blending are opaque.
   void settle_alpha(int begin, int end) {
     for (int i = begin; i < end; ++i) {
       float& alpha = batch_.material.alpha[i];
       switch (row_.factors.alpha) {
         case Material::Alpha::opaque: alpha = 1.0f; break;
-        case Material::Alpha::mask: alpha = 1.0f; break;  // holes are not seen in the first place
+        case Material::Alpha::mask: alpha = 1.0f; break;  // fragments in holes do not exist
         case Material::Alpha::blend: alpha = alpha > 0 ? std::min(alpha, 1.0f) : 0.0f; break;  // 0 for NaN
       }
     }
@@ -117,7 +117,7 @@ class MaterialRun {
   FragmentBatch& batch_;
   TextureReader& textures_;
   NormalMap normals_;
-  std::optional<LayerRun> layers_;  ///< none: the material has none
+  std::optional<LayerRun> layers_;  ///< none if the material has no layers
 };
 
 bool uses_textures(const Material& m) {

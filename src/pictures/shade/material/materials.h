@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene's materials with their textures made ready, and what they say of each fragment.
+// A scene's materials with prepared textures, and their data for each fragment.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ struct MaterialRow {
   Material factors;
   TextureSlot base_color, metallic_roughness, normal, emissive, occlusion;
   std::unique_ptr<LayerRow> layers;  ///< null: none
-  std::uint32_t further_sets = 0;    ///< bit k: a texture is looked up by set k, which is not the first
+  std::uint32_t further_sets = 0;    ///< bit k: a texture uses set k of coordinates, for k > 0
 
   [[nodiscard]] bool has_textures() const {
     return base_color.pyramid || metallic_roughness.pyramid || normal.pyramid || emissive.pyramid ||
@@ -24,27 +24,27 @@ struct MaterialRow {
   }
 };
 
-/// What triangles without a material are made of: a light neutral grey that shows its form on a white page.
+/// The material of triangles without one: a light neutral grey whose shape shows on a white page.
 [[nodiscard]] Material default_material();
 
 class MaterialTable {
  public:
-  /// Borrows `scene`. No textures are made ready yet.
+  /// Borrows `scene`. No textures are prepared yet.
   explicit MaterialTable(const Scene& scene);
 
-  /// Makes the mip levels of the textures of materials that `is_needed`, one entry per material, where they are not
-  /// there yet. What was there stays in its place. O(texels), in parallel.
+  /// Makes the missing mip levels of textures of materials that `is_needed`, which has one entry per material. Existing
+  /// levels keep their addresses. O(texels), in parallel.
   void make_ready(const std::vector<bool>& is_needed, const Execution& execution);
   /// Whether any material has a texture.
   [[nodiscard]] bool has_textures() const { return has_textures_; }
-  /// By how much each instance makes lengths longer.
+  /// The factor by which each instance scales lengths.
   [[nodiscard]] const std::vector<float>& length_scales() const { return length_scales_; }
-  /// Follows an instance to where it is now.
+  /// Updates an instance that has moved.
   void follow(std::uint32_t instance) { length_scales_[instance] = length_scale_of(scene_.instances[instance]); }
-  /// Nothing is left that make_ready() could make.
+  /// Whether make_ready() has nothing left to do.
   [[nodiscard]] bool is_ready() const { return unready_ == 0; }
 
-  /// Without a material the default one, which is white where the mesh brings colours: its grey would dim them.
+  /// The triangle's material, or a default one, which is white for meshes with colours: grey would dim these.
   [[nodiscard]] const MaterialRow& row_of(const TriangleSetup& triangle) const {
     if (triangle.material < rows_.size()) return rows_[triangle.material];
     return triangle.has_color ? white_ : default_;
@@ -61,18 +61,18 @@ class MaterialTable {
   std::size_t unready_ = 0;        ///< materials with textures that are not ready
   bool has_textures_ = false;
   MaterialRow default_, white_;
-  std::vector<std::unique_ptr<Pyramid>> srgb_, linear_;  ///< by texture; null where not used so
+  std::vector<std::unique_ptr<Pyramid>> srgb_, linear_;  ///< by texture; null if not used in this encoding
 };
 
-/// What of materials a picture shows.
+/// The part of a material that a picture shows.
 enum class MaterialPart : std::uint8_t {
   all,
   color,   ///< base colour and alpha
   normal,  ///< the normal, and alpha
 };
 
-/// Looks up the materials of a batch, run by run of equal ones, with their layers, and turns its normals by normal
-/// maps; what the picture does not show is undefined. `setups` are the triangles that batch.coverage.triangle numbers.
+/// Looks up the materials of a batch, run by run, with their layers, and turns normals by normal maps. Values that the
+/// picture does not show are undefined. `setups` are the triangles that batch.coverage.triangle indexes.
 void look_up_materials(const MaterialTable& table, MaterialPart part, const std::vector<TriangleSetup>& setups,
                        FragmentBatch& batch, Isa isa);
 

@@ -39,7 +39,7 @@ void NormalMap::turn(const NumberedTriangle& triangle, const glm::vec4& texel, i
   const glm::vec3 n = normals.at(i);
   const glm::vec3 u = frame_.along_u - n * glm::dot(n, frame_.along_u);
   const glm::vec3 v = frame_.along_v - n * glm::dot(n, frame_.along_v);
-  // Green points up in the picture, against v. The back of a surface has its bumps the other way round.
+  // Green points up in the picture, against v. On the back of a surface, bumps are inverted.
   const float side = (t.is_backside ? -1.0f : 1.0f) * scale_;
   const glm::vec3 turned = normalized_or(u, u) * (map.x * side) - normalized_or(v, v) * (map.y * side) + n * map.z;
   normals.set(i, normalized_or(turned, n));

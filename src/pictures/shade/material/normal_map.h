@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Normals turned by what a texture says, in the directions in which its coordinates grow on the triangle.
+// Normals turned by a texture, along the directions in which its coordinates grow on the triangle.
 #pragma once
 
 #include "shade/batch.h"
@@ -20,12 +20,11 @@ class NormalMap {
   /// Borrows `slot`. `scale` multiplies the bumps.
   NormalMap(const TextureSlot& slot, float scale) : slot_(&slot), scale_(scale) {}
 
-  /// Turns normal `i`. `texel`: what the texture holds, 0 to 1. Triangles without its coordinates keep their normals.
+  /// Turns normal `i`. `texel` is the texture's value, 0 to 1. Triangles without coordinates keep their normals.
   void turn(const NumberedTriangle& triangle, const glm::vec4& texel, int i, Lane3& normals);
 
  private:
-  /// The directions on a triangle in which u and v grow, at unit length; zero where the coordinates do not span a
-  /// plane.
+  /// The unit directions on a triangle in which u and v grow; zero where the coordinates do not span a plane.
   struct TangentFrame {
     glm::vec3 along_u{0}, along_v{0};
   };

@@ -15,7 +15,7 @@ void check_ambient_occlusion(const ShadeOptions& options) {
 }
 
 double default_occlusion_radius(const Surfaces& surfaces) {
-  constexpr double part = 0.1;  // of the subject: corners of a room, and not the room as a whole
+  constexpr double part = 0.1;  // share of the subject's size: covers corners of a room, not the whole room
   const Box subject = find_subject(surfaces).bounds;
   return subject.is_empty() ? 1.0 : std::max(part * double(subject.diagonal()), 1e-30);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A vector of fragments at a time steps along the same slices of the depth map. Steps grow with the distance, for what
-// is near hides most; a rise counts the less the farther away it is, and nothing from the radius on.
+// A vector of fragments steps along the same slices of the depth map. Step sizes grow with the distance, because near
+// surfaces hide most. A rise counts less the farther away it is, and nothing from the radius on.
 
 #include "shade/occlusion/depth_occlusion.h"
 
@@ -20,12 +20,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace frontmost::HWY_NAMESPACE;
 namespace {
 
-/// Cosines and sines of the slices' angles, which are odd multiples of a sixteenth of half a turn.
+/// Cosines and sines of the slices' angles, which are odd multiples of pi / 16.
 constexpr float kOne = 0.98078528f, kThree = 0.83146961f, kFive = 0.55557023f, kSeven = 0.19509032f;
 constexpr float kSlices[][2] = {{kOne, kSeven},  {kThree, kFive},  {kFive, kThree},  {kSeven, kOne},
                                 {-kSeven, kOne}, {-kFive, kThree}, {-kThree, kFive}, {-kOne, kSeven}};
-constexpr int kSteps = 8;            ///< on each side
-constexpr float kMostOfSide = 0.5f;  ///< of the picture's longer side: no step goes farther
+constexpr int kSteps = 8;            ///< per side
+constexpr float kMostOfSide = 0.5f;  ///< of the picture's longer side: the greatest distance of a step
 
 struct EyeVector {
   VF x, y, z;
@@ -53,7 +53,7 @@ HWY_INLINE EyeVector AlongAxes(const OcclusionGrid& grid, const Lane3& lane, int
 HWY_INLINE VF Clamped(VF value) { return hn::Max(All(-1), hn::Min(value, All(1))); }
 HWY_INLINE VF Root(VF value) { return hn::Sqrt(hn::Max(value, All(0))); }
 
-/// To 7e-5. (M. Abramowitz, I. Stegun. Handbook of Mathematical Functions. 1964: 4.4.45.)
+/// The arc cosine, to 7e-5. (M. Abramowitz, I. Stegun. Handbook of Mathematical Functions. 1964: 4.4.45.)
 HWY_INLINE VF AngleOf(VF cosine) {
   const VF x = hn::Abs(cosine);
   VF sum = hn::Add(hn::Mul(x, All(-0.0187293f)), All(0.0742610f));
@@ -62,12 +62,12 @@ HWY_INLINE VF AngleOf(VF cosine) {
   return hn::IfThenElse(hn::Lt(cosine, All(0)), hn::Sub(All(3.14159265f), sum), sum);
 }
 
-/// What is looked from: fragments in the eye's axes.
+/// The fragments whose occlusion is computed, in the eye's axes.
 struct Points {
   EyeVector at, normal, to_viewer;
-  VF facing;            ///< the cosine between the last two
+  VF facing;            ///< the cosine between `normal` and `to_viewer`
   VF x, y;              ///< on the screen
-  VF reach_x, reach_y;  ///< of the radius on the screen, in pixels
+  VF reach_x, reach_y;  ///< the radius on the screen, in pixels
 };
 
 HWY_INLINE Points PointsOf(const OcclusionGrid& grid, const FragmentBatch& batch, int i) {
@@ -90,7 +90,8 @@ HWY_INLINE Points PointsOf(const OcclusionGrid& grid, const FragmentBatch& batch
   return p;
 }
 
-/// Raises a horizon, the cosine of its angle from the line of sight, by what is seen at a place on the screen.
+/// Raises a horizon by the surface at a place on the screen. A horizon is the cosine of its angle from the line of
+/// sight.
 HWY_INLINE VF Raised(const OcclusionGrid& grid, const Points& p, VF x, VF y, VF low, VF horizon) {
   const DF d;
   const DI di;
@@ -107,8 +108,8 @@ HWY_INLINE VF Raised(const OcclusionGrid& grid, const Points& p, VF x, VF y, VF 
   counts = hn::And(counts, hn::And(hn::Lt(squared, limit), hn::Gt(squared, All(0))));
   const VF length = hn::Sqrt(hn::IfThenElse(counts, squared, All(1)));
   const VF cosine = Clamped(hn::Div(Dot(to, p.to_viewer), length));
-  // Pixels do not lie in the slice to the last bit. So what counts is how far this one is above the plane of the
-  // fragment, in the slice in which it lies itself.
+  // Pixels do not lie exactly in the slice. So the rise is measured over the fragment's plane, in the slice in which
+  // the pixel lies.
   const VF above = hn::Sub(hn::Div(Dot(to, p.normal), length), hn::Mul(cosine, p.facing));
   const VF flat = hn::Mul(hn::Mul(p.facing, p.facing), hn::Max(hn::Sub(All(1), hn::Mul(cosine, cosine)), All(0)));
   const VF own_low = hn::Div(hn::Neg(above), hn::Sqrt(hn::Max(hn::Add(flat, hn::Mul(above, above)), All(1e-30f))));
@@ -118,7 +119,7 @@ HWY_INLINE VF Raised(const OcclusionGrid& grid, const Points& p, VF x, VF y, VF 
   return hn::IfThenElse(hn::And(counts, hn::Gt(risen, horizon)), risen, horizon);
 }
 
-/// The normal within a slice, as an angle from the line of sight to the slice's side.
+/// The normal's projection to a slice, as an angle from the line of sight towards the slice's side.
 struct SliceNormal {
   VF length, cosine, sine, angle;
 };
@@ -137,7 +138,7 @@ HWY_INLINE SliceNormal NormalWithin(const Points& p, const EyeVector& side) {
   return n;
 }
 
-/// Four times the sky between the line of sight and a horizon, of which `side` is 1 or -1.
+/// Four times the sky between the line of sight and a horizon, whose side is 1 or -1.
 HWY_INLINE VF SkyUpTo(VF horizon, float side, const SliceNormal& n) {
   const VF c = Clamped(horizon), s = hn::Mul(All(side), Root(hn::Sub(All(1), hn::Mul(c, c))));
   const VF angle = hn::Mul(All(side), AngleOf(c));
@@ -146,7 +147,7 @@ HWY_INLINE VF SkyUpTo(VF horizon, float side, const SliceNormal& n) {
   return hn::Sub(hn::Add(n.cosine, hn::Mul(All(2), hn::Mul(angle, n.sine))), turned);
 }
 
-/// The part of the sky that is free.
+/// The free share of the sky.
 HWY_INLINE VF FreeSky(const OcclusionGrid& grid, const Points& p) {
   VF sky = All(0), whole = All(0);
   for (const auto& [c, s] : kSlices) {
@@ -154,7 +155,7 @@ HWY_INLINE VF FreeSky(const OcclusionGrid& grid, const Points& p) {
     const VF low[2] = {hn::Neg(n.sine), n.sine};
     VF horizon[2] = {low[0], low[1]};
     const VF x = hn::Mul(All(c), p.reach_x), y = hn::Mul(All(-s), p.reach_y);
-    // The first is a pixel away, or it would be the fragment itself.
+    // The first step is at least a pixel, so that it does not hit the fragment itself.
     const VF longest = hn::Max(hn::Max(hn::Abs(x), hn::Abs(y)), All(1e-12f));
     for (int step = 0; step < kSteps; ++step) {
       const float part = (float(step) + 0.5f) / kSteps;

@@ -10,7 +10,7 @@
 namespace frontmost::shading {
 namespace {
 
-/// About as fine as the scan, so that steps are about one.
+/// The size of a face is about the scan's resolution, so that steps are about 1.
 int face_size(const RayCamera& camera) {
   const glm::ivec2 grid = grid_of(camera);
   return std::clamp(std::max(grid.x, grid.y) / 4, 64, 16384);
@@ -38,7 +38,7 @@ glm::dvec3 ScanDirections::middle(const glm::ivec2& at) const {
   return is_finite(direction) && direction != glm::dvec3(0) ? glm::normalize(direction) : glm::dvec3(0);
 }
 
-/// To whichever neighbour there is, in the direction of the step.
+/// The step to the neighbour in the direction of `step`, or from the one on the opposite side.
 glm::dvec3 ScanDirections::step_to(const glm::ivec2& from, const glm::ivec2& step) const {
   const glm::dvec3 here = middle(from), next = middle(from + step);
   if (next != glm::dvec3(0)) return next - here;
@@ -48,7 +48,8 @@ glm::dvec3 ScanDirections::step_to(const glm::ivec2& from, const glm::ivec2& ste
 
 ScanDirections::Steps ScanDirections::steps(int x, int y) const {
   glm::ivec2 at(x, y);
-  // The middle of a pixel on the rim may see nothing, where one of its samples does: the next one inwards stands in.
+  // The middle of a border pixel may see nothing although one of its samples does; the next pixel inwards then stands
+  // in.
   if (middle(at) == glm::dvec3(0)) at += glm::ivec2(x < grid_.x / 2 ? 1 : -1, y < grid_.y / 2 ? 1 : -1);
   if (middle(at) == glm::dvec3(0)) return {};
   return {step_to(at, {1, 0}), step_to(at, {0, 1})};
@@ -93,7 +94,7 @@ glm::vec2 ScanFaces::screen(int face, const glm::dvec3& direction) const {
 glm::vec2 ScanFaces::screen_step(int face, const glm::dvec3& direction, const glm::dvec3& step) const {
   const Axes axes = axes_of(face);
   const double ahead = glm::dot(direction, axes.ahead);
-  // The quotient's derivative: the part of the step along the ray moves nothing.
+  // Derivative of the quotient: the component of the step along the ray has no effect.
   const glm::dvec3 across = step - direction * (glm::dot(step, axes.ahead) / ahead);
   return glm::vec2(half_size_ / ahead * glm::dvec2(glm::dot(across, axes.right), -glm::dot(across, axes.up)));
 }

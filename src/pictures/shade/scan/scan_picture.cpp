@@ -11,7 +11,7 @@
 namespace frontmost::shading {
 namespace {
 
-/// Each ray is asked about shadow where it is.
+/// Each ray is tested for shadow at its own point.
 constexpr glm::ivec2 kAtRay[] = {{0, 0}};
 
 class ScanPicture {
@@ -31,7 +31,7 @@ class ScanPicture {
   }
 
  private:
-  /// What the rays show, of textures and normals; and what shines through it.
+  /// Prepares textures and normals for the visible primitives, and the index for see-through ones.
   void make_ready(bool wants_normals) {
     PreparedScene& scene = request_.scene;
     const Execution& execution = request_.execution;
@@ -45,7 +45,7 @@ class ScanPicture {
       scene.triangles.smooth(scene.large, execution);
     }
     if (scene.materials.is_ready()) return;
-    // What lies behind glass is not known yet.
+    // Primitives behind glass are not known yet.
     if (through_) return make_all_materials_ready();
     scene.seen = seen_primitives(count, ids, execution, std::move(scene.seen));
     scene.make_materials_ready(scene.seen, execution);
@@ -95,7 +95,7 @@ class ScanPicture {
     use(lit);
   }
 
-  /// One row of tiles to a thread at a time.
+  /// Paints one row of tiles per thread at a time.
   void paint_tiles(const Painting& painting) {
     const bool shows = shows_materials(request_.options.shading);
     const bool asks_rays = request_.options.shading == Shading::lit && request_.options.light.shadows == Shadows::rays;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of scans: what rays met, with the materials, lights and shadows of other pictures.
+// Pictures of scans: the hits of rays, with the same materials, lights and shadows as other pictures.
 #pragma once
 
 #include "shade/canvas/canvas.h"
@@ -8,7 +8,7 @@
 
 namespace frontmost::shading {
 
-/// All that a picture of a scan is made from.
+/// Everything from which a picture of a scan is made.
 struct ScanRequest {
   PreparedScene& scene;
   const ScanInput& input;
@@ -16,7 +16,7 @@ struct ScanRequest {
   const Execution& execution;
 };
 
-/// The ranges between which a picture of depths goes from bright to dark; both 0 where nothing is met.
+/// The range of distances that a picture of depths maps from bright to dark; both 0 if nothing is hit.
 [[nodiscard]] DepthRange depth_range(const RangeScan& scan);
 
 /// \throws Error bad_argument for a scan whose planes or ids do not fit, or options out of range.

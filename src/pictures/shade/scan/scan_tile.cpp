@@ -21,7 +21,7 @@ bool ScanTileWork::shade(const TileRectangle& tile) {
 
 void ScanTileWork::find_fragments(const TileRectangle& tile) {
   fragments_.clear();
-  // Block by block: what is shaded at once then lies together on the surface.
+  // In blocks: fragments of a batch then lie close together on the surface.
   constexpr int block = 16;
   for (int left = 0; left < tile.width; left += block)
     for (int y = 0; y < tile.height; ++y)
@@ -56,12 +56,12 @@ void ScanTileWork::add_pixel(const glm::ivec2& at, std::uint32_t pixel) {
       ids[other] = no_primitive;
       ++count;
     }
-    // Opposite rays, of a picture of a few pixels, have no mean.
+    // Opposite rays, in a picture of a few pixels, have no mean direction.
     add(id, pixel, glm::dot(sum, first) > 0 ? sum : first, float(count) / float(samples));
   }
 }
 
-/// What one ray meets, until nothing can be seen through.
+/// Adds the hits of one ray, up to the first opaque one.
 void ScanTileWork::add_ray(const glm::ivec2& at, int sample, std::uint32_t pixel) {
   const RangeScan& scan = layer_->scan;
   const glm::dvec3 direction = layer_->directions.at(at.x, at.y, sample);
@@ -80,7 +80,7 @@ void ScanTileWork::add_ray(const glm::ivec2& at, int sample, std::uint32_t pixel
 void ScanTileWork::add(PrimitiveId id, std::uint32_t pixel, const glm::dvec3& direction, float weight) {
   const ScanFaces& faces = layer_->faces;
   const int face = ScanFaces::face_of(direction);
-  // Steps are those between rays of unit length.
+  // Steps are differences of unit vectors.
   const glm::dvec3 unit = glm::normalize(direction);
   fragments_.push_back({id, pixel, true, face, weight, faces.screen(face, unit),
                         faces.screen_step(face, unit, steps_.x), faces.screen_step(face, unit, steps_.y)});
@@ -114,7 +114,7 @@ void ScanTileWork::flush() {
   shader_.hand_out([this](const FragmentShader::Shaded& s) {
     const Fragment& f = fragments_[s.number];
     if (f.begins_ray) arriving_ = glm::vec3(1);
-    // What is tinted hides other parts of some channels than of others.
+    // Tinted surfaces hide a different share of each channel.
     const glm::vec3 hides = s.alphas * layer_->opacity, hidden = s.weight * arriving_ * hides;
     const bool is_grey = hidden == glm::vec3(hidden.x);
     const glm::vec3 color = s.light * (s.weight * arriving_ * (s.alpha * layer_->opacity));

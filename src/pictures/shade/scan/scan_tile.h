@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rectangle of a scan's pixels shaded by one thread: what its rays met becomes fragments on the faces of the cube,
-// which are shaded face by face, and summed.
+// A rectangle of a scan's pixels that one thread shades: hits of rays become fragments on the faces of the cube, which
+// are shaded face by face and summed.
 //
-//   rays of a pixel    a a b a        one fragment for a and one for b, at the mean of their rays; by themselves where
+//   rays of a pixel    a a b a        one fragment for a and one for b, at the mean of their rays; one for each ray if
 //                                     shadows are asked for ray by ray
-//   through glass      a - c - d      fragments one behind another: each ray's are laid over each other, nearest first
+//   through glass      a - c - d      fragments one behind another, composited for each ray, nearest first
 #pragma once
 
 #include <span>
@@ -16,26 +16,26 @@
 
 namespace frontmost::shading {
 
-/// What the tiles of a scan's picture are made from. Borrows everything.
+/// The input for the tiles of a scan's picture. Borrows everything.
 struct ScanLayer {
   const ScanFaces& faces;
   const ScanDirections& directions;
   const RangeScan& scan;
-  bool has_textures;        ///< it matters how far apart neighbouring rays are
-  bool merges;              ///< rays of a pixel that met the same primitive are one fragment
-  const RayIndex* through;  ///< null: nothing is seen through
+  bool has_textures;        ///< distances between neighbouring rays are needed
+  bool merges;              ///< rays of a pixel that hit the same primitive become one fragment
+  const RayIndex* through;  ///< null: nothing is see-through
   const Surfaces& surfaces;
-  float opacity;  ///< of everything
+  float opacity;  ///< of all surfaces
 };
 
-/// Reused from tile to tile and from picture to picture by one thread.
+/// Used by one thread, again for every tile and picture.
 class ScanTileWork {
  public:
   ScanTileWork() : pixels_(tile_pixels) {}
   /// Starts a picture; borrows everything. Precondition of shade().
   void begin(const ScanLayer& layer, const FragmentShader::Colorist& colorist, Isa isa);
 
-  /// Premultiplied means over the samples of each pixel, row by row of the tile. False where nothing is seen at all.
+  /// Computes premultiplied means over the samples of each pixel, row by row. \returns false if the tile is empty.
   bool shade(const TileRectangle& tile);
   [[nodiscard]] const std::vector<glm::vec4>& pixels() const { return pixels_; }
 
@@ -43,7 +43,7 @@ class ScanTileWork {
   struct Fragment {
     PrimitiveId id;
     std::uint32_t pixel;
-    bool begins_ray;  ///< nothing is before it
+    bool begins_ray;  ///< it is the first of its ray
     int face;
     float weight;
     glm::vec2 screen, step_x, step_y;
@@ -61,11 +61,11 @@ class ScanTileWork {
   const FragmentShader::Colorist* colorist_ = nullptr;
   Isa isa_ = Isa::best;
   FragmentShader shader_;
-  PixelSteps pixel_steps_;  ///< of the fragments that the shader holds
+  PixelSteps pixel_steps_;  ///< of the fragments in the shader
   std::vector<Fragment> fragments_;
-  ScanDirections::Steps steps_;  ///< of the pixel that fragments are found of
+  ScanDirections::Steps steps_;  ///< of the current pixel
   std::vector<glm::vec4> pixels_;
-  glm::vec3 arriving_{1};  ///< the part of a ray that is left behind what was laid over it, by channel
+  glm::vec3 arriving_{1};  ///< share of the current ray that earlier fragments leave, by channel
 };
 
 }  // namespace frontmost::shading

@@ -11,7 +11,7 @@
 namespace frontmost::shading {
 namespace {
 
-/// Of two views of lights, which are square.
+/// Whether two views of lights, which are square, are equal.
 bool are_equal(const View& a, const View& b) {
   const Projection &p = a.projection, &q = b.projection;
   return a.width == b.width && a.culling == b.culling && a.world_from_eye == b.world_from_eye && p.left == q.left &&
@@ -19,7 +19,7 @@ bool are_equal(const View& a, const View& b) {
          p.clip.far == q.clip.far;
 }
 
-/// What callers found of key_light_view(). \throws Error bad_argument.
+/// Checks the picture that callers made for key_light_view(). \throws Error bad_argument.
 void check_light(const Visible& seen_by_light) {
   constexpr const char* who = "shade: what the light sees";
   check_planes(seen_by_light, who);
@@ -85,7 +85,7 @@ std::optional<std::size_t> LightShadows::map_number(const Light& source) const {
 
 void LightShadows::draw_maps(const ShadedPicture& picture, const Execution& execution) {
   const SeenPoints& visible = picture.input.visible;
-  if (maps_.empty()) maps_.resize(1 + most_mapped_lights);  // they stay where they are
+  if (maps_.empty()) maps_.resize(1 + most_mapped_lights);  // addresses of maps never change
   for (std::size_t i = 0; i < lights_->far.size(); ++i) {
     const PictureLights::Far& far = lights_->far[i];
     if (!far.source && picture.input.seen_by_light) {
@@ -126,7 +126,7 @@ const ShadowMap* LightShadows::draw_map(std::size_t number, const std::optional<
   }
   if (!drawn.has_drawn) {
     const Surfaces& surfaces = casters(execution);
-    // The first map may be the only one: a ZBuffer would make clusters for it.
+    // A first map may be the only one, and a ZBuffer would build clusters for it.
     if (!made_cluster_set(surfaces)) {
       drawn.planes = zbuffer(surfaces, *light, execution);
     } else {
@@ -149,7 +149,7 @@ void LightShadows::aim_rays(const ShadedPicture& picture, const Execution& execu
     index = &*index_;
   }
   const View& view = picture.input.visible.view;
-  // A ray takes about a hundred nanoseconds. A picture of 1920 x 1080 pixels of four samples has 2^23 for each light.
+  // A ray takes about a hundred nanoseconds. A picture of 1920 x 1080 pixels of four samples has 2^23 rays per light.
   constexpr std::uint64_t kMostRays = std::uint64_t(1) << 27, kMostRaysOfSample = 8;
   const std::uint64_t most = kMostRays + kMostRaysOfSample * view.pixel_count() * picture.samples.size();
   rays_.emplace(*index, picture.samples, view, execution,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the lights of a picture do not reach, found as LightOptions::shadows says.
+// The shadows of a picture's lights, by the method in LightOptions::shadows.
 //
-//   maps   of the key light, and of the first sixteen suns and spots of the file: 8 MiB each at most. Points have none.
-//          A map is drawn again only where the light's view is another than in the picture before.
-//   rays   of all lights, through one index
+//   maps   for the key light, and the first sixteen suns and spots of the file: at most 8 MiB each. Points have none.
+//          A map is drawn again only if the light's view has changed since the picture before.
+//   rays   for all lights, through one index
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@
 
 namespace frontmost::shading {
 
-/// What a view or a scan shows, and what callers may have found already.
+/// The visible points of a view or a scan, and data that callers may have computed already.
 struct ShadedInput {
   ShadedInput(const ShadeInput& from) : visible(from.first()), seen_by_light(from.seen_by_light), index(from.index) {}
   ShadedInput(const ScanInput& from) : visible(*from.scan), index(from.index) {}
@@ -28,46 +28,47 @@ struct ShadedInput {
   const RayIndex* index;
 };
 
-/// What is to be shaded.
+/// The picture that is shaded.
 struct ShadedPicture {
   ShadedInput input;
   const ShadeOptions& options;
   std::span<const glm::ivec2> samples;  ///< of a pixel, in 1/256
 };
 
-/// Shadows of what is opaque by its material, in one picture of the same surfaces after another. What throws them, the
-/// memory of the maps, and each map where its light sees the same again, stay from picture to picture.
+/// Shadows of opaque materials, for successive pictures of the same surfaces. The casters, the memory of the maps, and
+/// maps whose view is unchanged are kept from picture to picture.
 class LightShadows {
  public:
   /// Borrows the surfaces. O(1).
   explicit LightShadows(const Surfaces& surfaces) : all_(surfaces) {}
 
-  /// Follows an instance to where it is now.
+  /// Updates an instance that has moved.
   void follow(std::uint32_t instance, const Execution& execution);
 
-  /// Finds those of a picture and its lights, which are borrowed.
+  /// Finds the shadows of a picture and its lights, which it borrows.
   void find(const ShadedPicture& picture, const PictureLights& lights, const Execution& execution);
-  /// As RayShadows has it.
+  /// Calls RayShadows::ask_at_points(), for shadows by rays.
   void ask_at_points() {
     if (rays_) rays_->ask_at_points();
   }
 
-  /// Whether such a light of the picture throws shadows, by its place among lights.far or lights.near.
+  /// Whether a light of the picture casts shadows, by its index in lights.far or lights.near.
   [[nodiscard]] bool has_far(std::size_t light) const { return rays_ || far_maps_[light]; }
   [[nodiscard]] bool has_near(std::size_t light) const { return rays_ || near_maps_[light]; }
-  /// Fill batch.shadow where it is asked for: the part of the light that arrives. Precondition: the light has shadows.
+  /// Fill batch.shadow of the asked fragments: the share of the light that arrives. Precondition: the light has
+  /// shadows.
   void find_far(std::size_t light, const AskedFragments& asked, Isa isa) const;
   void find_near(std::size_t light, const AskedFragments& asked, Isa isa) const;
 
-  /// The surfaces, or those of their opaque part, which the first call makes where something is see-through.
+  /// The surfaces, or their opaque part. The first call makes the opaque part if some material is see-through.
   [[nodiscard]] const Surfaces& casters(const Execution& execution);
 
  private:
-  /// The map of one light, which stays where it is.
+  /// The map of one light; its address does not change.
   struct DrawnMap {
     ShadowMap map;
-    Visible planes;          ///< of view map.view(), where it was drawn here
-    bool has_drawn = false;  ///< the map is that of the casters
+    Visible planes;          ///< of view map.view(), if drawn here
+    bool has_drawn = false;  ///< the map shows the casters
   };
 
   void draw_maps(const ShadedPicture& picture, const Execution& execution);
@@ -80,12 +81,12 @@ class LightShadows {
 
   const Surfaces& all_;
   Scene opaque_scene_;
-  std::optional<Surfaces> opaque_;  ///< where not everything is
+  std::optional<Surfaces> opaque_;  ///< empty if everything is opaque
 
   const PictureLights* lights_ = nullptr;
   ZBuffer drawer_;
   std::vector<DrawnMap> maps_;                          ///< the key light's first, then those of the file
-  std::vector<const ShadowMap*> far_maps_, near_maps_;  ///< of the picture's lights; null: no shadows
+  std::vector<const ShadowMap*> far_maps_, near_maps_;  ///< by light of the picture; null: no shadows
   std::optional<RayIndex> index_;
   std::optional<RayShadows> rays_;
 };

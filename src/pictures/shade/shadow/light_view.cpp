@@ -11,8 +11,8 @@ namespace frontmost::shading {
 namespace {
 
 constexpr int kLeastSize = 256, kMostSize = 1024;
-constexpr double kSpareTexels = 12;  ///< around what is seen: the filter, and what lies between the points looked at
-constexpr int kStride = 4;           ///< every fourth pixel in x and y shows where the visible surfaces are
+constexpr double kSpareTexels = 12;  ///< margin: for the filter, and for surfaces between the sampled points
+constexpr int kStride = 4;           ///< every fourth pixel in x and y is sampled
 
 /// A rectangle across the light's direction, and a range along it.
 struct LightExtent {
@@ -29,13 +29,13 @@ struct LightExtent {
   [[nodiscard]] bool is_empty() const { return !(low.x <= high.x); }
 };
 
-/// As many as make a texel about as small as a pixel: small pictures would not show more.
+/// The size at which a texel is about as small as a pixel; small pictures would not show more.
 int texels_for(const View& picture) {
   const int wanted = std::max(picture.width, picture.height) * 8 / 5;
   return std::clamp((wanted + 63) / 64 * 64, kLeastSize, kMostSize);
 }
 
-/// Of the points that are seen, in the axes of `light` (x, y across; z towards the light), from the eye.
+/// The extent of the visible points, in the axes of `light` (x, y across; z towards the light), from the eye.
 LightExtent extent_of_visible(const SeenPoints& visible, const glm::dmat3& light_axes, const Execution& execution) {
   const glm::dmat3 light_from_world = glm::transpose(light_axes);
   const int rows = (visible.view.height + kStride - 1) / kStride;
@@ -46,7 +46,7 @@ LightExtent extent_of_visible(const SeenPoints& visible, const glm::dmat3& light
     for (int y = int(begin) * kStride; y < std::min(int(end) * kStride, visible.view.height); y += kStride)
       visible.visit_row(y, kStride, [&](const glm::dvec3& point) { part.include(light_from_world * point); });
     const std::lock_guard lock(mutex);
-    extent.include(part);  // in any order: minima and maxima do not round
+    extent.include(part);  // the order does not matter: minima and maxima do not round
   });
   return extent;
 }
@@ -61,8 +61,8 @@ LightExtent extent_of_box(const Box& box, const glm::dvec3& zero, const glm::dma
   return extent;
 }
 
-/// Two directions across `to_light`, and itself: upright in the picture, or, where the light is straight above or below
-/// what the picture shows, turned as its depth is.
+/// Two directions across `to_light`, and `to_light`. They are upright in the picture; if the light is straight above or
+/// below, they follow the view direction.
 glm::dmat3 axes_of_light(const glm::dvec3& to_light, const View& view) {
   constexpr double parallel = 1e-12;
   const glm::dvec3 upright = glm::cross(view.up(), to_light);
@@ -71,7 +71,7 @@ glm::dmat3 axes_of_light(const glm::dvec3& to_light, const View& view) {
   return {side, glm::cross(to_light, side), to_light};
 }
 
-/// The window of the light's view: what is seen, but no more than there is, with room for the filter.
+/// The window of the light's view: around the visible points, clipped to the scene, with a margin for the filter.
 LightExtent window_of(const LightExtent& seen, const LightExtent& all, int texels) {
   LightExtent window = all;
   for (int k = 0; k < 2; ++k) {
@@ -90,12 +90,12 @@ LightExtent window_of(const LightExtent& seen, const LightExtent& all, int texel
   return window;
 }
 
-/// Light comes through one-sided triangles from behind where the eye sees through them; other culling is the eye's own.
+/// One-sided triangles let light through from behind where the eye sees through them; other culling is the eye's alone.
 Culling culling_of_light(const View& picture) {
   return picture.culling == Culling::material ? Culling::material : Culling::none;
 }
 
-/// Of a window told from `zero`.
+/// The view of a window whose coordinates are relative to `zero`.
 View view_of_window(const LightExtent& window, const glm::dmat3& axes, const glm::dvec3& zero, const View& picture) {
   View view;
   view.width = view.height = texels_for(picture);
@@ -107,14 +107,14 @@ View view_of_window(const LightExtent& window, const glm::dmat3& axes, const glm
   return view;
 }
 
-/// The least number of the form (8 + k) * 2^n that is not below a positive one: at most an eighth more.
+/// The least number of the form (8 + k) * 2^n that is not below a positive value: at most an eighth more.
 double rounded_up(double value) {
   int exponent = 0;
   const double mantissa = std::frexp(value, &exponent);  // from a half to below one
   return std::ldexp(std::ceil(16 * mantissa) / 16, exponent);
 }
 
-/// A larger window, whose side is one of few sizes and whose centre is on a grid of an eighth of it.
+/// Enlarges a window, so that its side is one of a few sizes and its centre is on a grid of an eighth of the side.
 void snap(LightExtent& window) {
   constexpr double steps = 8;
   const double side = rounded_up((window.high.x - window.low.x) * steps / (steps - 1)), step = side / steps;
@@ -143,7 +143,7 @@ std::optional<View> view_of_sun(const SeenPoints& visible, const Box& bounds, co
   LightExtent seen = extent_of_visible(visible, axes, execution);
   if (seen.is_empty() || bounds.is_empty()) return std::nullopt;
   const int texels = texels_for(visible.view);
-  // From a point that stays where it is.
+  // Relative to a point that does not move with the camera.
   const glm::dvec3 zero(bounds.centre()), eye = glm::transpose(axes) * (visible.view.eye() - zero);
   seen.low += eye;
   seen.high += eye;
@@ -159,7 +159,7 @@ std::optional<View> view_of_spot(const View& picture, const Box& bounds, const L
   view.width = view.height = texels_for(picture);
   view.culling = culling_of_light(picture);
   view.world_from_eye = spot.world_from_light;
-  // As a float: the last bit of a tangent is not the same on all machines.
+  // Rounded to a float, because the last bit of a tangent differs between machines.
   const double half = double(float(std::tan(std::min(spot.outer_cone, widest)))) * (1 + 2 * kSpareTexels / view.width);
   const double near = std::max(1e-4 * double(bounds.diagonal()), 1e-30);
   view.projection = make_frustum(-half * near, half * near, -half * near, half * near,

@@ -13,7 +13,7 @@
 namespace frontmost::shading {
 namespace {
 
-/// Whether light goes through some triangle from behind.
+/// Whether light passes through some triangles from behind.
 bool lets_light_through(const View& view, const RayIndex& index) {
   return view.culling == Culling::material &&
          FacingRule(view.culling, ray_tree(index).sides.get()).culling() != Culling::none;
@@ -32,7 +32,7 @@ RayShadows::RayShadows(const RayIndex& index, std::span<const glm::ivec2> sample
       crowd_(execution, kMostOfCrowd + kMostOfTriangle * index.triangle_count(), "shade"),
       too_many_(std::move(limit.error)) {}
 
-/// Points that wait to be asked about together, and the fragments that they are of.
+/// Points that are asked about together, and their fragments.
 class RayShadows::LightQuestions {
  public:
   LightQuestions(const RayShadows& shadows, const glm::vec3& to_light, FragmentBatch& batch)
@@ -44,7 +44,7 @@ class RayShadows::LightQuestions {
     if (++count_ == points_.size()) ask();
   }
 
-  /// Answers come in whole samples, which floats add exactly.
+  /// Answers count whole samples, which floats add exactly.
   void ask() {
     shadows_.count(count_);
     std::array<std::uint8_t, kAtOnce> is_lit;
@@ -67,7 +67,8 @@ class RayShadows::LightQuestions {
   std::array<int, kAtOnce> fragments_;
 };
 
-/// The same of segments from a lamp, whose nearest hit says whether the point is the first thing that it lights.
+/// Questions about segments from a lamp. The nearest hit says whether the point is the first thing that the lamp
+/// lights.
 class RayShadows::LampQuestions {
  public:
   LampQuestions(const RayShadows& shadows, const Lamp& lamp, FragmentBatch& batch)
@@ -99,7 +100,8 @@ class RayShadows::LampQuestions {
 
  private:
   static constexpr std::size_t kAtOnce = 256;
-  static constexpr std::uint64_t kStepsOfTriangle = 64;  ///< of single rays, as long as one decision takes
+  static constexpr std::uint64_t kStepsOfTriangle = 64;  ///< in steps of single rays, which take as long as one exact
+                                                         ///< decision
 
   [[nodiscard]] glm::vec3 beside(const glm::dvec3& place, const glm::dvec3& normal) const {
     const glm::dvec3 to_lamp = glm::dvec3(lamp_) - place, size = glm::max(glm::abs(place), glm::abs(glm::dvec3(lamp_)));

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points are taken to the map's texels a vector at a time. Most are nearer to the light than everything around them, or
-// farther, which two numbers say; for the others a window of eight by eight texels is compared, eight columns side by
-// side. Their sums are made row by row and then added up in one order, so that every instruction set gives the same
-// bits.
+// Points are mapped to texels a vector at a time. Most are nearer to the light than all texels around them, or farther;
+// two numbers per block tell. For the others a window of 8 x 8 texels is compared, eight columns side by side. Sums are
+// made row by row and added in a fixed order, so that every instruction set gives the same bits.
 
 #include "shade/shadow/shadow_map.h"
 
@@ -27,9 +26,9 @@ namespace {
 constexpr int kTaps = ShadowGrid::taps, kBlock = ShadowGrid::block;
 static_assert(kTaps == 8 && ShadowGrid::window >= kTaps + kBlock);
 constexpr float kHalf = 0.5f * kTaps;
-constexpr float kToFirst = kHalf - 0.5f;  ///< from the first texel whose centre is within the filter, plus a fraction
+constexpr float kToFirst = kHalf - 0.5f;  ///< distance from the filter's first texel, without its fraction
 
-/// Points in the map: texels, and keys with the bias.
+/// Points in the map: texel coordinates, and keys with the bias.
 struct MapPoints {
   float x[ShadowPoints::most], y[ShadowPoints::most], key[ShadowPoints::most];
 };
@@ -40,7 +39,7 @@ HWY_INLINE VF DotOf(const glm::vec3& v, const float* x, const float* y, const fl
   return hn::Add(hn::Add(xx, yy), hn::Mul(hn::Set(d, v.z), hn::LoadU(d, z)));
 }
 
-/// Over the filter's width a slanted surface itself comes nearer to the light by its slope: that is no shadow.
+/// Within the filter's width a slanted surface comes nearer to the light by its slope, which must not count as shadow.
 HWY_INLINE VF BiasOf(const ShadowGrid& grid, VF cosine, VF sine) {
   const DF d;
   const VF steepest = hn::Set(d, 8.0f), one = hn::Set(d, 1.0f);
@@ -49,7 +48,7 @@ HWY_INLINE VF BiasOf(const ShadowGrid& grid, VF cosine, VF sine) {
   return hn::Add(hn::Set(d, grid.key_bias), hn::Mul(slope, hn::Set(d, grid.key_slope_bias)));
 }
 
-/// A vector of points in the light's view: texels and keys before any division, and how the surface lies to the axis.
+/// A vector of points in the light's view: texels and keys before any division, and the surface's angle to the axis.
 struct LightSpacePoints {
   VF x, y, key, cosine, sine;
 };
@@ -78,7 +77,7 @@ void FindPlacesOfSun(const ShadowGrid& grid, const ShadowPoints& points, MapPoin
   }
 }
 
-/// How steep a surface is to a lamp's rays is the cosine to the ray, by the ray's length along the axis.
+/// The slope of a surface to a lamp's rays is the cosine to the ray, times the ray's length along the axis.
 void FindPlacesOfSpot(const ShadowGrid& grid, const ShadowPoints& points, MapPoints& out) {
   const DF d;
   const VF one = hn::Set(d, 1.0f), nowhere = hn::Set(d, -1.0f);
@@ -100,12 +99,12 @@ void FindPlacesOfSpot(const ShadowGrid& grid, const ShadowPoints& points, MapPoi
   }
 }
 
-/// Bits of a vector of points.
+/// Bit masks of a vector of points.
 struct LightOfBlocks {
-  std::uint64_t lit, partly;  ///< wholly, and what the filter has to say; the others are dark
+  std::uint64_t lit, partly;  ///< wholly lit, and undecided without the filter; others are dark
 };
 
-/// What the blocks say of the points from i on. Where the filter does not lie in the map they are lit.
+/// The blocks' answers for the points from i on. Points whose filter reaches out of the map are lit.
 HWY_INLINE LightOfBlocks AskBlocks(const ShadowGrid& grid, const MapPoints& points, int i) {
   const DF d;
   const DI di;
@@ -125,19 +124,19 @@ HWY_INLINE LightOfBlocks AskBlocks(const ShadowGrid& grid, const MapPoints& poin
           BitsOf(d, hn::AndNot(hn::Or(is_before, is_behind), is_within))};
 }
 
-/// A bit for each of `count` answers.
+/// One bit for each of `count` answers.
 HWY_INLINE std::uint64_t BitsAt(const bool* answers, int count) {
   std::uint64_t bits = 0;
   for (int i = 0; i < count; ++i) bits |= std::uint64_t(answers[i]) << i;
   return bits;
 }
 
-/// As many columns of a window as there is room for.
+/// The columns of a window that fit into a vector.
 using DColumns = hn::CappedTag<float, kTaps>;
 using VColumns = hn::Vec<DColumns>;
 
-/// A tent, so that edges fade without steps. Its weights at whole texels always sum to kHalf * kHalf. Of the texels
-/// from `first` on, for a point at `at`.
+/// Weights of a tent filter, so that edges fade without steps, for the texels from `first` on and a point at `at`. The
+/// weights at whole texels always sum to kHalf * kHalf.
 HWY_INLINE VColumns WeightsFrom(int first, float at) {
   const DColumns d;
   const auto texel = hn::Add(hn::Iota(d, 0.0f), hn::Set(d, float(first) + 0.5f));

@@ -13,8 +13,7 @@ struct KeyRange {
   float least, greatest;
 };
 
-/// Takes each number of a square of numbers to the least, or the greatest, of itself and the two after it along both
-/// axes, as `choose` says.
+/// Replaces each number of a square by the least or greatest (`choose`) of itself and the two after it along both axes.
 template <class Choose>
 void spread(float* numbers, std::size_t size, const Choose& choose) {
   static_assert(ShadowGrid::window == 3 * ShadowGrid::block);
@@ -29,7 +28,7 @@ void spread(float* numbers, std::size_t size, const Choose& choose) {
         numbers[y * size + x] = choose(numbers[y * size + x], numbers[next * size + x]);
 }
 
-/// Of a block of keys, whose rows lie `size` apart.
+/// The range of a block of keys whose rows are `size` apart.
 KeyRange range_of_block(const float* keys, std::size_t size) {
   constexpr std::size_t block = ShadowGrid::block;
   float least[block], greatest[block];
@@ -47,7 +46,7 @@ KeyRange range_of_block(const float* keys, std::size_t size) {
 }  // namespace
 
 void ShadowMap::draw(const Visible& seen_by_light, const Execution& execution) {
-  clear();  // an error leaves everything lit
+  clear();  // after an error everything is lit
   light_ = seen_by_light.view;
   constexpr std::size_t block = ShadowGrid::block;
   const auto size = std::size_t(light_.width), blocks = size / block;
@@ -83,7 +82,7 @@ void ShadowMap::measure_sun(const glm::dvec3& eye) {
   grid_.texel_x = glm::vec3(axes[0] / texel);
   grid_.texel_y = glm::vec3(axes[1] * (-1 / texel));
   grid_.key = glm::vec3(axes[2] / depth);
-  // The light's eye is before all that it sees; key 1 is there.
+  // The light's eye is before everything that it sees and has key 1.
   const glm::dvec3 from_light = eye - light_.eye();
   grid_.at_eye =
       glm::vec3((glm::dot(axes[0], from_light) - window.left) / texel,

@@ -29,8 +29,8 @@ const float* table_of(Encoding encoding) {
 
 std::uint8_t linear_byte(float value) { return std::uint8_t(std::min(value, 1.0f) * 255.0f + 0.5f); }
 
-/// Which texels of the finer level make one of the coarser, along one axis: two, or three with an odd size, so that
-/// every texel counts alike.
+/// The texels of the finer level that form one of the coarser level along one axis: two, or three if the size is odd,
+/// so that every texel has the same weight.
 struct FinerTexels {
   int first, count;
   float weight[3];
@@ -42,14 +42,14 @@ FinerTexels finer_texels(int i, int fine, int coarse) {
   return {2 * i, 3, {float(coarse - i) * total, float(coarse) * total, float(i + 1) * total}};
 }
 
-/// Two texels side by side, in the order of memory.
+/// Two adjacent texels in memory order.
 std::uint64_t pair_at(const glm::u8vec4* texels) {
   std::uint64_t pair;
   std::memcpy(&pair, texels, sizeof pair);
   return pair;
 }
 
-/// Makes rows of the next coarser level.
+/// Computes rows of the next coarser level.
 struct Halving {
   Encoding encoding;
   const float* color_of_byte;
@@ -72,9 +72,9 @@ struct Halving {
   [[nodiscard]] const glm::u8vec4& at(int x, int y) const {
     return texels[std::size_t(y) * std::size_t(width) + std::size_t(x)];
   }
-  // Of what makes texels [begin, end) of a row, four of the finer level each.
+  // For texels [begin, end) of a row; four texels of the finer level form each.
 
-  /// Nearly all there are.
+  /// True for most textures.
   [[nodiscard]] bool is_opaque(int begin, int end, int y) const {
     const glm::u8vec4 *upper = &at(0, 2 * y), *lower = &at(0, 2 * y + 1);
     std::uint8_t all = 0xFF;
@@ -84,7 +84,7 @@ struct Halving {
   void average_opaque(int begin, int end, int y, glm::u8vec4* out) const {
     encoding == Encoding::linear ? average_bytes(begin, end, y, out) : average_light(begin, end, y, out);
   }
-  /// Every other byte in 16 bits of its own, of both texels of a row at once.
+  /// Averages both texels of a row at once, with every other byte in a 16-bit field.
   void average_bytes(int begin, int end, int y, glm::u8vec4* out) const {
     constexpr std::uint64_t even = 0x00FF00FF00FF00FFu, half = 0x0002000200020002u;
     const glm::u8vec4 *upper = &at(0, 2 * y), *lower = &at(0, 2 * y + 1);
@@ -96,7 +96,7 @@ struct Halving {
       std::memcpy(out + x, &texel, sizeof texel);
     }
   }
-  /// sRGB, averaged as light.
+  /// Averages sRGB colours as linear light.
   void average_light(int begin, int end, int y, glm::u8vec4* out) const {
     for (int x = begin; x < end; ++x) {
       const glm::u8vec4 *upper = &at(2 * x, 2 * y), *lower = &at(2 * x, 2 * y + 1);
@@ -107,7 +107,7 @@ struct Halving {
       out[x] = {mean(0), mean(1), mean(2), 0xFF};
     }
   }
-  /// Weighted by alpha, so that what a transparent texel hides does not bleed into its neighbours.
+  /// A mean weighted by alpha, so that colours of transparent texels do not bleed into their neighbours.
   [[nodiscard]] glm::u8vec4 weighted_mean(int x, int y) const {
     const FinerTexels tx = finer_texels(x, width, std::max(1, width / 2)),
                       ty = finer_texels(y, height, std::max(1, height / 2));

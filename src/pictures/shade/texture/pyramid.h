@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A texture with its mip levels: each half as wide and as high as the one before, down to a single texel.
+// A texture with its mip levels: each is half as wide and high as the one before, down to a single texel.
 // (L. Williams. Pyramidal Parametrics. SIGGRAPH 1983.)
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace frontmost::shading {
 
-/// What the stored bytes mean. Colours are averaged as light, whichever way they are stored.
+/// The encoding of the stored bytes. Colours of both encodings are averaged as light.
 enum class Encoding : std::uint8_t { srgb, linear };
 
 class Pyramid {
@@ -20,7 +20,7 @@ class Pyramid {
     const glm::u8vec4* texels = nullptr;
   };
 
-  /// Borrows `texture`, which is the first level. Textures marked `nearest` have no other, and empty ones none at all.
+  /// Borrows `texture`, which is the first level. Textures marked `nearest` have only that level, empty ones have none.
   /// O(texels), in parallel.
   Pyramid(const Texture& texture, Encoding encoding, const Execution& execution = {});
   Pyramid(Pyramid&&) = default;
@@ -31,7 +31,7 @@ class Pyramid {
   [[nodiscard]] const Texture& texture() const { return *texture_; }
   [[nodiscard]] Encoding encoding() const { return encoding_; }
   [[nodiscard]] const std::vector<Level>& levels() const { return levels_; }
-  /// Width and height of a level, and of the next where there is one, as they are multiplied with coordinates.
+  /// Width and height of a level and of the next one (or again this one), as floats to multiply coordinates with.
   [[nodiscard]] const std::array<float, 4>& sizes_from(int level) const { return sizes_[std::size_t(level)]; }
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texels are read one by one, four channels to a vector or those of two levels side by side: a load brings all channels
-// of a texel, where a gather of many fragments' texels would bring one of each. Where to read is found for many taps at
-// a time.
+// Texels are read one by one: a vector holds the four channels of one or more texels of two levels. A load brings all
+// channels of a texel; a gather over many fragments would bring one channel each. Addresses are computed for many taps
+// at a time.
 
 #include "shade/texture/texture_sampler.h"
 
@@ -25,21 +25,21 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace frontmost::HWY_NAMESPACE;
 namespace {
 
-/// log2 of positive numbers to within 0.01, by operations that every machine rounds alike.
+/// log2 of positive numbers to 0.01, by operations that every machine rounds alike.
 HWY_INLINE VF Log2(VF value) {
   const DF d;
   const DI di;
   const VI bits = hn::BitCast(di, value);
   const VF exponent = hn::ConvertTo(d, hn::Sub(hn::ShiftRight<23>(bits), hn::Set(di, 127)));
   const VI mantissa = hn::Or(hn::And(bits, hn::Set(di, 0x007FFFFF)), hn::Set(di, 0x3F800000));
-  // A parabola through the exact values at 1 and 2, so that there is no step between octaves.
+  // A parabola through the exact values at 1 and 2 has no step between octaves.
   const VF t = hn::Sub(hn::BitCast(d, mantissa), All(1.0f));
   return hn::Add(exponent, hn::Mul(t, hn::Sub(All(1.3465f), hn::Mul(All(0.3465f), t))));
 }
 
 HWY_INLINE VF Length(VF x, VF y) { return hn::Sqrt(hn::Add(hn::Mul(x, x), hn::Mul(y, y))); }
 
-/// Coordinates of a texture, or steps of them.
+/// Texture coordinates, or steps of them.
 struct UV {
   VF u, v;
 };
@@ -51,7 +51,7 @@ HWY_INLINE UV Turned(const TexcoordTransform& transform, const Lane2& lanes, int
           hn::Add(hn::Mul(All(across.y), x), hn::Mul(All(down.y), y))};
 }
 
-/// Places of fragments in a texture, the axis along which their footprints reach farthest, and how far.
+/// Places of fragments in a texture, the longest axis of their footprints, and its length.
 struct Footprints {
   float u[sampled_at_once], v[sampled_at_once];
   float axis_u[sampled_at_once], axis_v[sampled_at_once];
@@ -75,7 +75,8 @@ void FindFootprints(const TapRequest& request, Footprints& out) {
     const MF is_x = hn::Gt(along_x, along_y);
     const VF longer = hn::IfThenElse(is_x, along_x, along_y), least = hn::IfThenElse(is_x, along_y, along_x);
     const VF shorter = hn::IfThenElse(hn::Gt(least, one), least, one);
-    // Magnified ones have one tap in the finest level; beyond all numbers they have the average, which is the last.
+    // Magnified fragments have one tap in the finest level. Infinite footprints get the average, which is the last
+    // level.
     const MF is_minified = hn::And(is_filtered, hn::Gt(longer, one)), is_finite = hn::Lt(longer, All(1e30f));
     const MF is_plain = hn::Not(hn::And(is_minified, is_finite));
     const VF ratio = hn::IfThenElse(is_plain, one, hn::Div(longer, shorter));
@@ -95,7 +96,7 @@ void FindFootprints(const TapRequest& request, Footprints& out) {
   }
 }
 
-/// Writes down the taps of all fragments.
+/// Lists the taps of all fragments.
 void SpreadTaps(const TapRequest& request, const Footprints& footprints, Taps& taps) {
   int n = 0;
   for (int k = 0; k < request.count; ++k) {
@@ -118,12 +119,12 @@ void SpreadTaps(const TapRequest& request, const Footprints& footprints, Taps& t
   taps.taps = n;
 }
 
-/// u, v, u, v of as many taps as there is room for.
+/// u, v, u, v of as many taps as fit.
 using DPlaces = hn::CappedTag<float, 16>;
 using VPlaces = hn::Vec<DPlaces>;
 using MPlaces = hn::Mask<DPlaces>;
 
-/// Which lanes wrap so, for vectors that begin at u or at v.
+/// The lanes with this wrap mode, for vectors that begin at u or at v.
 class WrappingLanes {
  public:
   WrappingLanes(const Texture& texture, Texture::Wrap wrap) {
@@ -138,7 +139,7 @@ class WrappingLanes {
   float lanes_[18];
 };
 
-/// As wrapped() of texture_lookup.h.
+/// Vector form of wrapped() in texture_lookup.h.
 struct Wrapping {
   MPlaces repeats, mirrors;
 
@@ -154,7 +155,7 @@ struct Wrapping {
   }
 };
 
-/// As texel_pair() of texture_lookup.h, and as texel_of() for textures that are not filtered.
+/// Vector form of texel_pair() in texture_lookup.h, or of texel_of() for textures without filter.
 void PlaceTaps(const Texture& texture, Taps& taps) {
   const DPlaces d;
   const hn::RebindToSigned<DPlaces> di;
@@ -182,8 +183,8 @@ void PlaceTaps(const Texture& texture, Taps& taps) {
   }
 }
 
-/// Two texels side by side in the finer level and two in the next, of four channels each, in one vector or in as many
-/// parts as it takes. Sums of both levels are half as long.
+/// Two adjacent texels of the finer level and two of the next, with four channels each, in one vector or in several
+/// parts. Sums of both levels are half as long.
 constexpr int kLanes = 16;
 using DPart = hn::CappedTag<float, kLanes>;
 using VPart = hn::Vec<DPart>;
@@ -193,7 +194,7 @@ using DSum = hn::CappedTag<float, kLanes / 2>;
 using VSum = hn::Vec<DSum>;
 constexpr int kSumLanes = int(hn::MaxLanes(DSum())), kSums = kLanes / 2 / kSumLanes;
 
-/// Lanes of a vector that begins at lane `first` where `pattern` is 1.
+/// The lanes, of a vector that begins at lane `first`, where `pattern` is 1.
 template <class D>
 HWY_INLINE hn::Mask<D> LanesOf(D d, const float* pattern, int first) {
   return hn::Gt(hn::LoadU(d, pattern + first), hn::Zero(d));
@@ -201,13 +202,13 @@ HWY_INLINE hn::Mask<D> LanesOf(D d, const float* pattern, int first) {
 constexpr float kAlpha[kLanes] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 constexpr float kFiner[kLanes] = {1, 1, 1, 1, 0, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 0};
 
-/// Bytes to light: as sRGB but for alpha, or all in proportion.
+/// Converts bytes to linear light: sRGB except for alpha, or linear values in proportion.
 template <Encoding encoding>
 HWY_INLINE VPart Light(VPart bytes, MPart is_alpha) {
   const DPart d;
   const auto x = hn::Mul(bytes, hn::Set(d, 1.0f / 255));
   if constexpr (encoding == Encoding::linear) return x;
-  // Fitted to the 245 bytes above the straight part, by steps of the byte. Pairs of terms do not wait for each other.
+  // Fitted to the 245 bytes above the straight part, in steps of a byte. Pairs of terms are independent of each other.
   const auto pair = [&](float constant, float slope) {
     return hn::Add(hn::Mul(x, hn::Set(d, slope)), hn::Set(d, constant));
   };
@@ -224,7 +225,7 @@ HWY_INLINE V Mix(V a, V b, V t) {
   return hn::Add(a, hn::Mul(hn::Sub(b, a), t));
 }
 
-/// Two texels side by side in the upper row around a tap, and the two below: each of one level in the lower half.
+/// Two adjacent texels in the upper row around a tap, and the two below; one level in the lower half.
 struct Quad {
   std::uint64_t upper[2], lower[2];
 };
@@ -253,7 +254,7 @@ HWY_INLINE hn::Vec<D> PartOf(D d, const std::uint64_t (&bytes)[2], int first) {
   const hn::Rebind<std::uint8_t, D> d8;
   const hn::RebindToSigned<D> di;
   const auto floats = [&](auto part) { return hn::ConvertTo(d, hn::PromoteTo(di, hn::BitCast(d8, part))); };
-#if HWY_TARGET != HWY_SCALAR  // which has no such function
+#if HWY_TARGET != HWY_SCALAR  // the scalar target lacks this function
   if constexpr (lanes == 16) {
     const hn::Repartition<std::uint64_t, decltype(d8)> d64;
     return floats(hn::InterleaveLower(d64, hn::Set(d64, bytes[0]), hn::Set(d64, bytes[1])));
@@ -266,7 +267,7 @@ HWY_INLINE hn::Vec<D> PartOf(D d, const std::uint64_t (&bytes)[2], int first) {
   }
 }
 
-/// Bilinear, of both levels: added to eight lanes of sums.
+/// Adds the bilinear value of both levels to eight lanes of sums.
 template <Encoding encoding>
 HWY_INLINE void AddFiltered(const Quad& quad, const float* fraction, VSum* sums) {
   const DPart d;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What textures say at many places at once.
+// Look-ups of textures at many places at once.
 //
 //   footprints          taps                  texels of two levels        values
 //   u, v, du, dv  -->   1 to 8 places    -->  4 + 4 for each tap    -->   R, G, B, A
 //   of fragments        and two levels        bilinear, then between       mean of the taps
 //                       for each              the levels
 //
-// The textures of a material mostly have one size and are looked up at the same places: footprints and taps are found
-// once for all of them. A footprint that is much longer than wide has several taps along it, so that surfaces seen at a
-// slant stay sharp. (J. McCormack, R. Perry, K. Farkas, N. Jouppi. Feline: Fast Elliptical Lines for Anisotropic
-// Texture Mapping. SIGGRAPH 1999.)
+// Most textures of a material have one size and are looked up at the same places, so footprints and taps are computed
+// once for all of them. A footprint much longer than wide has several taps along it, so that slanted surfaces stay
+// sharp. (J. McCormack, R. Perry, K. Farkas, N. Jouppi. Feline: Fast Elliptical Lines for Anisotropic Texture Mapping.
+// SIGGRAPH 1999.)
 #pragma once
 
 #include <optional>
@@ -20,18 +20,18 @@
 
 namespace frontmost::shading {
 
-inline constexpr int most_taps = 8;         ///< of a fragment
-inline constexpr int sampled_at_once = 64;  ///< fragments: their taps stay within a first-level cache
+inline constexpr int most_taps = 8;         ///< per fragment
+inline constexpr int sampled_at_once = 64;  ///< fragments; their taps stay within a first-level cache
 
-/// A texture as a material uses it.
+/// A texture in the way that a material uses it.
 struct TextureSlot {
   const Pyramid* pyramid = nullptr;  ///< null: not set
   TexcoordTransform transform{TextureUse{}};
-  std::uint32_t set = 0;  ///< of texture coordinates
+  std::uint32_t set = 0;  ///< set of texture coordinates
 };
 
-/// Where a texture of one size is looked up. Each tap has four numbers of a kind: for u and v of its finer level, and
-/// of the next.
+/// Look-ups in textures of one size. Each tap has four numbers of a kind: for u and v of its finer level, and of the
+/// next.
 struct Taps {
   struct alignas(64) Fours {
     float values[4 * most_taps * sampled_at_once];
@@ -40,15 +40,16 @@ struct Taps {
     std::int32_t values[4 * most_taps * sampled_at_once];
   };
   int fragments = 0, taps = 0;
-  std::uint8_t count[sampled_at_once];  ///< of each fragment
+  std::uint8_t count[sampled_at_once];  ///< number of taps of each fragment
   std::uint8_t level[sampled_at_once];  ///< the finer one
-  float blend[sampled_at_once];         ///< how much of the next
-  Fours place;                          ///< texture coordinates; then how far from the first texel to the second
+  float blend[sampled_at_once];         ///< weight of the next level
+  Fours place;                          ///< texture coordinates; later the fraction between the first and the second
+                                        ///< texel
   Fours size;                           ///< of the levels, in texels
   FourTexels first, second;             ///< texels on either side
 };
 
-/// What taps are found from: places of the fragments [begin, begin + count), and the levels of a texture.
+/// Input for taps: the fragments [begin, begin + count), and the levels of a texture.
 struct TapRequest {
   const TexcoordLanes& texcoord;
   int begin, count;
@@ -56,21 +57,21 @@ struct TapRequest {
   const Pyramid& pyramid;
 };
 
-/// Looks up textures for runs of fragments. Reused by one thread.
+/// Looks up textures for runs of fragments. Used by one thread.
 class TextureSampler {
  public:
   explicit TextureSampler(Isa isa) : isa_(isa) {}
 
-  /// From now on the places are those of the fragments [begin, end), at most sampled_at_once, by `texcoord`, which is
-  /// borrowed.
+  /// Sets the places of later look-ups: those of the fragments [begin, end), at most sampled_at_once. Borrows
+  /// `texcoord`.
   void begin(const TexcoordLanes& texcoord, int begin, int end);
   /// Sets out[i - begin] for each fragment i to linear RGBA: bilinear in the two levels nearest to the footprint,
-  /// blended. Textures marked `nearest` give the one texel, empty ones white. Bytes are taken for light by a polynomial
-  /// that is right to 1/50 of a step.
+  /// blended. Textures marked `nearest` give one texel, empty ones white. Bytes become light by a polynomial with an
+  /// error of 1/50 step.
   void sample(const Pyramid& pyramid, const TexcoordTransform& transform, glm::vec4* out);
 
  private:
-  /// What decides where coordinates lead to, for textures of whatever content.
+  /// Everything that determines the taps for given coordinates; the texture's content does not.
   struct Places {
     int width, height;
     Texture::Wrap wrap_u, wrap_v;
@@ -82,7 +83,7 @@ class TextureSampler {
   Isa isa_;
   const TexcoordLanes* texcoord_ = nullptr;
   int begin_ = 0, end_ = 0;
-  std::optional<Places> places_;  ///< that the taps were found for
+  std::optional<Places> places_;  ///< for which the taps were computed
   Taps taps_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deep OpenEXR: any number of samples a pixel, row by row, each row compressed by itself (ZIPS).
+// Deep OpenEXR: any number of samples a pixel. Each row is compressed by itself (ZIPS).
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfDeepFrameBuffer.h>
 #include <OpenEXR/ImfDeepScanLineOutputFile.h>
@@ -18,7 +18,7 @@ const char* values_of(const Channel& channel) {
                               : reinterpret_cast<const char*>(channel.floats().data());
 }
 
-/// One row as the library wants it: how many samples each pixel has, and for every channel where they are.
+/// One row as the library expects it: the number of samples of each pixel, and for each channel their addresses.
 class Row {
  public:
   explicit Row(const DeepImage& image)
@@ -26,7 +26,7 @@ class Row {
         counts_(std::size_t(image.width)),
         pointers_(image.channels.size(), std::vector<const char*>(std::size_t(image.width))) {}
 
-  /// For every row: it is filled anew, and stays where it is.
+  /// The frame buffer serves all rows: each row fills the same memory anew.
   [[nodiscard]] Imf::DeepFrameBuffer frame_buffer() {
     Imf::DeepFrameBuffer frame;
     frame.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts_.data()), sizeof counts_[0], 0));
@@ -56,7 +56,7 @@ class Row {
 std::vector<std::byte> encode(const DeepImage& image, const std::string& name, const Execution& execution) {
   Imf::Header header(image.width, image.height);
   header.setType(Imf::DEEPSCANLINE);
-  header.compression() = Imf::ZIPS_COMPRESSION;  // of those for deep files the one that makes them smallest
+  header.compression() = Imf::ZIPS_COMPRESSION;  // the smallest files among the methods for deep data
   for (const Channel& channel : image.channels) header.channels().insert(channel.name, Imf::Channel(type_of(channel)));
   MemoryOutput memory(name);
   {

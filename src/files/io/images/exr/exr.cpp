@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // OpenEXR: any channels by name, floats as 32-bit float, integers as uint32, ZIP compression.
 //
-// The library's own threads are one pool for the whole process, whose size is nobody's but the program's to set. So a
-// file is made of strips of rows, each of which the library writes as a file of its own, in parallel; what follows
-// their headers is strung together behind one header for all.
+// The library has one pool of threads for the whole process, whose size only the program may set. So a picture is cut
+// into strips of rows, and the library writes each strip as a file of its own, in parallel. The compressed rows of all
+// strips are then joined behind one header.
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
@@ -47,14 +47,14 @@ char* plane_of(Channel& channel) {
                               : reinterpret_cast<char*>(channel.floats().data());
 }
 
-/// The planes of `image` as places to read from and write to, for a window whose first pixel is (left, top).
+/// The planes of `image` as memory to read from or write to, for a window whose first pixel is (left, top).
 Imf::FrameBuffer frame_buffer(Image& image, int left, int top) {
   constexpr std::size_t size = 4;
   const std::size_t stride = size * std::size_t(image.width);
   Imf::FrameBuffer frame;
   for (Channel& channel : image.channels) {
-    // The library wants to know where pixel (0, 0) would be, which may well lie outside of the plane: reckoned with
-    // integers, as pointers must not go there.
+    // The library expects the address of pixel (0, 0), which may lie outside the plane. The address is computed with
+    // integers, because pointers must not leave the plane.
     const std::uintptr_t origin = reinterpret_cast<std::uintptr_t>(plane_of(channel)) -
                                   std::uintptr_t(std::intptr_t(left)) * size -
                                   std::uintptr_t(std::intptr_t(top)) * stride;
@@ -63,7 +63,7 @@ Imf::FrameBuffer frame_buffer(Image& image, int left, int top) {
   return frame;
 }
 
-/// Colours first and in their usual order; the file has all channels by alphabet.
+/// Order of channels: colours first and in their usual order. The file sorts all channels by name.
 int rank(const std::string& channel) {
   constexpr std::string_view first[] = {"R", "G", "B", "A"};
   return int(std::find(std::begin(first), std::end(first), channel) - std::begin(first));
@@ -86,12 +86,12 @@ Image empty_image(const Imf::Header& header, const std::string& name) {
   return image;
 }
 
-constexpr int chunk_rows = 16;  // of ZIP compression
+constexpr int chunk_rows = 16;  // of one ZIP chunk
 
 /// A file with some rows of an image.
 struct RowStrip {
   std::vector<std::byte> bytes;
-  std::size_t start = 0;  ///< of the compressed rows: behind the header and a table of one offset for every chunk
+  std::size_t start = 0;  ///< start of the compressed rows, behind the header and a table with one offset a chunk
 };
 
 enum class Pixels : bool { left_out, written };
@@ -116,7 +116,7 @@ RowStrip make_strip(Image& image, int first, int end, Pixels pixels, const std::
   return strip;
 }
 
-/// Fills in the table of offsets that ends the header. Every chunk begins with its first row and its size.
+/// Fills in the table of offsets, which ends the header. Each chunk begins with its first row and its size.
 void fill_in_offsets(RowStrip& head, const std::vector<RowStrip>& strips, int height) {
   const std::size_t count = (std::size_t(height) + chunk_rows - 1) / chunk_rows;
   std::byte* entry = head.bytes.data() + head.start - 8 * count;
@@ -142,7 +142,7 @@ void save_exr(const Image& image, OutputFile& file, const Execution& execution) 
   std::vector<RowStrip> strips((std::size_t(image.height) + strip_rows - 1) / strip_rows);
   RowStrip head;
   with_named_errors(file.name(), [&] {
-    // A file of all rows without any pixels: its header and table of offsets are those of the whole.
+    // A file of all rows without pixels has the header and the table of offsets of the whole file.
     head = make_strip(planes, 0, image.height, Pixels::left_out, file.name());
     parallel_for(execution, std::size_t(image.height), strip_rows, [&](std::size_t first, std::size_t end) {
       strips[first / strip_rows] = make_strip(planes, int(first), int(end), Pixels::written, file.name());
@@ -154,7 +154,7 @@ void save_exr(const Image& image, OutputFile& file, const Execution& execution) 
 }
 
 Image load_exr(std::span<const std::byte> bytes, const std::string& name) {
-  // The library asks for memory by what the header says, before it looks at whether there is as much to read.
+  // The library allocates memory by the sizes in the header, before it checks whether the file has enough bytes.
   check_exr_header(bytes, name);
   try {
     MemoryInput memory(bytes, name);

@@ -35,7 +35,7 @@ class Cursor {
     return value;
   }
   [[nodiscard]] bool at_end() const { return bytes_.empty(); }
-  /// Up to the next zero, which is passed.
+  /// Returns the text up to the next zero, and passes the zero.
   std::string_view text() {
     const auto end = std::find(bytes_.begin(), bytes_.end(), std::byte{0});
     const auto taken = take(std::size_t(end - bytes_.begin()));
@@ -52,8 +52,8 @@ struct Sizes {
   std::uint64_t width = 0, height = 0, channels = 0;
   unsigned compression = 0;  ///< as in the file: 0 none, 1 RLE, 2 and 3 ZIP, then wavelets and other things
 
-  /// The most that `bytes` bytes of a file can hold, in bytes of memory. Deflate makes at most 1032 of one; what the
-  /// others make of plain pictures has no such bound, so they get some memory in any case.
+  /// The most bytes of memory that `bytes` bytes of a file can fill. Deflate makes at most 1032 bytes of one. Other
+  /// methods have no bound for plain pictures, so they may always use some memory.
   [[nodiscard]] std::uint64_t most_memory(std::uint64_t bytes) const {
     constexpr std::uint64_t ratio = 1100, always = std::uint64_t(1) << 26;
     return compression <= 3 ? bytes * ratio : std::max(always, bytes * ratio);
@@ -61,22 +61,22 @@ struct Sizes {
 };
 
 void read_window(Cursor window, Sizes& sizes) {
-  // In 64 bits: corners may be as far apart as 32 bits reach, and one more is added.
+  // 64 bits, since the difference of two 32-bit corners, plus one, does not fit into 32.
   const std::int64_t left = window.number(), top = window.number();
   const std::int64_t right = window.number(), bottom = window.number();
   sizes.width = std::uint64_t(std::max<std::int64_t>(0, right - left + 1));
   sizes.height = std::uint64_t(std::max<std::int64_t>(0, bottom - top + 1));
 }
 
-/// Counted on from earlier lists: the library adds the channels of a second one to the first's.
+/// Counts on from earlier lists, because the library adds the channels of a second list to those of the first.
 void read_channels(Cursor list, Sizes& sizes, const std::string& name) {
   constexpr std::size_t record = 16;  // type, linearity and sampling
   for (; !list.text().empty(); ++sizes.channels) list.take(record);
   if (!list.at_end()) fail(name, "the channel list ends before its attribute");
 }
 
-/// The library reads most attributes without a look at the size that the file gives them, and goes on from wherever it
-/// then stands. Where size and type do not agree it would see another header than this file does.
+/// The library reads most attributes by their type and ignores the size that the file states. If size and type
+/// disagree, the library would parse another header than this check.
 constexpr std::size_t any_size = ~std::size_t(0);
 constexpr std::pair<std::string_view, std::size_t> attribute_sizes[] = {
     {"box2i", 16},        {"box2f", 16},   {"chlist", any_size}, {"chromaticities", 32},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sizes in an OpenEXR header, read before the library sees the file: it asks for memory as the header says.
+// Checks the sizes in an OpenEXR header before the library, which allocates memory by them, sees the file.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all writers of OpenEXR files need.
+// Helpers that all writers of OpenEXR files share.
 #pragma once
 
 #include <OpenEXR/ImfIO.h>
@@ -16,7 +16,7 @@
 
 namespace frontmost::detail {
 
-/// A file in memory: the library goes back to fill in its table of offsets, which standard output could not.
+/// A file in memory. The library goes back to fill in its table of offsets, which standard output does not allow.
 class MemoryOutput : public Imf::OStream {
  public:
   explicit MemoryOutput(const std::string& name) : Imf::OStream(name.c_str()) {}
@@ -36,7 +36,7 @@ class MemoryOutput : public Imf::OStream {
   std::size_t place_ = 0;
 };
 
-/// Calls `write`; what OpenEXR throws becomes an Error that begins with the file's name.
+/// Calls `write` and turns exceptions of OpenEXR into an Error that begins with the file's name.
 template <class Write>
 void with_named_errors(const std::string& name, Write&& write) {
   try {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// JPEG by libjpeg-turbo: baseline, and colours as sharp as brightness. Halving them, as the library does by default,
-// makes files of rendered pictures a sixth to a quarter smaller, and the worst pixel at edges of colours twice as
-// wrong.
+// JPEG by libjpeg-turbo: baseline, with colours at full resolution. Halved colours, the library's default, make files
+// of rendered pictures a sixth to a quarter smaller, but double the greatest error at edges of colours.
 // clang-format off
 #include <cstdio>  // jpeglib.h needs it first
 #include <jpeglib.h>
@@ -19,8 +18,8 @@
 namespace frontmost::detail {
 namespace {
 
-/// libjpeg reports errors by longjmp, which must not pass over C++ objects: the functions that set the jump (`begin`,
-/// `put`, `end`) hold none, and everything they need lies here.
+/// libjpeg reports errors by longjmp, which must not pass over C++ objects. The functions that call setjmp (`begin`,
+/// `put`, `end`) hold none; their data lies here.
 class JpegWriter {
  public:
   JpegWriter() {
@@ -72,9 +71,9 @@ class JpegWriter {
   [[nodiscard]] const char* message() const { return message_; }
 
  private:
-  /// Makes room; the library calls it when what there is has been filled. Not its own memory destination: whose buffer
-  /// it is, nobody can tell when the work is ended halfway. \returns false where memory ends, which the library makes
-  /// an error.
+  /// Enlarges the buffer; the library calls this function when the buffer is full. The library's own memory destination
+  /// is not used, because nobody can tell who owns its buffer if the work is interrupted. \returns false if memory is
+  /// exhausted, which the library reports as an error.
   bool grow() noexcept {
     const std::size_t filled = bytes_.size();
     try {

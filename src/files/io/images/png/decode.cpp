@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures from PNG, of which the reader of images knows all there is to know.
+// Textures from PNG, by the reader that images use.
 #include "io/images/decode.h"
 
 #include "io/images/png/reader.h"

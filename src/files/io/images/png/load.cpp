@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images from PNG files: the inverse of png_save.cpp, and colours from anybody's files.
+// Images from PNG files: the inverse of save.cpp, and colours from other programs' files.
 #include <cmath>
 #include <locale>
 #include <map>
@@ -15,7 +15,7 @@ namespace {
 
 using Texts = std::map<std::string, std::string>;
 
-/// Adds a channel and gives its values.
+/// Adds a channel and returns its values.
 template <class T>
 T* add_channel(Image& image, const std::string& name) {
   Buffer<T> values(std::size_t(image.width) * std::size_t(image.height));
@@ -23,7 +23,7 @@ T* add_channel(Image& image, const std::string& name) {
   return std::get<Buffer<T>>(image.channels.back().values).data();
 }
 
-/// Colours as load_image() gives them: linear, premultiplied. `linear` turns a stored value into a linear one.
+/// Colours as load_image() returns them: linear, premultiplied. `linear` turns a stored value into a linear one.
 template <class Value, class Linear>
 void unpack_colors(const Buffer<Value>& pixels, Image& image, Linear&& linear) {
   constexpr float most = float(std::numeric_limits<Value>::max());
@@ -37,7 +37,7 @@ void unpack_colors(const Buffer<Value>& pixels, Image& image, Linear&& linear) {
   }
 }
 
-/// Directions as png_save.cpp writes them.
+/// Directions as save.cpp writes them.
 template <class Value>
 void unpack_directions(const Buffer<Value>& pixels, Image& image) {
   constexpr int middle = (std::numeric_limits<Value>::max() + 1) / 2;
@@ -68,7 +68,7 @@ void load_pixels(PngReader& reader, bool directions, Image& image) {
   }
   Buffer<std::uint16_t> pixels(pixel_count(image) * 4);
   reader.read(PngReader::Pixels::rgba16, pixels.data());
-  // A table of all 65536 values pays from as many pixels on.
+  // A table of all 65536 values pays off if there are at least as many pixels.
   if (pixel_count(image) < 65536)
     return unpack(pixels, directions, image, [](std::uint16_t value) { return linear_of_srgb16(value); });
   Buffer<float> table(65536);
@@ -86,7 +86,7 @@ double number(const Texts& texts, const char* key, const std::string& name) {
   return value;
 }
 
-/// A depth or id map, as far as its texts say what it is.
+/// A depth or id map, as described by the file's text chunks.
 void load_map(PngReader& reader, const Texts& texts, const std::string& name, Image& image) {
   const std::string& channel = texts.at(png_channel_key);
   const bool ids = texts.count(png_ids_key) != 0;
@@ -97,7 +97,7 @@ void load_map(PngReader& reader, const Texts& texts, const std::string& name, Im
   reader.read(PngReader::Pixels::grey16, pixels.data());
   if (ids) {
     std::uint32_t* out = add_channel<std::uint32_t>(image, channel);
-    for (const std::uint16_t value : pixels) *out++ = std::uint32_t(value) - 1;  // 0 wraps to none
+    for (const std::uint16_t value : pixels) *out++ = std::uint32_t(value) - 1;  // 0 wraps to the id for none
   } else {
     float* out = add_channel<float>(image, channel);
     for (const std::uint16_t value : pixels)

@@ -12,7 +12,7 @@
 namespace frontmost::detail {
 namespace {
 
-/// Chunks that are held back from libpng: none changes a pixel here, and compressed ones may be huge.
+/// Chunks that libpng must not see: none of them changes a pixel here, and compressed ones may be huge.
 constexpr png_byte unread_chunks[] = "iCCP\0zTXt\0iTXt\0eXIf\0sPLT\0hIST\0gAMA\0cHRM\0sRGB";
 constexpr png_byte text_chunk[] = "tEXt";
 
@@ -25,8 +25,8 @@ std::size_t pixel_bytes(PngReader::Pixels pixels) {
   return 0;
 }
 
-/// Whether every chunk up to the last lies within the file. libpng asks for (and clears) as much memory as a chunk says
-/// it is long, before it finds that the file ends; its limit for that is only a warning.
+/// Whether each chunk up to the last lies within the file. libpng allocates and clears memory by a chunk's stated
+/// length before it finds that the file ends; its own limit only causes a warning.
 bool chunks_fit(std::span<const std::byte> bytes) {
   constexpr std::size_t signature = 8, frame = 12;  // length, type and checksum
   constexpr std::string_view last = "IEND";
@@ -42,8 +42,8 @@ bool chunks_fit(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-// libpng reports errors by longjmp, which must not pass over C++ objects: the functions that set the jump
-// (read_header, read_rows) hold none, and everything they need lies in the reader.
+// libpng reports errors by longjmp, which must not pass over C++ objects. The functions that call setjmp (read_header,
+// read_rows) hold none; their data lies in the reader.
 
 PngReader::PngReader(std::span<const std::byte> bytes, const std::string& name, Texts texts)
     : rest_(bytes), name_(name), keeps_texts_(texts == Texts::kept) {
@@ -53,7 +53,7 @@ PngReader::PngReader(std::span<const std::byte> bytes, const std::string& name, 
     const std::uint64_t width = png_get_image_width(png_, info_), height = png_get_image_height(png_, info_);
     bits_ = png_get_bit_depth(png_, info_);
     grey_ = png_get_color_type(png_, info_) == PNG_COLOR_TYPE_GRAY;
-    // Deflate cannot do better than 258 bytes for two bits.
+    // Deflate makes at most 258 bytes of two bits.
     check_image_size(name_, width, height, bytes.size(), 258 * 4 * 8.0 / (bits_ * png_get_channels(png_, info_)));
     width_ = int(width);
     height_ = int(height);
@@ -90,7 +90,7 @@ bool PngReader::read_header() {
   info_ = png_create_info_struct(png_);
   if (info_ == nullptr) png_error(png_, "out of memory");
   png_set_read_fn(png_, this, read_bytes);
-  // Every size is let through here, so that the limit is told in the same words for all formats.
+  // All sizes pass here; check_image_size() reports the limit in the same words for all formats.
   png_set_user_limits(png_, 0x7FFFFFFF, 0x7FFFFFFF);
   png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, unread_chunks, int(sizeof unread_chunks / 5));
   if (!keeps_texts_) png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, text_chunk, 1);
@@ -113,7 +113,7 @@ void PngReader::read(Pixels pixels, void* out) {
   if (!read_rows(pixels, rows.data(), row_bytes)) fail();
 }
 
-/// Turns whatever the file holds into `pixels` and fills `rows`, all passes of interlaced images included.
+/// Converts the file's pixels to `pixels` and fills `rows`, with all passes of interlaced images.
 bool PngReader::read_rows(Pixels pixels, png_bytep* rows, std::size_t row_bytes) {
   if (setjmp(png_jmpbuf(png_))) return false;
   if (pixels == Pixels::rgba8) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One PNG being read, by libpng's classic interface. The simplified one would apply gamma chunks, which glTF says to
-// ignore.
+// Reader of one PNG, by libpng's classic interface. The simplified interface would apply gamma chunks, which glTF says
+// to ignore.
 #pragma once
 
 #include <png.h>
@@ -15,11 +15,11 @@ namespace frontmost::detail {
 
 class PngReader {
  public:
-  /// What a file's pixels are turned into, whatever they are in the file. 16-bit values are in the machine's order.
+  /// Pixel types that read() can convert any file to. 16-bit values are in the machine's byte order.
   enum class Pixels : std::uint8_t { rgba8, rgba16, grey16 };
   enum class Texts : std::uint8_t { skipped, kept };
 
-  /// Reads everything before the pixels. \throws Error file_malformed, limit_exceeded. `name` begins every message.
+  /// Reads everything before the pixels. `name` begins every message. \throws Error file_malformed, limit_exceeded.
   PngReader(std::span<const std::byte> bytes, const std::string& name, Texts texts = Texts::skipped);
   ~PngReader();
   PngReader(const PngReader&) = delete;
@@ -28,12 +28,12 @@ class PngReader {
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] int bits() const { return bits_; }
-  /// Whether the file has one channel, and no palette.
+  /// Whether the file has one channel and no palette.
   [[nodiscard]] bool is_grey() const { return grey_; }
   /// Text chunks before the pixels, by keyword.
   [[nodiscard]] std::map<std::string, std::string> texts() const;
 
-  /// Reads all pixels to `out`, which has room for width * height of them. May be called once.
+  /// Writes all pixels to `out`, which has room for width * height of them. May be called once.
   void read(Pixels pixels, void* out);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an image's channels become in a PNG file: colours, directions, a depth map or an id map.
+// Turns an image's channels into a PNG file: colours, directions, a depth map or an id map.
 #include <algorithm>
 #include <cmath>
 #include <locale>
@@ -22,7 +22,7 @@ void store_big_endian(std::uint8_t* place, unsigned value) {
   place[1] = std::uint8_t(value);
 }
 
-/// All digits that a double has, in every locale.
+/// `number` with all digits that a double has, whatever the locale.
 std::string digits(double number) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
@@ -51,7 +51,7 @@ PngContents deep_colors(const ColorPlanes& planes) {
   return contents;
 }
 
-/// Directions: zero is the middle value, exactly, and 1 the greatest.
+/// Directions: zero is exactly the middle value, and 1 is the greatest value.
 PngContents directions(const Image& image, int bits) {
   PngContents contents;
   contents.bits = bits;
@@ -71,7 +71,7 @@ PngContents directions(const Image& image, int bits) {
   return contents;
 }
 
-/// stored = depth * scale + offset, rounded; 0 where nothing is seen.
+/// stored = depth * scale + offset, rounded; 0 if the pixel shows nothing.
 struct DepthMapping {
   double scale = 1, offset = 0;
 
@@ -86,12 +86,12 @@ DepthMapping fitted_mapping(const Buffer<float>& depths) {
     high = std::max(high, depth);
   }
   if (!(low <= high)) return {1, 0};  // nothing is seen
-  // 1 to 65535 for what is seen; 0 is kept for what is not.
+  // Visible depths map to 1 to 65535; 0 means that the pixel shows nothing.
   const double scale = high > low ? 65534 / (double(high) - double(low)) : 1;
   return {scale, 1 - double(low) * scale};
 }
 
-/// A fixed scale is the caller's promise of what the numbers mean, so depths beyond it are an error, not clipped.
+/// A fixed scale promises what the numbers mean, so depths beyond it are an error and are not clipped.
 DepthMapping fixed_mapping(const Channel& channel, double scale, const std::string& name) {
   if (!(scale > 0) || !std::isfinite(scale))
     throw Error(ErrorCode::bad_argument, name, "", "the depth scale must be a positive number");
@@ -122,7 +122,8 @@ PngContents depth_map(const Image& image, const std::optional<double>& scale, co
   contents.row = [&image, mapping, fitted = !scale](int y, std::uint8_t* row) {
     const float* depths = image.channels[0].floats().data() + std::size_t(y) * std::size_t(image.width);
     for (int x = 0; x < image.width; ++x) {
-      // 0 is kept for nothing: what is seen at all is at least 1, except at depths that are not before the eye.
+      // 0 means that the pixel shows nothing, so visible depths become at least 1. Depths that are not before the eye
+      // get 0.
       const bool seen = std::isfinite(depths[x]) && (fitted || depths[x] > 0);
       store_big_endian(row + 2 * x, seen ? unsigned(std::clamp(mapping.stored(depths[x]), 1.0, 65535.0)) : 0);
     }
@@ -140,12 +141,12 @@ PngContents id_map(const Image& image, const std::string& name) {
   contents.texts = {{png_channel_key, channel.name}, {png_ids_key, "value - 1, 0 is none"}};
   contents.row = [&image](int y, std::uint8_t* row) {
     const std::uint32_t* ids = image.channels[0].integers().data() + std::size_t(y) * std::size_t(image.width);
-    for (int x = 0; x < image.width; ++x) store_big_endian(row + 2 * x, ids[x] + 1);  // none wraps to 0
+    for (int x = 0; x < image.width; ++x) store_big_endian(row + 2 * x, ids[x] + 1);  // the id for none wraps to 0
   };
   return contents;
 }
 
-/// Luminance from 0 to 1, as masks are.
+/// Luminance from 0 to 1, for masks.
 PngContents grey_picture(const Image& image) {
   PngContents contents;
   contents.color = Color::grey;

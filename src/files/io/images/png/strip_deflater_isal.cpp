@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// By Intel's ISA-L, which takes a quarter of the time of zlib's runs, and less.
+// StripDeflater by Intel's ISA-L, which takes at most a quarter of the time of zlib with Z_RLE.
 #include <isa-l/crc.h>
 #include <isa-l/igzip_lib.h>
 
@@ -18,22 +18,21 @@
 namespace frontmost::detail {
 namespace {
 
-/// Of rendered pictures, depths and ids, level 0, whose Huffman codes are fixed, makes files a fifth larger to twice as
-/// large and saves little time; level 2 takes up to a sixth longer for less than a hundredth of the size; level 3 takes
-/// half as long again to twenty times as long, for files of about the same size. docs/performance.md has the figures.
+/// Level 0 has fixed Huffman codes: files of rendered pictures, depths and ids become a fifth larger to twice as large,
+/// and little time is saved. Level 2 takes up to a sixth longer and saves less than a hundredth of the size. Level 3
+/// takes half as long again to twenty times as long, for about the same size. Figures: docs/performance.md.
 constexpr std::uint32_t deflate_level = 1;
 constexpr std::size_t level_memory_size = ISAL_DEF_LVL1_DEFAULT;
 
-/// ISA-L 2.30 gives small pictures other bytes, though right ones, in one process of a hundred: up to 2 kB were seen to
-/// differ, from 3 kB on none of 8400. zlib has these.
+/// Size below which zlib compresses. In about one process of a hundred, ISA-L 2.30 packs small pictures into different,
+/// though valid, bytes. Differences occurred up to 2 kB, and in none of 8400 pieces from 3 kB on.
 constexpr std::size_t small_piece = 8192;
 
-/// What does not become smaller is stored in blocks of 65535 bytes, five more bytes each.
+/// Bytes that do not shrink are stored in blocks of 65535 bytes, with five more bytes each.
 std::size_t worst_case(std::size_t raw) { return raw + 5 * (raw / 65535 + 1); }
 
-/// ISA-L's assembly returns with the upper halves of the vector registers in use, and while they are, code for SSE
-/// takes up to three times as long: whatever the thread does next. Saving a picture of 16 bits took 76 ms instead
-/// of 40.
+/// ISA-L's assembly leaves the upper halves of the vector registers in use. Until they are cleared, any SSE code of the
+/// thread takes up to three times as long: saving a 16-bit picture took 76 ms instead of 40.
 #if defined(__x86_64__)
 [[gnu::target("avx")]] void zero_upper_halves() { _mm256_zeroupper(); }
 void free_upper_halves() {
@@ -67,7 +66,7 @@ std::span<const std::uint8_t> StripDeflater::compress(std::span<const std::uint8
   stream.level = deflate_level;
   stream.level_buf = state_->level_memory.data();
   stream.level_buf_size = std::uint32_t(state_->level_memory.size());
-  stream.next_in = const_cast<std::uint8_t*>(raw.data());  // ISA-L does not write there
+  stream.next_in = const_cast<std::uint8_t*>(raw.data());  // ISA-L does not write to it
   stream.avail_in = std::uint32_t(raw.size());
   stream.next_out = state_->out.data();
   stream.avail_out = std::uint32_t(state_->out.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures as PNG, by libpng's simplified interface.
+// Textures to PNG, by libpng's simplified interface.
 #include "io/images/png/texture_bytes.h"
 
 #include <png.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures as PNG, for model files that hold them.
+// Textures to PNG, for model files that embed them.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace frontmost::detail {
 
-/// A whole PNG, 8 bits a channel with alpha. \throws Error limit_exceeded for what PNG cannot hold; unsupported in a
+/// A whole PNG, 8 bits a channel with alpha. \throws Error limit_exceeded if PNG cannot hold the size; unsupported in a
 /// build without libpng.
 [[nodiscard]] std::string png_bytes(const Texture& texture);
 

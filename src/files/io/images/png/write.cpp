@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strips of rows are filtered and compressed by themselves, each ending on a byte, so that they can be strung together
-// to the one zlib stream that PNG asks for.
+// Each strip of rows is filtered and compressed by itself and ends on a byte, so that strips join to the one zlib
+// stream that PNG requires.
 #include "io/images/png/write.h"
 
 #include <zlib.h>
@@ -18,7 +18,7 @@ namespace {
 
 using ByteVector = std::vector<std::uint8_t>;
 
-/// Filtered bytes in a strip: enough to make its start-up costs small, few enough to keep all threads busy.
+/// Filtered bytes of a strip: enough to make the cost of starting it small, few enough to keep all threads busy.
 constexpr std::size_t strip_bytes = std::size_t(1) << 18;
 
 enum class Filter : std::uint8_t { sub = 1, up = 2 };
@@ -60,8 +60,8 @@ ByteVector head(const PngContents& contents) {
   return bytes;
 }
 
-/// What a thread needs to make strips. Kept from strip to strip: the first touch of fresh memory costs more than the
-/// filter.
+/// Memory of a thread that makes strips. The memory is kept from strip to strip, because the first touch of fresh
+/// memory costs more than the filter.
 struct Workspace {
   Buffer<std::uint8_t> raw, row, above;
   StripDeflater deflater;
@@ -70,8 +70,8 @@ struct Workspace {
       : raw(rows * (row_size + 1)), row(row_size), above(row_size), deflater(raw.size()) {}
 };
 
-// Rows of `size` bytes, `pixel` of which make a pixel; pointers and not spans, whose ends would be read again for each
-// byte that is written.
+// Rows have `size` bytes, and a pixel has `pixel` bytes. Rows are pointers instead of spans, whose ends would be
+// reloaded after each written byte.
 
 void filter_sub(const std::uint8_t* row, std::size_t pixel, std::size_t size, std::uint8_t* out) {
   std::copy_n(row, pixel, out);
@@ -82,8 +82,8 @@ void filter_up(const std::uint8_t* row, const std::uint8_t* above, std::size_t s
   for (std::size_t i = 0; i < size; ++i) out[i] = std::uint8_t(row[i] - above[i]);
 }
 
-/// Rows of a strip after filtering: Up, except for the first, which must not look at another strip. Paeth's filter
-/// makes pictures 7 % smaller to 4 % larger, and saving takes 10 to 50 % longer, though it is written without branches.
+/// Rows of a strip after filtering: Up, except for the first row, which must not depend on another strip. Paeth's
+/// filter, even without branches, makes saving 10 to 50 % slower, and pictures 7 % smaller to 4 % larger.
 std::span<const std::uint8_t> filtered_rows(const PngContents& contents, int first, int end, Workspace& space) {
   const std::size_t pixel = contents.pixel_bytes();
   const std::size_t size = std::size_t(contents.width) * pixel;
@@ -114,7 +114,7 @@ Strip make_strip(const PngContents& contents, int first, int end, Workspace& spa
   const std::span<const std::uint8_t> packed = space.deflater.compress(raw, end == contents.height);
   Strip strip;
   strip.raw_size = raw.size();
-  // Of each strip by itself; zlib can put sums of parts together, so that no byte is summed up twice.
+  // The checksum covers this strip alone. zlib combines the checksums of strips, so no byte is summed up twice.
   strip.checksum = adler32_of(raw);
   const std::size_t header_size = first == 0 ? std::size(zlib_header) : 0;
   const std::size_t data_size = header_size + packed.size();
@@ -128,9 +128,9 @@ Strip make_strip(const PngContents& contents, int first, int end, Workspace& spa
   return strip;
 }
 
-/// The end of the zlib stream, and of the file.
+/// The end of the zlib stream and of the file.
 ByteVector tail(const std::vector<Strip>& strips) {
-  uLong checksum = 1;  // of nothing
+  uLong checksum = 1;  // Adler-32 of no bytes
   for (const Strip& strip : strips) checksum = ::adler32_combine(checksum, strip.checksum, z_off_t(strip.raw_size));
   ByteVector word, bytes;
   append_word(word, std::uint32_t(checksum));
@@ -148,7 +148,8 @@ std::size_t PngContents::pixel_bytes() const {
 
 void write_png(const PngContents& contents, OutputFile& file, const Execution& execution) {
   const std::size_t row_size = std::size_t(contents.width) * contents.pixel_bytes();
-  // By the size of a row alone, never by the number of threads: strips are seen in the bytes of the file.
+  // The number of rows depends on the size of a row, never on the number of threads, because strips show in the file's
+  // bytes.
   const std::size_t rows = std::max<std::size_t>(1, strip_bytes / (row_size + 1));
   Pool<Workspace> workspaces;
   std::vector<Strip> strips((std::size_t(contents.height) + rows - 1) / rows);

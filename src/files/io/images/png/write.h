@@ -12,16 +12,16 @@
 
 namespace frontmost::detail {
 
-/// What a PNG file holds. `row` may be called from many threads at once, and more than once for a row.
+/// Contents of a PNG file. `row` may be called from many threads at once, and more than once for a row.
 struct PngContents {
-  enum class Color : std::uint8_t { grey = 0, rgb = 2, rgba = 6 };  ///< as in the header
+  enum class Color : std::uint8_t { grey = 0, rgb = 2, rgba = 6 };  ///< values of the file's header
   struct Text {
     std::string keyword, text;
   };
   int width = 0, height = 0;
   Color color = Color::rgb;
   int bits = 8;         ///< 8 or 16, big-endian
-  bool is_srgb = true;  ///< says so in the file
+  bool is_srgb = true;  ///< whether the file is marked as sRGB
   std::vector<Text> texts;
   std::function<void(int y, std::uint8_t* row)> row;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A piece of a deflate stream by zlib, for both kinds of StripDeflater.
+// Compression of a piece of a deflate stream by zlib, for both kinds of StripDeflater.
 #pragma once
 
 #include <zlib.h>
@@ -10,11 +10,12 @@
 
 namespace frontmost::detail {
 
-/// Compresses a piece by itself into `out`, which is as large as the worst case. \returns what it takes of `out`.
+/// Compresses a piece by itself into `out`, which has room for the worst case. \returns the part of `out` that was
+/// filled.
 inline std::span<const std::uint8_t> deflate_piece(z_stream& stream, std::span<const std::uint8_t> raw, bool last,
                                                    Buffer<std::uint8_t>& out) {
   ::deflateReset(&stream);
-  stream.next_in = const_cast<Bytef*>(raw.data());  // zlib does not write there
+  stream.next_in = const_cast<Bytef*>(raw.data());  // zlib does not write to it
   stream.avail_in = uInt(raw.size());
   stream.next_out = out.data();
   stream.avail_out = uInt(out.size());

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading of accessor elements. All ranges were checked when the accessor was.
+// Reads elements of accessors, whose ranges are checked already.
 //
 //   element 0          element 1                       stride from one to the next
 //   | c c c | other    | c c c | other    | ...        components of one of six types, as floats or as whole numbers
 //
-// Sparse accessors are read as if they were none, and then the elements that they replace are put in their places; both
-// lists are in order, so the first that matters is found by halving.
+// Sparse accessors are read like dense ones first; then their replacements overwrite elements. Replacements are sorted
+// by index, so a binary search finds the first one of a range.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -17,7 +17,7 @@
 namespace frontmost::gltf {
 namespace {
 
-/// Where components lie, how many of each element are wanted, and where these go.
+/// A copy of elements: address and stride of the components, and the target.
 template <class Out>
 struct Copy {
   const std::byte* from;
@@ -35,7 +35,7 @@ void copy_as(const Copy<Out>& copy, Convert convert) {
           convert(read_value<T>(copy.from + i * copy.from_stride + std::size_t(c) * sizeof(T), Endian::little));
 }
 
-/// Integers become floats as the format's equations for normalised values say.
+/// Integers become floats by the format's equations for normalised values.
 template <class T>
 void copy_integers(const Copy<float>& copy, bool normalized) {
   constexpr auto greatest = static_cast<float>(std::numeric_limits<T>::max());
@@ -51,7 +51,7 @@ void convert_columns(const Accessor& accessor, const Copy<float>& copy) {
     case Component::u8: return copy_integers<std::uint8_t>(copy, accessor.normalized);
     case Component::i16: return copy_integers<std::int16_t>(copy, accessor.normalized);
     case Component::u16: return copy_integers<std::uint16_t>(copy, accessor.normalized);
-    // The format allows neither normalised floats nor normalised 32-bit integers; both are taken as they are.
+    // The format forbids normalised floats and normalised 32-bit integers; if they occur, their values are not scaled.
     case Component::u32: return copy_integers<std::uint32_t>(copy, false);
     case Component::f32: return copy_as<float>(copy, [](float value) { return value; });
   }
@@ -69,7 +69,7 @@ void convert_columns(const Accessor& accessor, const Copy<std::uint32_t>& copy) 
   }
 }
 
-/// Column by column, because between those of matrices there may be padding.
+/// Copies column by column, because matrices may have padding between columns.
 template <class Out>
 void convert(const Accessor& accessor, const Copy<Out>& elements) {
   for (int first = 0; first < elements.components; first += accessor.rows) {
@@ -81,7 +81,7 @@ void convert(const Accessor& accessor, const Copy<Out>& elements) {
   }
 }
 
-/// The first replacement of an element that is not before `element`.
+/// The first replacement whose element is not before `element`.
 std::size_t lower_bound(const Sparse& sparse, std::size_t element) {
   std::size_t low = 0, high = sparse.count;
   while (low < high) {

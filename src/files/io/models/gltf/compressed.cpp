@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the extensions for compression, and adds the decoded arrays to the file's accessors. The decoders have files of
-// their own.
+// Reads the extensions for compression and adds the decoded arrays to the file's accessors. The decoders are in files
+// of their own.
 #include "io/models/gltf/compressed.h"
 
 namespace frontmost::gltf {
 namespace {
 
-/// Compressed bytes may lie in many buffer views that overlap, so decoding them is charged too: 4 times the file, and
-/// 16 MiB, may be decoded in all.
+/// Cost of a compressed byte. Many overlapping buffer views may name the same bytes, so decoding is charged as well: in
+/// all, 4 times the file and 16 MiB may be decoded.
 constexpr std::size_t cost_of_compressed_byte = 16;
 
 Accessor packed_accessor(Component component, int components, std::size_t count) {

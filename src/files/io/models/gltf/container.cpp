@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The chunks of a GLB file, or the JSON text alone. Lengths are held against what is left before they are used.
+// Splits a GLB file into chunks, or passes on plain JSON text. Lengths are checked against the rest of the file first.
 
 #include "io/models/gltf/container.h"
 
@@ -13,14 +13,14 @@ namespace {
 constexpr std::uint32_t json_type = 0x4E4F534A, binary_type = 0x004E4942;
 constexpr std::size_t header_size = 12, chunk_header_size = 8;
 
-// Byte by byte, so that neither alignment nor the machine's order matters.
+// Reads bytes one by one, so that neither alignment nor the machine's byte order matters.
 std::uint32_t little_endian(Bytes bytes, std::size_t at) {
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < 4; ++i) value |= std::to_integer<std::uint32_t>(bytes[at + i]) << (8 * i);
   return value;
 }
 
-/// The bytes that the header accounts for.
+/// The bytes within the length that the header states.
 Bytes checked_body(Bytes bytes, const ModelSource& source) {
   if (bytes.size() < header_size) source.fail("GLB header", "the file ends within it");
   const std::uint32_t version = little_endian(bytes, 4), length = little_endian(bytes, 8);
@@ -43,8 +43,8 @@ void take_chunk(Container& container, std::uint32_t type, Bytes chunk, std::size
   } else if (type == json_type) {
     source.fail(place, "a second JSON chunk");
   } else if (type == binary_type) {
-    // Chunks of other types may follow, and are to be ignored (glTF 2.0, section 4.4).
-    // A late one is an error all the same: a buffer without a URI could mean either.
+    // Chunks of other types may follow and are to be ignored (glTF 2.0, section 4.4). A late BIN chunk is an error
+    // nevertheless, because a buffer without a URI could mean either one.
     if (number != 1) source.fail(place, "a BIN chunk that is not the second one");
     container.binary = chunk;
     container.has_binary = true;

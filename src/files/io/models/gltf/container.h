@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The outer shape of a glTF file: plain JSON text, or the chunks of a GLB; and the URIs in it, which hold data
-// themselves or name a file beside the model.
+// The container of a glTF file: plain JSON text, or the chunks of a GLB. Also its URIs, which hold data or name a file
+// beside the model.
 //
 //   GLB   | "glTF" | 2 | length |   | size | "JSON" | text ... |   | size | "BIN" | bytes ... |   | others
 //           12 bytes                  8 bytes                        8 bytes; may be missing         passed over
@@ -24,13 +24,13 @@ struct Container {
   bool is_glb = false;
 };
 
-/// Borrows `bytes`. Bytes after a GLB's stated length are passed over, chunks of unknown types too, as the format asks.
+/// Borrows `bytes`. Skips bytes behind a GLB's stated length, and chunks of unknown types, as the format requires.
 [[nodiscard]] Container open_container(std::span<const std::byte> bytes, const ModelSource& source);
 
 [[nodiscard]] bool is_data_uri(std::string_view uri);
-/// The bytes of "data:[TYPE][;base64],...". `place` is the value that holds the URI.
+/// Decodes "data:[TYPE][;base64],...". `place` is the value that holds the URI.
 [[nodiscard]] std::vector<std::byte> decode_data_uri(std::string_view uri, const JsonValue& place);
-/// %20 and the like to bytes; what is not an escape stays.
+/// Decodes %20 and the like; text that is no valid escape stays.
 [[nodiscard]] std::string percent_decode(std::string_view text);
 
 }  // namespace frontmost::gltf

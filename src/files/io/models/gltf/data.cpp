@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks every range of a glTF file before anything is read through it.
+// Checks all ranges of a glTF file before anything is read through them.
 //
 //   buffer      bytes of the file, of a URI or of the GLB's second chunk
 //   view        a part of a buffer
-//   accessor    elements in a view: offset + (count - 1) * stride + size of an element must not pass its end
+//   accessor    elements in a view: offset + (count - 1) * stride + size of an element must not exceed its length
 //
-// All numbers come from the file and may be anything, so sums and products are replaced by differences and quotients of
-// what is known to be smaller. Whatever is read later is then read without a check.
+// All numbers come from the file and may be anything. So the checks use differences and quotients of checked numbers
+// instead of sums and products, which could overflow. Later reads need no check.
 #include "io/models/gltf/data.h"
 
 #include "io/models/gltf/compressed.h"
@@ -18,7 +18,7 @@ namespace {
 constexpr const char* no_contents = "its buffer has no contents in this file";
 constexpr std::uint32_t component_codes[] = {5120, 5121, 5122, 5123, 5125, 5126};
 
-/// None: a code of the future.
+/// Empty for codes that glTF does not define.
 std::optional<Component> component_of(const JsonValue& json) {
   const std::uint64_t code = json.to_unsigned();
   for (const std::uint32_t known : component_codes)
@@ -40,8 +40,8 @@ const Shape* shape_of(const JsonValue& json) {
   return nullptr;
 }
 
-/// How the components of one element lie. Columns of matrices start at multiples of four, and so do packed matrices;
-/// behind the last column nothing need follow.
+/// Layout of the components of one element. Columns of matrices start at multiples of four, and so do packed matrices;
+/// the last column has no padding behind it.
 struct RowLayout {
   std::size_t column, column_stride;  ///< bytes of a column, and from one to the next
   int columns;
@@ -54,14 +54,14 @@ struct RowLayout {
   [[nodiscard]] std::size_t size() const { return stride() - column_stride + column; }
 };
 
-/// Whether `count` elements, `stride` apart, lie within `length` bytes from `offset` on; nothing overflows.
+/// Whether `count` elements, `stride` apart, lie within `length` bytes from `offset` on. Nothing overflows.
 bool fits(std::uint64_t offset, std::uint64_t count, std::uint64_t stride, std::uint64_t element,
           std::uint64_t length) {
-  // Written with differences of what is known to be smaller: sums and products of numbers from a file would wrap
-  // around.
+  // The checks subtract smaller numbers from greater ones, because sums and products of numbers from a file would
+  // overflow.
   if (count == 0) return offset <= length;
   if (offset > length || element > length - offset) return false;
-  // The last element needs its own bytes only, not a whole stride: interleaved arrays end there.
+  // The last element needs only its own bytes, not a whole stride, because interleaved arrays end there.
   return count - 1 <= (length - offset - element) / stride;
 }
 
@@ -133,13 +133,13 @@ void Data::read_buffer(const JsonValue& json, const Container& container, bool f
     if (buffer.length > buffer.bytes.size())
       json.fail("byteLength is " + std::to_string(buffer.length) + ", but there are only " +
                 std::to_string(buffer.bytes.size()) + " bytes");
-    // A BIN chunk is padded to multiples of four; what is behind the stated length is not part of the buffer.
+    // A BIN chunk is padded to a multiple of four. Bytes behind the stated length do not belong to the buffer.
     buffer.bytes = buffer.bytes.first(buffer.length);
   }
   buffers_.push_back(buffer);
 }
 
-/// A file is opened once, however many buffers name it.
+/// Opens each file once, however many buffers name it.
 Bytes Data::file_bytes(const std::string& path, const ModelSource& source) {
   auto found = files_.find(path);
   if (found == files_.end()) found = files_.emplace(path, source.open(path, max_file_bytes)).first;
@@ -165,7 +165,7 @@ void Data::read_view(const JsonValue& json, Budget& decoded) {
   views_.push_back(view);
 }
 
-/// The bytes of a view whose buffer is a stand-in: the extension names the buffer with the compressed ones.
+/// Decodes a view whose own buffer is a placeholder. The extension names the buffer with the compressed bytes.
 Bytes Data::decode_view(const JsonValue& compression, std::uint64_t length, Budget& decoded) {
   const ByteExtent& buffer = buffers_[compression.require("buffer").to_index(buffers_.size())];
   const std::uint64_t offset = compression.unsigned_or("byteOffset", 0);
@@ -182,7 +182,7 @@ Bytes Data::decode_view(const JsonValue& compression, std::uint64_t length, Budg
 void Data::read_accessor(const JsonValue& json) {
   Accessor accessor;
   accessor.count = json.require("count").to_unsigned();
-  // Vertices and corners are numbered by 32 bits, and the greatest number means "none".
+  // Vertices and corners have 32-bit numbers, of which the greatest means "none".
   if (accessor.count >= no_index) json.source().fail_limit(json.place(), std::to_string(accessor.count) + " elements");
   const std::optional<Component> component = component_of(json.require("componentType"));
   const Shape* shape = shape_of(json.require("type"));
@@ -198,13 +198,14 @@ void Data::read_accessor(const JsonValue& json) {
     find_elements(json, accessor);
     if (const std::optional<JsonValue> sparse = json.find("sparse")) read_sparse(*sparse, accessor, layout.stride());
   } else {
-    // Not an error yet: extensions add accessors for their own use, which a reader that lacks them never touches.
+    // This is no error yet: extensions add accessors for their own use, which readers without the extension never
+    // touch.
     accessor.unreadable = "the accessor's type is unknown";
   }
   accessors_.push_back(accessor);
 }
 
-/// Sets bytes and stride, which is that of packed elements before.
+/// Sets bytes and stride. Precondition: the stride is that of packed elements.
 void Data::find_elements(const JsonValue& json, Accessor& accessor) const {
   const std::uint32_t id = json.index_or_none("bufferView", views_.size());
   if (id == no_index) return;
@@ -224,7 +225,8 @@ void Data::find_elements(const JsonValue& json, Accessor& accessor) const {
     accessor.unreadable = no_contents;
 }
 
-/// The bytes of packed elements, from the first one on, in the view that `json` names; none if it has no contents.
+/// The bytes of packed elements in the view that `json` names, from the first one on. Empty if the view has no
+/// contents.
 Bytes Data::packed(const JsonValue& json, const Packed& elements) const {
   const ByteExtent& view = views_[json.require("bufferView").to_index(views_.size())];
   const std::uint64_t offset = json.unsigned_or("byteOffset", 0);
@@ -252,7 +254,7 @@ void Data::read_sparse(const JsonValue& json, Accessor& accessor, std::size_t va
     accessor.unreadable = no_contents;
     return;
   }
-  // Strictly rising, as the format asks: replace_sparse() finds the first one of a range by bisection.
+  // Indices must rise strictly, as the format requires: replace_sparse() finds the first one of a range by bisection.
   std::uint64_t least = 0;
   for (std::size_t i = 0; i < sparse.count; ++i) {
     const std::uint32_t index = sparse.index(i);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Buffers, buffer views and accessors of a glTF file: every range is checked here, once, before anything is read.
+// Buffers, buffer views and accessors of a glTF file. Every range is checked once, here, before anything is read.
 #pragma once
 
 #include <deque>
@@ -18,13 +18,13 @@ enum class Component : std::uint16_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5
 
 /// A buffer, or a view of one.
 struct ByteExtent {
-  Bytes bytes;               ///< empty when not present
-  std::uint64_t length = 0;  ///< as stated
+  Bytes bytes;               ///< empty if not present
+  std::uint64_t length = 0;  ///< as stated in the file
   std::size_t stride = 0;    ///< of views; 0: elements are tightly packed
-  bool present = false;      ///< false: the file leaves the contents open, which is an error once they are read
+  bool present = false;      ///< false: the file provides no contents, which is an error if they are read
 };
 
-/// Elements that replace those of an accessor.
+/// Elements that replace some of an accessor's elements.
 struct Sparse {
   std::size_t count = 0, value_stride = 0;
   Component index_type{};
@@ -43,7 +43,7 @@ struct Accessor {
   std::size_t size = 0;           ///< bytes of an element, from its first component to the end of its last
   std::size_t column_stride = 0;  ///< from one column of an element to the next
   std::optional<Sparse> sparse;
-  const char* unreadable = nullptr;  ///< why its elements cannot be read, if so
+  const char* unreadable = nullptr;  ///< the reason if its elements cannot be read, else null
 };
 
 /// Elements [first, first + count) of an accessor.
@@ -59,16 +59,16 @@ class Data {
   [[nodiscard]] std::size_t view_count() const { return views_.size(); }
   [[nodiscard]] std::size_t accessor_count() const { return accessors_.size(); }
   [[nodiscard]] const Accessor& accessor(std::uint32_t i) const { return accessors_[i]; }
-  /// The accessor that `user` names, which must be readable.
+  /// The accessor that `user` names. \throws Error if it cannot be read.
   [[nodiscard]] std::uint32_t readable_accessor(const JsonValue& user) const;
-  /// The bytes of a view, which must have contents. `user` is the place that refers to it.
+  /// The bytes of a view, which must have contents. `user` is the place that refers to the view.
   [[nodiscard]] Bytes view_bytes(std::uint32_t i, const JsonValue& user) const;
-  /// All bytes that belong to the model.
+  /// Size of the file and of the files that it names, in bytes.
   [[nodiscard]] std::uint64_t byte_count() const;
 
-  // What a decoder has made of compressed bytes.
+  // Keeps decoded bytes. \returns a view of them, valid during the object's lifetime.
   [[nodiscard]] Bytes keep(std::vector<std::byte> bytes) { return decoded_.emplace_back(std::move(bytes)); }
-  /// \returns the number of the accessor, which follows those of the file.
+  /// Adds an accessor. \returns its number, which follows those of the file.
   std::uint32_t add(const Accessor& accessor);
 
  private:
@@ -84,18 +84,18 @@ class Data {
   };
   [[nodiscard]] Bytes packed(const JsonValue& json, const Packed& elements) const;
 
-  std::deque<std::vector<std::byte>> decoded_;  ///< of data URIs and by decoders; a deque, so that they stay in place
+  std::deque<std::vector<std::byte>> decoded_;  ///< data URIs and output of decoders; a deque keeps addresses valid
   std::map<std::string, InputFile> files_;
   std::vector<ByteExtent> buffers_, views_;
   std::vector<Accessor> accessors_;
   std::uint64_t container_bytes_ = 0;
 };
 
-/// Reads a range of an accessor as floats, `width` of them for each element: normalised integers are mapped to
-/// [0, 1] or [-1, 1], others are taken as they are. Values beyond the accessor's own components are left as they are in
-/// `out`, components beyond `width` are passed over.
+/// Reads a range of an accessor as floats, `width` of them for each element. Normalised integers are mapped to [0, 1]
+/// or [-1, 1]; others keep their values. If the accessor has fewer components than `width`, the rest of `out` is not
+/// changed; components beyond `width` are skipped.
 void read_floats(const Accessor& accessor, ElementRange range, int width, float* out);
-/// The same for unsigned integers. Precondition: an unsigned type.
+/// Reads a range as unsigned integers. Precondition: the accessor has an unsigned type.
 void read_integers(const Accessor& accessor, ElementRange range, int width, std::uint32_t* out);
 
 }  // namespace frontmost::gltf

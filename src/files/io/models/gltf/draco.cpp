@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Primitives that Draco has compressed.
+// Primitives compressed by Draco.
 //
-// Draco's decoder checks what it reads, but asks for memory as its data say: a stream of 20 bytes may state a billion
-// triangles, or an attribute of 255 components. So its decoders are derived from, and stopped where they are about to:
+// Draco's decoder checks what it reads, but allocates memory by the numbers in its data: a stream of 20 bytes may state
+// a billion triangles, or an attribute of 255 components. So classes derived from its decoders stop before that:
 //
 //   header -> connectivity: counts of faces and seams -> attributes: their components -> values
 //             ^ checked                                  ^ checked
@@ -17,16 +17,16 @@
 namespace frontmost::gltf {
 namespace {
 
-// Memory that the decoder works in, as estimated from its sources: tables of three corners a face, one more table for
-// every set of attributes with seams of its own, and values with their quantised copies.
+// Estimates of the decoder's memory, from its sources: tables with three corners a face, another table for each set of
+// attributes with seams of its own, and values with their quantised copies.
 constexpr std::uint64_t bytes_of_face = 128, bytes_of_seams = 24, bytes_of_value = 32;
-// Honest data need some 200 bytes for each of theirs; regular grids more. The base is that of Budget.
+// Honest data need some 200 bytes of memory a compressed byte; regular grids need more. The base is that of Budget.
 constexpr std::uint64_t working_base = std::uint64_t(1) << 28, working_factor = 1024;
 
 class WorkingMemory {
  public:
   explicit WorkingMemory(std::uint64_t compressed) : left_(working_base + working_factor * compressed) {}
-  /// False: that is more than there should be.
+  /// \returns false if the decoder would exceed its memory.
   [[nodiscard]] bool take(std::uint64_t count, std::uint64_t size) {
     is_exceeded_ = count > left_ / size;
     if (!is_exceeded_) left_ -= count * size;
@@ -39,7 +39,7 @@ class WorkingMemory {
   bool is_exceeded_ = false;
 };
 
-/// Stops before values are decoded that would take too much memory.
+/// Stops the decoder before it decodes values that would take too much memory.
 template <class Decoder>
 class BoundedDecoder : public Decoder {
  public:
@@ -57,7 +57,7 @@ class BoundedDecoder : public Decoder {
   WorkingMemory& memory_;
 };
 
-using SequentialDecoder = BoundedDecoder<draco::MeshSequentialDecoder>;  // holds its faces against its bytes itself
+using SequentialDecoder = BoundedDecoder<draco::MeshSequentialDecoder>;  // checks its faces against its bytes itself
 
 class EdgebreakerDecoder : public BoundedDecoder<draco::MeshEdgebreakerDecoder> {
  public:
@@ -86,7 +86,7 @@ std::optional<Component> component_of(draco::DataType type) {
   }
 }
 
-/// The values of all vertices. None: a type that glTF does not have, or vertices without a value.
+/// The values of all vertices. Empty if glTF lacks the type, or if vertices have no value.
 std::optional<DracoAttribute> attribute_of(const draco::PointAttribute& from, std::uint32_t vertex_count) {
   const std::optional<Component> component = component_of(from.data_type());
   if (!component) return std::nullopt;
@@ -129,7 +129,7 @@ DracoMesh decode_draco(const JsonValue& json, Bytes compressed) {
   ahead.Init(bytes, compressed.size());
   draco::DracoHeader header;
   if (!draco::PointCloudDecoder::DecodeHeader(&ahead, &header).ok()) json.fail("the buffer view holds no Draco data");
-  // The version that the extension asks for. Older ones are decoded by code that nothing writes for any more.
+  // The extension requires version 2.2. Nobody writes older versions any more, so the old decoders' code is not used.
   if (header.version_major != 2 || header.version_minor != 2)
     throw Error(ErrorCode::unsupported, json.source().name(), json.place(),
                 "version " + std::to_string(header.version_major) + "." + std::to_string(header.version_minor) +

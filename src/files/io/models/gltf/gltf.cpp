@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF 2.0 and GLB: the file's JSON becomes a Scene. Each step checks what it reads, so that later ones need not:
+// glTF 2.0 and GLB: turns the file's JSON into a Scene. Each step checks what it reads, so that later ones need not:
 // container, JSON, buffers and accessors, materials, meshes (planned), nodes, instances, textures.
 //
-// The document is read by a JSON library and not by a glTF one (tinygltf): that reads past a GLB's end, cuts long
-// integers short, ignores members of the wrong type, and refuses indices without a buffer view.
+// A JSON library reads the document. The glTF library tinygltf is not used, because it reads past a GLB's end,
+// truncates long integers, ignores members of the wrong type, and refuses indices without a buffer view.
 #include <algorithm>
 #include <string_view>
 
@@ -17,7 +17,7 @@ namespace frontmost {
 namespace gltf {
 namespace {
 
-/// Extensions that are followed, or that say nothing about what is visible or coloured here.
+/// Extensions that are implemented, or that change nothing that is visible or coloured here.
 constexpr std::string_view supported_extensions[] = {
     "KHR_texture_transform",
     "KHR_materials_unlit",
@@ -68,7 +68,7 @@ void check_version(const JsonValue& root) {
   const JsonValue asset = root.require("asset");
   const JsonValue version = asset.find("minVersion").value_or(asset.require("version"));
   const std::string text = version.to_string();
-  // A later 2.x only adds what older readers may pass over, unless minVersion says otherwise.
+  // Versions 2.x only add members that older readers may ignore, unless minVersion is greater.
   const bool fits = version.place() == "asset.version" ? text.starts_with("2.") : text == "2.0";
   if (!fits)
     throw Error(ErrorCode::unsupported, root.source().name(), version.place(),
@@ -102,7 +102,7 @@ void check_extensions(const JsonValue& root, std::vector<std::string>& warnings)
     warnings.push_back("extensionsUsed: " + name + " is not supported and passed over");
 }
 
-/// Every element costs some hundred bytes, whether a file says anything about it ("{}") or not.
+/// Each element costs some hundred bytes of memory, even an empty one ("{}").
 void check_counts(const JsonValue& root) {
   const auto check = [](const std::optional<JsonValue>& array) {
     if (array && array->size() > max_objects)
@@ -122,10 +122,10 @@ Scene read_scene(const Container& container, const ModelSource& source) {
   check_version(root);
   check_extensions(root, scene.warnings);
   check_counts(root);
-  // Ranges first: whatever follows reads through `data` and checks no length of its own.
+  // Ranges come first: later steps read through `data` and check no lengths.
   Data data(root, container);
   TextureTable textures(root, data);
-  // Materials before meshes, because their textures decide which sets of texture coordinates are read.
+  // Materials come before meshes, because their textures decide which sets of texture coordinates are read.
   MaterialList materials = read_materials(root, textures, scene.warnings);
   const std::vector<MeshPlan> plans = plan_meshes(root, data, materials, scene.warnings);
   const NodeTree tree = read_nodes(root, data, scene.warnings);
@@ -133,7 +133,8 @@ Scene read_scene(const Container& container, const ModelSource& source) {
   place_meshes(root, data, plans, tree, scene);
   place_cameras(root, tree, scene);
   place_lights(root, tree, scene);
-  // Last, and only what materials have asked for: decoding is the dearest step, and an error elsewhere makes it futile.
+  // Textures come last, and only those that materials use: decoding is the dearest step, and futile if another step
+  // fails.
   textures.load(scene);
   return scene;
 }

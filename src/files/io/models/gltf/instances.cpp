@@ -2,10 +2,10 @@
 // Places meshes in the world: by nodes, by EXT_mesh_gpu_instancing, and posed by weights and joints.
 //
 //   node with a mesh    --not posed--------> an instance of the mesh, with the node's transform
-//                       --morph, skin------> a mesh of its own, read again in that pose; the same pose is read once
-//                       --instancing-------> an instance for every copy
+//                      --morph, skin------> a mesh of its own, read again in that pose; equal poses are read once
+//                      --instancing-------> an instance for each copy
 //
-// Skinned vertices are in the world already: the format has the transform of their node ignored.
+// Skinned vertices are in world space already: the format ignores the transform of their node.
 #include "base/parallel.h"
 #include "io/models/gltf/nodes.h"
 #include "scene/origin.h"
@@ -13,10 +13,11 @@
 namespace frontmost::gltf {
 namespace {
 
-/// world_from_joint * inverse bind matrix for each joint of a skin, joints as they rest.
+/// Matrices world_from_joint * inverse bind matrix for the joints of a skin, in rest pose.
 using Joints = std::vector<glm::dmat4>;
 
-/// Skinned vertices are stored where they are in the world; far from its zero they are told from an origin there.
+/// Skinned vertices are stored in world space; if they lie far from zero, they are stored relative to an origin near
+/// them.
 struct Skin {
   Joints joints;
   glm::dvec3 origin{0};
@@ -59,7 +60,7 @@ std::vector<Skin> read_skins(const JsonValue& root, const Data& data, const std:
   return skins;
 }
 
-/// Reads every mesh once for every way in which it is posed.
+/// Reads each mesh once for each of its poses.
 class PosedMeshes {
  public:
   PosedMeshes(const JsonValue& root, const Data& data, const std::vector<MeshPlan>& plans, const NodeTree& tree,
@@ -85,7 +86,7 @@ class PosedMeshes {
         place_node(node);
     }
     for (std::uint32_t i = 0; i < plans_.size(); ++i)
-      // Meshes that no node shows are read as well: they keep the file's numbers, and a user may place them.
+      // Meshes that no node shows are read, too: they keep the file's numbers, and a user may place them.
       if (!is_read_[i]) (void)read(i, {plans_[i].weights});
   }
 
@@ -100,13 +101,14 @@ class PosedMeshes {
   void place_node(const Node& node) {
     const MeshPlan& plan = plans_[node.mesh];
     if (plan.primitives.empty()) return;
-    // A skin says where its mesh is; the node that holds the mesh then does not.
+    // A skin places its mesh in the world, so the node's transform is ignored.
     const bool skinned = node.skin != no_index && plan.has_joints;
     Instance instance;
     instance.name = name_of_node(node);
     instance.mesh = posed_mesh(node, skinned);
     const std::uint64_t copies = node.copies ? node.copies->count : 1;
-    // No memory here, but ten times as much in whatever looks at the triangles in the world.
+    // Triangles are charged although they take no memory here: code that transforms them to world space needs ten times
+    // as much.
     constexpr std::uint64_t least_cost = 4;
     budget_.charge(copies * scene_.meshes[instance.mesh].triangles.size(), least_cost, node.place, source_);
     instance.world_from_mesh = skinned ? skins_[node.skin].world_from_mesh() : node.world;
@@ -122,10 +124,10 @@ class PosedMeshes {
       source_.fail(node.place + ".weights", std::to_string(node.weights.size()) + " weights for " +
                                                 std::to_string(plan.target_count) + " morph targets");
     VertexPose pose{node.weights.empty() ? plan.weights : node.weights};
-    // Every node compares and keeps its weights, those of its mesh too.
+    // Each node stores and compares weights, even those that come from its mesh.
     budget_.charge(pose.weights.size(), sizeof(double), node.place, source_);
     if (skinned) pose.joints = skins_[node.skin].joints, pose.origin = skins_[node.skin].origin;
-    // Joints are those of the skin, so its number stands for them; comparing the matrices would cost more than posing.
+    // The skin's number stands for its joints in the key, because comparing matrices would cost more than posing.
     const Key key{node.mesh, skinned ? node.skin : no_index, pose.weights};
     const auto known = posed_.find(key);
     if (known != posed_.end()) return known->second;
@@ -136,7 +138,7 @@ class PosedMeshes {
 
   std::uint32_t read(std::uint32_t mesh, const VertexPose& pose) {
     check_cancelled(source_.execution());
-    // What is odd about a mesh is said once, not for each of its poses.
+    // Warnings about a mesh are kept once, not for each of its poses.
     std::vector<std::string> repeated;
     Mesh posed = reader_.read(plans_[mesh], pose, is_read_[mesh] ? repeated : scene_.warnings);
     posed.origin = pose.origin;
@@ -150,7 +152,7 @@ class PosedMeshes {
     return number;
   }
 
-  /// EXT_mesh_gpu_instancing: one instance for every element of its attributes.
+  /// EXT_mesh_gpu_instancing: adds one instance for each element of its attributes.
   void place_copies(const Node& node, const Instance& first) {
     const InstancingAccessors& copies = *node.copies;
     budget_.charge(copies.count, sizeof(Instance) + first.name.size() + 64, node.place, source_);
@@ -183,10 +185,10 @@ class PosedMeshes {
   std::map<Key, std::uint32_t> posed_;
 };
 
-/// A camera looks along its node's -z, y up. Scale has no meaning for it, so the axes are made unit and square again.
+/// A camera looks along its node's -z, with y up. Cameras have no scale, so the axes are made orthonormal again.
 std::optional<glm::dmat4> rigid(const glm::dmat4& world) {
   const glm::dvec3 back(world[2]), up(world[1]);
-  // The viewing direction is kept exactly and up gives way, as a sheared parent leaves them at an angle.
+  // The viewing direction is kept exactly and up is adjusted, because a sheared parent leaves them at an angle.
   const glm::dvec3 right = glm::cross(up, back);
   const double back_length = glm::length(back), right_length = glm::length(right);
   if (!(back_length > 0) || !(right_length > 0)) return std::nullopt;
@@ -199,7 +201,7 @@ std::optional<double> positive(const JsonValue& json, const char* key) {
   return value > 0 ? std::optional(value) : std::nullopt;
 }
 
-/// The lens of a camera. None: a type of the future, or sizes that are not positive.
+/// The lens of a camera. Empty for unknown types, and for sizes that are not positive.
 std::optional<Camera> read_camera(const JsonValue& json) {
   Camera camera;
   camera.name = json.name();

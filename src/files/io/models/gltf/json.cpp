@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A document is parsed by a library, which recurses as deep and allocates as much as the text tells it to. So depth and
-// number of values are counted before it begins, with a loop over characters that knows strings and nothing else.
+// A library parses the document; its recursion and memory grow with the text. So depth and number of values are counted
+// first, by a loop over characters that recognizes strings and nothing else.
 #include "io/models/gltf/json.h"
 
 #include <cmath>
@@ -9,16 +9,15 @@
 namespace frontmost::gltf {
 namespace {
 
-// glTF itself needs a depth of about ten. Values cost up to a hundred bytes each, so that a text of empty brackets
-// would take thirty times its size.
+// glTF needs a depth of about ten. A value costs up to a hundred bytes of memory, so a text of empty brackets would
+// take thirty times its size.
 constexpr int max_depth = 256;
 constexpr std::size_t max_values = std::size_t(1) << 23;
-// Above it a double no longer tells neighbours apart, so a number with a point or an exponent has lost its last digits.
+// Beyond 2^53 a double skips integers, so a number with a point or an exponent has lost its last digits.
 constexpr double max_exact_integer = 9007199254740992.0;  // 2^53
 
-/// Counts brackets and commas outside of strings before a parser makes objects of them.
-// The parser recurses and allocates as the text tells it to, so depth and number are limited before it begins. Broken
-// JSON may be counted wrongly here; the parser refuses it afterwards.
+/// Counts brackets and commas outside of strings before the parser allocates objects for them. Broken JSON may be
+/// counted wrongly here; the parser refuses it afterwards.
 void check_shape(std::string_view text, const ModelSource& source) {
   int depth = 0;
   std::size_t values = 0;
@@ -42,7 +41,8 @@ void check_shape(std::string_view text, const ModelSource& source) {
 }
 
 std::string reason_of(const nlohmann::json::exception& error) {
-  // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."; the number says nothing to users.
+  // The message looks like "[json.exception.parse_error.101] parse error at line 1, column 2: ...". Its number does not
+  // help users.
   const std::string_view what = error.what();
   const std::size_t start = what.find("] ");
   return printable(start == std::string_view::npos ? what : what.substr(start + 2));
@@ -132,7 +132,7 @@ std::uint64_t JsonValue::to_unsigned() const {
 
 std::uint32_t JsonValue::to_index(std::size_t count) const {
   const std::uint64_t index = to_unsigned();
-  // no_index means "none" further on, so the greatest number is no index even if a file had so many elements.
+  // no_index means "none" elsewhere, so that number is refused even if a file has so many elements.
   if (index >= count || index >= no_index)
     fail(std::to_string(index) + " does not exist, there are " + std::to_string(count));
   return static_cast<std::uint32_t>(index);

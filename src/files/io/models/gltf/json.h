@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading of a JSON document value by value, each of which knows its place for messages:
-// "meshes[2].primitives[0].attributes.POSITION". Whatever is not as expected ends in an Error that names the place.
+// Reads a JSON document value by value. Each value knows its place for messages, such as
+// "meshes[2].primitives[0].attributes.POSITION". Unexpected contents throw an Error that names the place.
 //
 //   root["meshes"] --[2]--> "meshes[2]" --require("primitives")--> "meshes[2].primitives" --> ...
 //
-// Readers ask for what they need and are either given it or left by an exception, so they have no code for files that
-// are wrong.
+// Each accessor returns the requested value or throws, so readers have no code for wrong files.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +34,7 @@ class JsonDocument {
   std::unique_ptr<const nlohmann::json> root_;
 };
 
-/// A borrowed value of a document.
+/// A value of a document, which is borrowed.
 class JsonValue {
  public:
   JsonValue(const JsonDocument& document, const ModelSource& source) : JsonValue(document.root(), {}, source) {}
@@ -44,38 +43,38 @@ class JsonValue {
   [[nodiscard]] const ModelSource& source() const { return *source_; }
   [[noreturn]] void fail(const std::string& reason) const;
 
-  /// A member of an object, if it is there.
+  /// A member of an object, or nothing.
   [[nodiscard]] std::optional<JsonValue> find(const char* key) const;
   [[nodiscard]] JsonValue require(const char* key) const;
-  /// The object `extensions.NAME`, if it is there.
+  /// The object `extensions.NAME`, or nothing.
   [[nodiscard]] std::optional<JsonValue> extension(const char* name) const;
-  /// The names of the members of an object, which this must be.
+  /// The names of the members. \throws Error unless this is an object.
   [[nodiscard]] std::vector<std::string> keys() const;
   [[nodiscard]] bool is_string() const;
   [[nodiscard]] bool is_number() const;
-  /// Number of elements of an array, which this must be.
+  /// The number of elements. \throws Error unless this is an array.
   [[nodiscard]] std::size_t size() const;
   [[nodiscard]] JsonValue operator[](std::size_t i) const;
 
   [[nodiscard]] bool to_bool() const;
   [[nodiscard]] double to_number() const;
   [[nodiscard]] std::string to_string() const;
-  /// Whole numbers may be written as 3.0. Negative ones are errors.
+  /// A whole number, which may be written as 3.0. \throws Error for negative numbers.
   [[nodiscard]] std::uint64_t to_unsigned() const;
-  /// An index below `count`.
+  /// An index. \throws Error unless it is below `count`.
   [[nodiscard]] std::uint32_t to_index(std::size_t count) const;
-  /// An array of exactly as many numbers.
+  /// Reads an array of exactly out.size() numbers.
   void to_numbers(std::span<double> out) const;
 
-  // Members with a default for when they are absent.
+  // Members with a default value if absent.
   [[nodiscard]] bool bool_or(const char* key, bool absent) const;
   [[nodiscard]] double number_or(const char* key, double absent) const;
   [[nodiscard]] std::string string_or_empty(const char* key) const;
-  /// The member "name", if it is there.
+  /// The member "name"; empty if absent.
   [[nodiscard]] std::string name() const;
   [[nodiscard]] std::uint64_t unsigned_or(const char* key, std::uint64_t absent) const;
   [[nodiscard]] std::uint32_t index_or_none(const char* key, std::size_t count) const;
-  /// False: absent, and `out` stays as it is.
+  /// \returns false, and leaves `out` unchanged, if the member is absent.
   bool read_numbers(const char* key, std::span<double> out) const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// KHR_lights_punctual: suns, points and spots that nodes place. A light keeps its intensity, its range and its cone
-// whatever its node is scaled by; all that a node gives it is a place and a direction.
+// KHR_lights_punctual: suns, points and spots that nodes place. A node gives a light only its place and direction:
+// intensity, range and cone do not change with the node's scale.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,12 +12,12 @@ namespace {
 
 constexpr double quarter_turn = 0.5 * std::numbers::pi;
 
-/// Reads one light. What is out of its bounds is told, and taken as the nearest thing that makes sense.
+/// Reads one light. Values out of range cause a warning and become the nearest sensible value.
 class LightReader {
  public:
   LightReader(const JsonValue& json, std::vector<std::string>& warnings) : json_(json), warnings_(warnings) {}
 
-  /// None: a kind of the future, or one that gives no light that could be computed.
+  /// Empty for unknown kinds and for kinds whose light cannot be computed.
   std::optional<Light> read() {
     Light light;
     light.name = json_.name();
@@ -58,7 +58,7 @@ class LightReader {
     if (!spot) return;
     const double inner = spot->number_or("innerConeAngle", light.inner_cone);
     const double outer = spot->number_or("outerConeAngle", light.outer_cone);
-    // Exporters that work in floats write angles a little beyond a quarter turn, and cones without a soft edge.
+    // Exporters that use floats write angles slightly beyond a quarter turn, and cones without a soft edge.
     constexpr double tolerance = 1e-6, narrow = 1e-3;
     if (!(outer > 0 && outer <= quarter_turn + tolerance))
       warnings_.push_back(spot->place() + ".outerConeAngle: is not between 0 and a quarter turn, the nearest is taken");
@@ -72,10 +72,10 @@ class LightReader {
   std::vector<std::string>& warnings_;
 };
 
-/// Whether the light's direction is what its kind goes by.
+/// Whether the light's kind uses a direction.
 bool has_direction(const Light& light) { return light.kind != Light::Kind::point; }
 
-/// At the node's place, -z in the node's direction of -z, which survives whatever scale or shear there is. None where
+/// A rigid transform at the node's place whose -z is the node's direction of -z, whatever its scale or shear. Empty if
 /// the node has no such direction.
 std::optional<glm::dmat4> placement(const Light& light, const glm::dmat4& world) {
   const double length = glm::length(glm::dvec3(world[2]));
@@ -86,7 +86,7 @@ std::optional<glm::dmat4> placement(const Light& light, const glm::dmat4& world)
     return moved;
   }
   const glm::dvec3 back = glm::dvec3(world[2]) / length;
-  // How it is turned about its axis shows nowhere: the axis of the world that is farthest from it makes a frame.
+  // The rotation about the light's axis has no effect. The world axis farthest from that axis completes the frame.
   const glm::dvec3 size = glm::abs(back);
   const glm::dvec3 other = size.x <= size.y && size.x <= size.z ? glm::dvec3(1, 0, 0)
                            : size.y <= size.z                   ? glm::dvec3(0, 1, 0)

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What extensions add to a material: how it mirrors, what is laid over it, and what shows through it. By the texts of
-// KHR_materials_ior, _specular, _clearcoat, _sheen, _transmission, _volume and _pbrSpecularGlossiness (Khronos Group).
+// Layers that extensions add to a material: mirror reflection, coats, and transmission. The layers follow the
+// specifications of KHR_materials_ior, _specular, _clearcoat, _sheen, _transmission, _volume and _pbrSpecularGlossiness
+// (Khronos Group).
 //
-//   specular, glossiness  -->  a mirror (ior 0) whose colour is that of specular, over a matt base: no metal at all
+//   specular, glossiness  -->  a mirror (ior 0) of the specular colour over a matt base: no metal at all
 #include "io/models/gltf/materials.h"
 
 namespace frontmost::gltf {
@@ -15,7 +16,7 @@ class LayerReader {
       : json_(json), uses_(uses), material_(material) {}
 
   void read() {
-    // First: what it says of ior and specular gives way to extensions of these names.
+    // Specular-glossiness comes first, because its ior and specular give way to extensions of these names.
     if (const auto json = json_.extension("KHR_materials_pbrSpecularGlossiness")) read_specular_glossiness(*json);
     if (const auto json = json_.extension("KHR_materials_ior")) material_.ior = float(json->number_or("ior", 1.5));
     if (const auto json = json_.extension("KHR_materials_specular")) read_specular(*json);
@@ -31,7 +32,7 @@ class LayerReader {
     if (json.read_numbers(key, numbers)) color = glm::vec3(glm::dvec3(numbers[0], numbers[1], numbers[2]));
   }
 
-  /// How glossy a texture says that places are is lost: it is in the alpha of a texture of colours.
+  /// Glossiness by texture is lost, because it lies in the alpha channel of a colour texture.
   void read_specular_glossiness(const JsonValue& json) {
     double diffuse[4] = {1, 1, 1, 1};
     (void)json.read_numbers("diffuseFactor", diffuse);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One material after the other: metallic-roughness here, the layers of extensions in material_layers.cpp. Textures that
-// cannot be used keep a mark, by which TextureTable::load() knows which materials have to do without them.
+// Reads the materials: metallic-roughness here, layers of extensions in material_layers.cpp. Textures that cannot be
+// used keep a mark, so that TextureTable::load() knows which materials have to do without them.
 #include "io/models/gltf/materials.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ class MaterialReader {
   Material read(const JsonValue& json) {
     Material material;
     material.name = json.name();
-    // glTF's defaults, which differ from those of a material of our own.
+    // glTF's defaults, which differ from those of Material.
     material.metallic = material.roughness = 1;
     if (const auto pbr = json.find("pbrMetallicRoughness")) read_metallic_roughness(*pbr, material);
     material.normal_texture = uses_.read(json, "normalTexture");
@@ -38,7 +38,7 @@ class MaterialReader {
 
  private:
   void bring_into_range(const JsonValue& json, Material& material) {
-    std::string_view told;  // of a colour all channels have one name
+    std::string_view told;  // all channels of a colour have one name
     for (const MaterialNumber& number : numbers_of(material)) {
       if (*number.value == number.in_range()) continue;
       if (number.name != told)
@@ -48,9 +48,9 @@ class MaterialReader {
     }
   }
 
-  /// Thin films that colour what is black by itself, as soap and beetles.
+  /// Warns about thin films such as soap bubbles or beetles, whose colour is lost because the base is black.
   void warn_if_black_without_iridescence(const JsonValue& json, const Material& m) {
-    constexpr float black = 0.02f;  // 38 of 255 steps
+    constexpr float black = 0.02f;  // sRGB 38 of 255
     const auto iridescence = json.extension("KHR_materials_iridescence");
     if (!iridescence || iridescence->number_or("iridescenceFactor", 0) <= 0) return;
     const glm::vec3 shown = glm::max(glm::vec3(m.base_color), glm::max(m.emissive, m.sheen.color));
@@ -128,7 +128,7 @@ std::string described(const JsonValue& material) {
 MaterialList read_materials(const JsonValue& root, TextureTable& textures, std::vector<std::string>& warnings) {
   MaterialList out;
   const std::optional<JsonValue> array = root.find("materials");
-  // A million of them grow to half a gigabyte: no more of it for a moment while the list grows.
+  // A million materials take half a gigabyte, so the list must not be copied while it grows.
   if (array) out.materials.reserve(array->size());
   for (std::size_t i = 0; array && i < array->size(); ++i) {
     UseReader uses(textures, warnings);

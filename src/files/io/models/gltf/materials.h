@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials of a glTF file; and its textures: which images and samplers materials use, and their pixels.
+// Materials and textures of a glTF file: the images and samplers that materials use, and their pixels.
 //
-//   material --> texture --> image    the same for many textures: decoded once
+//   material --> texture --> image    many textures may share one, which is decoded once
 //                        --> sampler  how it wraps, and whether it is filtered
 //
-// A Texture of a scene has both pixels and wrapping, so a texture of the file stands for one pair of an image and a
-// sampler's settings; equal pairs share a number.
+// A scene's Texture has both pixels and wrapping, so it stands for a pair of an image and a sampler's settings. Equal
+// pairs share a number.
 #pragma once
 
 #include <map>
@@ -21,12 +21,12 @@ class TextureTable {
  public:
   TextureTable(const JsonValue& root, const Data& data) : root_(root), data_(data) {}
 
-  /// The number that a texture of the file will have in the scene; textures alike in image and sampler share one.
-  /// lost_texture: it has no image that could be read, which `warnings` tells.
+  /// The scene's number for a texture of the file; textures with equal image and sampler share one. Returns
+  /// lost_texture, and adds a warning, if its image cannot be read.
   [[nodiscard]] std::uint32_t intern(const JsonValue& index, std::vector<std::string>& warnings);
 
-  /// Decodes in parallel and fills scene.textures. Images that cannot be decoded become warnings, and the materials go
-  /// without them, as they do without a lost_texture.
+  /// Decodes in parallel and fills scene.textures. Images that cannot be decoded cause warnings, and their materials do
+  /// without them, as with lost_texture.
   void load(Scene& scene) const;
 
  private:
@@ -36,23 +36,23 @@ class TextureTable {
     bool nearest = false;
     auto operator<=>(const Look&) const = default;
   };
-  /// An encoded image, or where it is.
+  /// An encoded image, in memory or as a file's name.
   struct Encoded {
     std::string place, name;
     Bytes bytes;
     std::vector<std::byte> decoded_uri;
-    std::string path;  ///< of a file beside the model; empty: `bytes` holds the image
+    std::string path;  ///< file beside the model; empty: `bytes` holds the image
   };
   /// An image that textures use.
   struct Job {
-    std::size_t uses = 0;  ///< textures that differ in their samplers, each of which gets the pixels
+    std::size_t uses = 0;  ///< textures with different samplers, each of which gets the pixels
     Encoded encoded;
     Texture texture;
-    std::string problem;  ///< why it cannot be decoded
+    std::string problem;  ///< the reason if it cannot be decoded
   };
   struct Jobs {
     std::map<std::uint32_t, Job> by_image;
-    std::map<std::uint32_t, std::uint32_t> first_alike;  ///< for every image the first one with the same bytes
+    std::map<std::uint32_t, std::uint32_t> first_alike;  ///< for each image, the first one with the same bytes
   };
 
   void read_sampler(const JsonValue& texture, Look& look) const;
@@ -69,17 +69,17 @@ class TextureTable {
   std::map<Look, std::uint32_t> numbers_;
 };
 
-/// Stands for a texture that cannot be used: TextureTable::load() does without it.
+/// Stands for a texture that cannot be used; TextureTable::load() removes its uses.
 inline constexpr std::uint32_t lost_texture = no_index - 1;
 
-/// Reads uses of textures, and notes which sets of coordinates they ask for.
+/// Reads uses of textures and notes which sets of coordinates they need.
 class UseReader {
  public:
   UseReader(TextureTable& textures, std::vector<std::string>& warnings) : textures_(textures), warnings_(warnings) {}
 
-  /// The use that is a member of `json`, if it is there; lost_texture where it cannot be used, which a warning tells.
+  /// The use in the member `key` of `json`; unset if absent. If it cannot be used, lost_texture with a warning.
   [[nodiscard]] TextureUse read(const JsonValue& json, const char* key);
-  /// Bit k: set k is asked for.
+  /// Bit k is set if set k is used.
   [[nodiscard]] std::uint32_t sets() const { return sets_; }
 
  private:
@@ -88,15 +88,15 @@ class UseReader {
   std::uint32_t sets_ = 0;
 };
 
-/// Reads what the extensions of a material say about its layers.
+/// Reads the layers that a material's extensions describe.
 void read_layers(const JsonValue& json, UseReader& uses, Material& material);
 
 struct MaterialList {
   std::vector<Material> materials;
-  std::vector<std::uint32_t> texcoord_sets;  ///< for each material those that its textures use; bit k: set k
+  std::vector<std::uint32_t> texcoord_sets;  ///< for each material, the sets that its textures use; bit k: set k
 };
 
-/// Names a material of the file in warnings: "materials[2] (lamp)".
+/// Describes a material of the file for warnings: "materials[2] (lamp)".
 [[nodiscard]] std::string described(const JsonValue& material);
 
 [[nodiscard]] MaterialList read_materials(const JsonValue& root, TextureTable& textures,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh of the file becomes one Mesh: all its primitives, one after the other.
+// Turns a mesh of the file into one Mesh: all its primitives, one after the other.
 //
-// Exporters let primitives, and whole meshes, share one large array of vertices. Read as they are named they would be
-// stored again and again; so the triangles are read first, which tells the range of vertices that each block of
-// primitives uses, and only that range is read.
+// Exporters let primitives, and whole meshes, share one large array of vertices, which must not be stored repeatedly.
+// So triangles are read first, to find the range of vertices that each block of primitives uses, and only that range is
+// read.
 #include "io/models/gltf/meshes.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace frontmost::gltf {
 namespace {
 
-/// Builds one mesh. Triangles first, so that only vertices within their reach are read: exporters often let many
+/// Builds one mesh. Triangles come first, so that only the vertices in their range are read: exporters often let many
 /// meshes share one large array.
 class MeshBuilder {
  public:
@@ -23,13 +23,13 @@ class MeshBuilder {
   }
 
   Mesh build(const VertexPose& pose, std::vector<std::string>& warnings) {
-    // All triangles before any vertex: only then the ranges that the blocks share are final.
+    // All triangles come before any vertex, because only then the ranges of the shared blocks are final.
     for (const Primitive& primitive : plan_.primitives) append_triangles(primitive, warnings);
     place_blocks();
     std::size_t triangle = 0;
     for (const Run& run : runs_) {
       const VertexRun& block = blocks_[run.block];
-      // Wraps around where the mesh's vertices start before the accessor's; the sum is right nevertheless.
+      // The shift wraps around if the mesh's vertices start before the accessor's; the sum is right nevertheless.
       const auto shift = std::uint32_t(block.first - block.range.first);
       for (const std::size_t end = triangle + run.triangle_count; triangle < end; ++triangle)
         mesh_.triangles[triangle] += shift;
@@ -39,7 +39,7 @@ class MeshBuilder {
   }
 
  private:
-  /// Triangles of one primitive.
+  /// The triangles of one primitive.
   struct Run {
     std::size_t block, triangle_count;
   };
@@ -69,7 +69,8 @@ class MeshBuilder {
       std::iota(out, out + range.count, std::uint32_t(range.first));
   }
 
-  /// Corners in the order that the format states for each, which keeps the winding of a strip's odd triangles.
+  /// Takes corners in the order that the format defines for each mode, which keeps the winding of a strip's odd
+  /// triangles.
   void read_strip_or_fan(const Primitive& primitive, std::size_t corner_count, std::span<glm::uvec3> triangles) const {
     if (triangles.empty()) return;
     budget_.charge(corner_count, sizeof(std::uint32_t), primitive.place, source_);
@@ -92,7 +93,7 @@ class MeshBuilder {
     }
   }
 
-  /// Checks corner numbers and widens the range of vertices that is needed.
+  /// Checks vertex numbers and widens the range of needed vertices.
   void include(const Primitive& primitive, std::span<const glm::uvec3> triangles) {
     std::uint32_t least = no_index, greatest = 0;
     for (const glm::uvec3& t : triangles) {
@@ -100,7 +101,7 @@ class MeshBuilder {
       greatest = std::max({greatest, t.x, t.y, t.z});
     }
     if (!triangles.empty() && greatest >= primitive.vertex_count) fail_index(primitive, triangles);
-    // A primitive without triangles has a run as well, so that runs and primitives count alike.
+    // A primitive without triangles has a run, too, so that runs and primitives have equal numbers.
     const std::size_t block_id = block_of(primitive);
     runs_.push_back({block_id, triangles.size()});
     if (triangles.empty()) return;
@@ -125,7 +126,7 @@ class MeshBuilder {
     return found->second;
   }
 
-  /// Gives every block its place in the mesh, and makes room.
+  /// Assigns each block its place in the mesh and allocates the arrays.
   void place_blocks() {
     std::size_t total = 0;
     bool normals = false, colors = false;
@@ -143,7 +144,7 @@ class MeshBuilder {
     budget_.charge(total, size, plan_.place, source_);
     if (total >= no_index) source_.fail_limit(plan_.place, "too many vertices");
     mesh_.positions.resize(total);
-    // What a primitive lacks and another has: a missing normal, the texture's corner, white.
+    // Values for primitives that lack what another one has: a missing normal, texture coordinates 0, white.
     if (normals) mesh_.normals.values.resize(total, glm::vec3(0));
     for (std::uint32_t set = 0; set < max_texcoord_sets; ++set)
       if (sets >> set & 1) texcoords_of(mesh_, set).resize(total, glm::vec2(0));
@@ -171,14 +172,15 @@ class MeshBuilder {
       apply_skin(data_, block, pose.joints, source_, mesh_);
   }
 
-  /// Primitives of one mesh need not all have joints; those without stay where the mesh is.
+  /// Subtracts the skin's origin from the vertices of a block without joints, so that they stay where the mesh is.
+  /// Primitives of one mesh need not all have joints.
   void take_off(const glm::dvec3& origin, const VertexRun& block) {
     if (origin == glm::dvec3(0)) return;
     for (std::size_t i = block.first; i < block.first + block.range.count; ++i)
       mesh_.positions[i] = glm::vec3(glm::dvec3(mesh_.positions[i]) - origin);
   }
 
-  /// Posing keeps no memory, but many targets of many vertices would take forever.
+  /// Posing takes no memory, but many targets of many vertices would take too long.
   void charge_pose(const VertexRun& block, const VertexPose& pose) {
     const auto targets =
         std::size_t(std::count_if(pose.weights.begin(), pose.weights.end(), [](double w) { return w != 0; }));

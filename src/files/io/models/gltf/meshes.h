@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes of a glTF file: all triangle primitives of one become one Mesh, in order, with its vertices moved by morph
-// targets and joints if need be.
+// Meshes of a glTF file. All triangle primitives of a mesh become one Mesh, in order, with vertices moved by morph
+// targets and joints if needed.
 #pragma once
 
 #include <array>
@@ -11,20 +11,20 @@
 
 namespace frontmost::gltf {
 
-/// Accessors of one set of vertices, or of what a morph target adds to them.
+/// Accessors of one set of vertices, or of a morph target's displacements.
 struct VertexSources {
   std::uint32_t position = no_index, normal = no_index, color = no_index;
   std::array<std::uint32_t, max_texcoord_sets> texcoords;
   VertexSources() { texcoords.fill(no_index); }
 };
 
-/// All that decides about the vertices of a primitive. Primitives that agree in it share their vertices.
+/// All inputs of a primitive's vertices. Primitives with equal inputs share their vertices.
 struct VertexSet {
   VertexSources base;
   std::vector<VertexSources> targets;
   std::vector<std::uint32_t> joints, weights;
 };
-// Not by <=>, which arrays and vectors do not have in every standard library (WebAssembly).
+// Compared without <=>, which arrays and vectors lack in some standard libraries (WebAssembly).
 inline bool operator<(const VertexSources& a, const VertexSources& b) {
   return std::tie(a.position, a.normal, a.color, a.texcoords) < std::tie(b.position, b.normal, b.color, b.texcoords);
 }
@@ -42,26 +42,26 @@ struct Primitive {
   std::size_t vertex_count = 0;
 };
 
-/// A mesh of the file, checked, but without its data.
+/// A checked mesh of the file, without its data.
 struct MeshPlan {
   std::string name, place;
-  std::vector<Primitive> primitives;  ///< those that have triangles
-  std::vector<double> weights;        ///< of morph targets; may be empty
+  std::vector<Primitive> primitives;  ///< only primitives with triangles
+  std::vector<double> weights;        ///< weights of morph targets; may be empty
   std::size_t target_count = 0;
-  std::uint32_t texcoord_sets = 1;  ///< those that are read: the first, and what materials use; bit k: set k
+  std::uint32_t texcoord_sets = 1;  ///< sets to read: the first, and those that materials use; bit k: set k
   bool has_joints = false;
 };
 
-/// Checks primitives and their accessors. Points, lines and primitives without positions become warnings.
-/// Arrays of compressed primitives are decoded, and added to `data`.
+/// Checks primitives and their accessors. Points, lines and primitives without positions cause warnings. Arrays of
+/// compressed primitives are decoded and added to `data`.
 [[nodiscard]] std::vector<MeshPlan> plan_meshes(const JsonValue& root, Data& data, const MaterialList& materials,
                                                 std::vector<std::string>& warnings);
 
-/// How vertices are moved: by morph targets, then by joints.
+/// Deformation of vertices: by morph targets, then by joints.
 struct VertexPose {
-  std::vector<double> weights;              ///< as many as there are targets, or none
+  std::vector<double> weights;              ///< one a target, or none
   std::span<const glm::dmat4> joints = {};  ///< world_from_joint * inverse bind matrix; empty: no skin
-  glm::dvec3 origin{0};                     ///< what the joints lead to has its zero here
+  glm::dvec3 origin{0};                     ///< origin of the positions that the joints produce
 };
 
 /// Reads the data of planned meshes.
@@ -77,19 +77,19 @@ class MeshReader {
   const ModelSource& source_;
 };
 
-/// A run of vertices of a mesh that come from one vertex set.
+/// A run of a mesh's vertices that come from one vertex set.
 struct VertexRun {
   const VertexSet* vertices = nullptr;
-  ElementRange range;     ///< of the accessors' elements; empty: no triangle uses them
-  std::size_t first = 0;  ///< where they are in the mesh
-  std::string place;      ///< of the first primitive that uses them
+  ElementRange range;     ///< range of the accessors' elements; empty: no triangle uses them
+  std::size_t first = 0;  ///< first vertex in the mesh
+  std::string place;      ///< place of the first primitive that uses them
 };
 
 /// Adds weighted displacements to positions, normals, texture coordinates and colours.
 void apply_targets(const Data& data, const VertexRun& block, std::span<const double> weights, Mesh& mesh);
-/// The values of a set of texture coordinates, made if they are not there.
+/// The values of a set of texture coordinates. Creates the set if absent.
 [[nodiscard]] std::vector<glm::vec2>& texcoords_of(Mesh& mesh, std::size_t set);
-/// Moves positions and normals by joints, which the block's vertices have.
+/// Moves positions and normals by joints. Precondition: the block's vertices have joints.
 /// \throws Error file_malformed for a joint that the skin does not have.
 void apply_skin(const Data& data, const VertexRun& block, std::span<const glm::dmat4> joints, const ModelSource& source,
                 Mesh& mesh);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Buffer views that meshoptimizer has compressed. Its decoders check their input; what they only assert about counts
-// and strides is checked here, and so is whether the bytes can hold as much as they state.
+// Buffer views compressed by meshoptimizer. Its decoders check their input, but only assert counts and strides. Counts
+// and strides are checked here, and so is whether the bytes can hold the stated amount.
 #include <meshoptimizer.h>
 
 #include "io/models/gltf/compressed.h"
@@ -8,8 +8,8 @@
 namespace frontmost::gltf {
 namespace {
 
-/// The most bytes that a compressed one stands for: of vertices 64, as two bits say that 16 bytes are zero; of
-/// indices 12.
+/// The most bytes that one compressed byte can produce: 64 for vertices, since two bits can mean 16 zero bytes; 12 for
+/// indices.
 constexpr std::uint64_t densest = 64;
 
 struct MeshoptStream {
@@ -75,7 +75,7 @@ std::vector<std::byte> decode_meshopt(const JsonValue& json, Bytes compressed, s
   std::vector<std::byte> values(length);
   if (stream.count == 0) return values;
   if (decode_stream(stream, values.data()) != 0) {
-    // KHR_meshopt_compression allows version 1 of the vertex format too, which libraries before 0.23 do not decode.
+    // KHR_meshopt_compression also allows version 1 of the vertex format, which libraries before 0.23 do not decode.
     if (!compressed.empty() && compressed[0] == std::byte{0xA1})
       fail_unsupported(json, "version 1 of the vertex format");
     json.fail("the " + std::to_string(compressed.size()) + " bytes are damaged, or not of mode " + stream.mode);

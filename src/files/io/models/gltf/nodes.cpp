@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tree of nodes. Parents come from the children that nodes name, so a file can say nonsense: two parents, loops,
-// children that are not there. Each of these is an error; what is left is a forest, and is walked without recursion, as
-// it may be a million levels deep.
+// The tree of nodes. A file lists the children of nodes and may be inconsistent: two parents, loops, missing children.
+// Each of these is an error. The remaining forest is walked without recursion, because it may be a million levels deep.
 #include "io/models/gltf/nodes.h"
 
 #include <algorithm>
@@ -10,7 +9,7 @@
 namespace frontmost::gltf {
 namespace {
 
-/// Numbers of arrays that nodes refer to.
+/// Sizes of the arrays that nodes refer to.
 struct Counts {
   std::size_t nodes, meshes, skins, cameras, lights;
 };
@@ -22,11 +21,11 @@ std::size_t size_or_zero(const JsonValue& root, const char* key) {
 
 glm::dmat4 read_transform(const JsonValue& json) {
   double m[16], t[3] = {0, 0, 0}, r[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
-  // The format forbids a node to have both; files that do mean the matrix.
+  // The format forbids nodes with both; exporters that write both mean the matrix.
   if (json.read_numbers("matrix", m)) {
     glm::dmat4 matrix;
     for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = m[i];
-    constexpr double tolerance = 1e-6;  // exporters that work in floats
+    constexpr double tolerance = 1e-6;  // exporters that use floats
     for (int column = 0; column < 4; ++column) {
       const double expected = column == 3 ? 1 : 0;
       if (std::abs(matrix[column][3] - expected) > tolerance) json.require("matrix").fail("is not affine");
@@ -47,7 +46,7 @@ std::uint32_t copy_attribute(const JsonValue& attributes, const char* key, int c
   const std::uint32_t id = data.readable_accessor(*json);
   const Accessor& accessor = data.accessor(id);
   if (accessor.components != components) json->fail("the accessor's type does not fit");
-  // Whether there was one before, not whether it had elements: what is read later goes by one count for all.
+  // The test is for an earlier attribute, not for its elements, because later code uses one count for all attributes.
   const bool is_first = copies.translation == no_index && copies.rotation == no_index && copies.scale == no_index;
   if (!is_first && copies.count != accessor.count)
     json->fail("has another number of elements than the attributes before");
@@ -75,7 +74,7 @@ Node read_node(const JsonValue& json, const Counts& counts, const Data& data) {
   node.camera = json.index_or_none("camera", counts.cameras);
   if (const auto light = json.extension("KHR_lights_punctual"))
     node.light = light->require("light").to_index(counts.lights);
-  node.world = read_transform(json);  // of its parent's space, until all parents are known
+  node.world = read_transform(json);  // relative to the parent until all parents are known
   node.copies = read_copies(json, data);
   if (const auto visibility = json.extension("KHR_node_visibility"))
     node.is_hidden = !visibility->bool_or("visible", true);
@@ -89,8 +88,8 @@ Node read_node(const JsonValue& json, const Counts& counts, const Data& data) {
   return node;
 }
 
-// One parent for each node is what makes the graph a forest, so that world transforms are unique and loops, which then
-// are closed off from all roots, cost no search of their own.
+// Each node has at most one parent, so the graph is a forest with unique world transforms. A loop cannot be reached
+// from a root, so finding loops needs no search of its own.
 void find_parents(std::vector<Node>& nodes, const ModelSource& source) {
   for (std::size_t i = 0; i < nodes.size(); ++i)
     for (const std::uint32_t child : nodes[i].children) {
@@ -101,14 +100,15 @@ void find_parents(std::vector<Node>& nodes, const ModelSource& source) {
     }
 }
 
-/// Nodes from `starts` downwards, each before its children, in order. An own stack: trees may be a million deep.
+/// The nodes from `starts` downwards, in order, each before its children. The stack is explicit, since trees may be a
+/// million levels deep.
 std::vector<std::uint32_t> walk(const std::vector<Node>& nodes, std::vector<std::uint32_t> starts) {
   std::vector<std::uint32_t> order, stack(starts.rbegin(), starts.rend());
   std::vector<bool> seen(nodes.size());
   while (!stack.empty()) {
     const std::uint32_t id = stack.back();
     stack.pop_back();
-    // A scene may name a node and its child, or one node twice: it is shown once.
+    // A scene may name a node and its child, or a node twice; each node is shown once.
     if (seen[id]) continue;
     seen[id] = true;
     order.push_back(id);
@@ -123,14 +123,13 @@ bool is_finite_matrix(const glm::dmat4& m) {
   return true;
 }
 
-/// Takes transforms from parents' spaces to the world, and hides what is below hidden nodes. \returns the nodes without
-/// parents.
+/// Converts transforms to world space and hides nodes below hidden ones. \returns the nodes without parents.
 std::vector<std::uint32_t> place_in_world(std::vector<Node>& nodes, const ModelSource& source) {
   std::vector<std::uint32_t> roots;
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (nodes[i].parent == no_index) roots.push_back(std::uint32_t(i));
   const std::vector<std::uint32_t> order = walk(nodes, roots);
-  // With one parent at most, only nodes of a loop cannot be reached from above.
+  // Since nodes have at most one parent, only nodes of a loop cannot be reached from a root.
   if (order.size() < nodes.size()) {
     std::vector<bool> reached(nodes.size());
     for (const std::uint32_t id : order) reached[id] = true;
@@ -148,7 +147,7 @@ std::vector<std::uint32_t> place_in_world(std::vector<Node>& nodes, const ModelS
   return roots;
 }
 
-/// Where the shown scene starts. A start that is not a root of the tree stays where its parents put it.
+/// Start nodes of the shown scene. A start node with a parent keeps the parent's transform.
 std::vector<std::uint32_t> scene_starts(const JsonValue& root, std::size_t node_count,
                                         std::vector<std::uint32_t> roots) {
   const std::optional<JsonValue> scenes = root.find("scenes");
@@ -164,7 +163,7 @@ std::vector<std::uint32_t> scene_starts(const JsonValue& root, std::size_t node_
 
 glm::dmat4 compose(const glm::dvec3& translation, const glm::dvec4& rotation, const glm::dvec3& scale) {
   const double length = glm::length(rotation);
-  // Quaternions of files are rounded, so they are made unit; one of zeros turns nothing.
+  // Quaternions in files are rounded, so they are normalised; a zero quaternion means no rotation.
   const glm::dvec4 q = length > 0 ? rotation / length : glm::dvec4(0, 0, 0, 1);
   const double x = q.x, y = q.y, z = q.z, w = q.w;
   glm::dmat4 m(1.0);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks what meshes are made of before any of it is read.
+// Checks the parts of meshes before any data is read.
 //
-//   mesh --> primitives --> attributes --> accessors: number of components, their type, the same count for all
+//   mesh --> primitives --> attributes --> accessors: number of components, type, equal counts
 //                       --> indices, morph targets, joints and weights
 //
-// Primitives of points and lines are checked too, although they are not drawn: what a file says wrongly is found
-// whatever it is for. What is left is a MeshPlan, which can be read without a further question.
+// Primitives of points and lines are checked too, although they are not drawn, so that errors in a file are always
+// found. The resulting MeshPlan can be read without further checks.
 #include <algorithm>
 
 #include "io/models/gltf/compressed.h"
@@ -14,22 +14,22 @@
 namespace frontmost::gltf {
 namespace {
 
-/// Sets of joints, four joints each. Real files have one, rarely two.
+/// Limit of sets of joints, four joints each. Real files have one, rarely two.
 constexpr std::size_t max_joint_sets = 16;
 
-/// Which accessors an attribute may be read from.
+/// The accessors that an attribute may be read from.
 struct Allowed {
   int least_components, most_components;
-  bool integers;  ///< unsigned ones, and nothing else
+  bool integers;  ///< only unsigned integers
 };
 
-/// Reads the attributes of one primitive or morph target; `decoded` has those that are compressed, if any are.
+/// Reads the attributes of one primitive or morph target. `decoded` holds its compressed attributes, if any.
 class AttributeReader {
  public:
   AttributeReader(const JsonValue& json, const Data& data, const DecodedPrimitive* decoded = nullptr)
       : json_(json), data_(data), decoded_(decoded) {}
 
-  /// The accessor of an attribute, if it is there and can be read as asked.
+  /// The accessor of an attribute; no_index if absent. \throws Error if it is not allowed.
   std::uint32_t find(const std::string& name, Allowed allowed) {
     const std::optional<JsonValue> found = json_.find(name.c_str());
     if (!found) return no_index;
@@ -101,7 +101,7 @@ class Planner {
       plan.primitives.push_back(*std::move(primitive));
     }
     plan.target_count = target_count.value_or(0);
-    // A mesh of points and lines alone has no plan to count targets in.
+    // A mesh of only points and lines has no plan in which targets are counted.
     if (!plan.weights.empty() && !plan.primitives.empty() && plan.weights.size() != plan.target_count)
       json_.fail(std::to_string(plan.weights.size()) + " weights for " + std::to_string(plan.target_count) +
                  " morph targets");
@@ -120,7 +120,7 @@ class Planner {
     const std::uint64_t mode = json.unsigned_or("mode", 4);
     primitive.material = json.index_or_none("material", materials_.materials.size());
     const std::optional<DecodedPrimitive> decoded = compressed_.decode(json);
-    // Points and lines too, although they are not drawn: what a file says wrongly is found whatever it is for.
+    // Points and lines are checked too, although they are not drawn, so that errors in a file are always found.
     read_vertices(json, decoded ? &*decoded : nullptr, primitive);
     if (decoded)
       primitive.indices = decoded->indices;
@@ -131,17 +131,17 @@ class Planner {
     if (mode == 0) return skip(json, "its " + std::to_string(points) + " points are not drawn");
     if (mode < 4) return skip(json, "lines are not drawn");
     if (mode > 6) return skip(json, "mode " + std::to_string(mode) + " is unknown");
-    primitive.mode = decoded ? Mode::triangles : Mode(mode);  // of strips, too, Draco keeps a list
+    primitive.mode = decoded ? Mode::triangles : Mode(mode);  // Draco stores strips as lists, too
     if (primitive.vertices.base.position == no_index) return skip(json, "has no POSITION, nothing to draw");
     if (!decoded && json.extension("KHR_draco_mesh_compression"))
       warnings_.push_back(json.place() + ": the uncompressed data are taken");
     return primitive;
   }
 
-  /// Those that its material's textures use.
+  /// The sets of texture coordinates that the primitive's material uses.
   std::uint32_t texcoord_sets_of(const Primitive& primitive) {
     const std::uint32_t sets = materials_.texcoord_sets[primitive.material];
-    // Set 0 is missing so often, with textures that mean a single colour, that nobody has to be told.
+    // Set 0 is often absent, with textures of a single colour, so its absence causes no warning.
     for (std::uint32_t set = 1; set < max_texcoord_sets; ++set)
       if (sets >> set & 1 && primitive.vertices.base.texcoords[set] == no_index)
         warnings_.push_back(primitive.place + ": has no TEXCOORD_" + std::to_string(set) +
@@ -158,7 +158,7 @@ class Planner {
       const std::uint32_t joints = reader.find("JOINTS_" + std::to_string(set), {4, 4, true});
       const std::uint32_t weights = reader.find("WEIGHTS_" + std::to_string(set), {4, 4, false});
       if ((joints == no_index) != (weights == no_index)) attributes.fail("joints without weights, or the reverse");
-      // Sets are numbered without gaps; a later one behind a gap is nobody's.
+      // Sets are numbered without gaps; sets behind a gap are ignored.
       if (joints == no_index) break;
       vertices.joints.push_back(joints);
       vertices.weights.push_back(weights);
@@ -168,7 +168,7 @@ class Planner {
     for (std::size_t i = 0; targets && i < targets->size(); ++i) {
       const JsonValue target = (*targets)[i];
       AttributeReader target_reader(target, data_);
-      // Displacements are read by the ranges of the vertices that they move.
+      // Displacements are read by the same ranges as the vertices, so their counts must agree.
       target_reader.expect_count(primitive.vertex_count);
       vertices.targets.push_back(target_reader.read_sources());
     }

@@ -7,14 +7,14 @@ namespace {
 /// values[i] += weight * displacement i.
 template <class V>
 void add(const Data& data, const VertexRun& block, std::uint32_t accessor, double weight, std::vector<V>& values) {
-  // Targets may add what the mesh lacks, normals to a mesh without any; there is nothing to add to.
+  // A target may displace what the mesh lacks, for example normals; such displacements are ignored.
   if (accessor == no_index || values.empty()) return;
   std::vector<V> displacements(block.range.count, V(0));
   read_floats(data.accessor(accessor), block.range, V::length(), &displacements[0][0]);
   for (std::size_t i = 0; i < block.range.count; ++i) values[block.first + i] += float(weight) * displacements[i];
 }
 
-/// The weighted joints of a block's vertices, all sets of four side by side.
+/// Joints and weights of a block's vertices, all sets of four side by side.
 class Influences {
  public:
   Influences(const Data& data, const VertexRun& block, std::size_t joint_count, const ModelSource& source)
@@ -27,7 +27,7 @@ class Influences {
       read_integers(data.accessor(block.vertices->joints[set]), block.range, 4, joints.data());
       read_floats(data.accessor(block.vertices->weights[set]), block.range, 4, weights.data());
       for (std::size_t i = 0; i < joints.size(); ++i) {
-        // Unused places often hold rubbish; only a joint that counts must exist.
+        // Unused places often hold rubbish; only joints with a weight must exist.
         if (weights[i] != 0 && joints[i] >= joint_count)
           source.fail(block.place + ".attributes.JOINTS_" + std::to_string(set),
                       "vertex " + std::to_string(block.range.first + i / 4) + " uses joint " +
@@ -39,7 +39,8 @@ class Influences {
     }
   }
 
-  /// The weighted mean of the joints' matrices. Weights need not sum to one exactly when they are stored in bytes.
+  /// The weighted mean of the joints' matrices. Weights stored as bytes may not sum to exactly one, so the sum is
+  /// divided out.
   [[nodiscard]] glm::dmat4 matrix(std::size_t vertex, std::span<const glm::dmat4> joints) const {
     glm::dmat4 sum(0.0);
     double total = 0;
@@ -48,7 +49,7 @@ class Influences {
       sum += joints[joints_[k]] * double(weights_[k]);
       total += double(weights_[k]);
     }
-    // A vertex of no weight would fall into the world's origin; with the first joint it stays with the body.
+    // A vertex without weight would fall into the world's origin; with the first joint it stays near the body.
     return total != 0 ? sum / total : joints.front();
   }
 
@@ -58,7 +59,7 @@ class Influences {
   std::vector<float> weights_;
 };
 
-/// The inverse transpose up to a positive factor, which also exists for flattening matrices.
+/// The inverse transpose up to a positive factor. It also exists for singular matrices.
 glm::dmat3 normal_matrix(const glm::dmat3& m) {
   const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
   return glm::dot(m[0], cofactors[0]) < 0 ? -cofactors : cofactors;

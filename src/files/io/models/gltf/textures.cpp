@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images are decoded once each, by several threads, although many textures may use one with other samplers; and images
-// that are the same bytes, as exporters write them that embed a copy for every material, count as one.
+// Each image is decoded once, in parallel, although many textures may use it with other samplers. Images of equal bytes
+// count as one, because some exporters embed a copy for each material.
 //
-// Numbers are given to textures before anybody knows which images can be decoded. load() closes the gaps afterwards.
+// Textures get their numbers before it is known which images can be decoded; load() closes the gaps afterwards.
 #include "io/models/textures.h"
 
 #include "base/parallel.h"
@@ -25,7 +25,7 @@ Texture::Wrap wrap_of(std::uint64_t code) {
 }
 constexpr std::uint64_t repeat_code = 10497, nearest_code = 9728;
 
-/// What to say of a texture without a source.
+/// The text of a warning about a texture without an image that can be read.
 std::string lack_of_image(const JsonValue& texture) {
   if (texture.extension("KHR_texture_basisu")) {
     const auto advice = conversion_of_extensions({"KHR_texture_basisu"}, texture.source().name());
@@ -35,7 +35,7 @@ std::string lack_of_image(const JsonValue& texture) {
   return ": has no PNG, JPEG or WebP image";
 }
 
-/// False: the texture is lost.
+/// \returns false if the texture is lost.
 bool remap(TextureUse& use, const std::vector<std::uint32_t>& new_numbers) {
   if (!use.is_set()) return true;
   use.texture = use.texture == lost_texture ? no_index : new_numbers[use.texture];
@@ -44,8 +44,8 @@ bool remap(TextureUse& use, const std::vector<std::uint32_t>& new_numbers) {
   return false;
 }
 
-/// What is left of a material whose texture is lost. A factor without its texture would say something else than the
-/// file means; what only colours or bumps is done without.
+/// Changes a material whose texture is lost. A factor without its texture would not mean what the file says, so the
+/// layer goes; textures that only add colour or bumps are dropped.
 void do_without(const TextureUse* lost, Material& m, const std::string& who, std::vector<std::string>& warnings) {
   if (lost == &m.metallic_roughness_texture) return lose_metallic_roughness_texture(m, who, warnings);
   if (lost == &m.emissive_texture) return lose_emissive_texture(m, who, warnings);
@@ -55,7 +55,7 @@ void do_without(const TextureUse* lost, Material& m, const std::string& who, std
   };
   if (lost == &m.specular.factor_texture || lost == &m.specular.color_texture) {
     lose(m.specular, "specular layer");
-    if (m.ior == 0) m.ior = Material{}.ior;  // a mirror, which had its colour from that layer alone
+    if (m.ior == 0) m.ior = Material{}.ior;  // the mirror has its colour from that layer alone
   }
   if (lost == &m.clearcoat.factor_texture || lost == &m.clearcoat.roughness_texture) lose(m.clearcoat, "clearcoat");
   if (lost == &m.sheen.color_texture || lost == &m.sheen.roughness_texture) lose(m.sheen, "sheen");
@@ -72,7 +72,7 @@ std::uint32_t TextureTable::intern(const JsonValue& index, std::vector<std::stri
   const std::optional<JsonValue> images = root_.find("images");
   const std::size_t image_count = images ? images->size() : 0;
   Look look;
-  // WebP first: its plain source is there for programs that do not know the extension.
+  // WebP has precedence: the texture's plain source is for programs without the extension.
   if (const auto webp = texture.extension("EXT_texture_webp"); webp && decodes_webp(root_.source().image_decoder()))
     look.image = webp->require("source").to_index(image_count);
   else
@@ -83,7 +83,7 @@ std::uint32_t TextureTable::intern(const JsonValue& index, std::vector<std::stri
   }
   read_sampler(texture, look);
   const auto [entry, is_new] = numbers_.emplace(look, std::uint32_t(looks_.size()));
-  // The number is one among looks, before anybody knows which images can be decoded; load() closes the gaps.
+  // The number is an index of looks_, because it is unknown yet which images can be decoded; load() closes the gaps.
   if (is_new) looks_.push_back(look);
   return entry->second;
 }
@@ -124,13 +124,13 @@ TextureTable::Encoded TextureTable::find_image(std::uint32_t id) const {
 template <class Use>
 auto TextureTable::with_bytes(const Encoded& encoded, Use use) const {
   if (encoded.path.empty()) return use(encoded.bytes, encoded.place);
-  // Open only while it is used: a thousand images may name the same file.
+  // The file is open only while it is used, because a thousand images may name the same file.
   const InputFile file = root_.source().open(encoded.path, max_image_bytes);
   return use(file.bytes(), encoded.place);
 }
 
-/// Textures that lie in the same place are one: some exporters write an image for every material, hostile ones write
-/// thousands.
+/// Textures that lie in the same place share an image: some exporters write an image for each material, and hostile
+/// files write thousands.
 TextureTable::Jobs TextureTable::find_images() const {
   Jobs jobs;
   std::map<std::tuple<const std::byte*, std::size_t, std::string>, std::uint32_t> places;
@@ -153,14 +153,14 @@ TextureTable::Jobs TextureTable::find_images() const {
   return jobs;
 }
 
-/// Reads the headers. Images that would be too large together become problems before memory is asked for.
+/// Reads the images' headers. Images that exceed the budget get a problem, before memory is allocated.
 void TextureTable::check_sizes(Jobs& jobs) const {
-  // Buffer views may overlap, and going over an image's chunks takes time: each byte may be in a few images only.
+  // Buffer views may overlap, and scanning an image's chunks takes time, so each byte may belong to a few images only.
   std::uint64_t encoded_left = (std::uint64_t(1) << 24) + 4 * data_.byte_count();
   PixelBudget budget;
   budget.add_file(data_.byte_count());
   for (auto& entry : jobs.by_image) {
-    Job& job = entry.second;  // a name of its own, as lambdas may not capture parts of a pair
+    Job& job = entry.second;  // a named reference, because lambdas may not capture structured bindings
     if (!job.problem.empty()) continue;
     const std::string& place = job.encoded.place;
     try {
@@ -211,7 +211,7 @@ void TextureTable::load(Scene& scene) const {
     Job& job = jobs.by_image.at(jobs.first_alike.at(look.image));
     if (!job.problem.empty()) continue;
     new_numbers[i] = std::uint32_t(scene.textures.size());
-    // Only samplers that differ make a second copy of the pixels.
+    // The pixels are copied only for a further sampler of the same image.
     const bool last = --job.uses == 0;
     Texture& texture = scene.textures.emplace_back(last ? std::move(job.texture) : job.texture);
     texture.wrap_u = look.wrap_u;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Data URIs and escapes, by the letter of the standard where that matters and as exporters write them where it does
-// not: both base64 alphabets are taken, padding may be missing, and an escape that is none stays as it is.
+// Data URIs and percent escapes. The decoder is lenient where exporters are: both base64 alphabets are accepted,
+// padding may be missing, and an invalid escape stays as text.
 #include <array>
 #include <cstdint>
 
@@ -33,7 +33,7 @@ std::vector<std::byte> decode_base64(std::string_view text, const JsonValue& pla
   for (std::size_t i = 0; i < text.size(); ++i) {
     const std::uint8_t digit = base64_digits[static_cast<unsigned char>(text[i])];
     if (digit == no_digit) place.fail("character " + std::to_string(i) + " of the base64 data is not in its alphabet");
-    // Older digits fall off the top of the 32 bits; at most six bits still wait for their byte.
+    // Older digits fall off the top of the 32 bits; at most six bits wait for their byte.
     bits = bits << 6 | digit;
     // Six bits come in; whenever eight or more are held, the upper eight go out.
     if (i % 4 != 0) out[written++] = std::byte(bits >> (6 - 2 * (i % 4)));
@@ -41,7 +41,7 @@ std::vector<std::byte> decode_base64(std::string_view text, const JsonValue& pla
   return out;
 }
 
-// Not isxdigit(): that depends on the locale and is undefined for negative characters.
+// isxdigit() is not used, because it depends on the locale and is undefined for negative characters.
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// MTL describes the Phong model of 1990, and by later custom metallic and roughness too. Colours are taken as sRGB,
-// as most programs that write and read these files do.
+// MTL describes the Phong model of 1990 and, by later convention, metallic and roughness, too. Colours are read as
+// sRGB, as most programs that write and read these files do.
 #include "io/models/obj/mtl.h"
 
 #include <algorithm>
@@ -51,7 +51,7 @@ class MtlReader {
     } else if (word == "Tr") {
       set_alpha(1 - value());
     } else if (word == "Ns") {
-      // The Blinn-Phong exponent of the same highlight width.
+      // The roughness whose highlight is as wide as that of the Blinn-Phong exponent.
       material().roughness = std::sqrt(2 / (2 + std::max(value(), 0.0f)));
     } else if (word == "Pr") {
       material().roughness = unit(value());
@@ -75,17 +75,17 @@ class MtlReader {
     }
   }
 
-  /// Exporters write "nan" for materials without a value; the model is not refused for that.
+  /// A number. Exporters write "nan" for materials without a value, which is no reason to refuse the model.
   float value() {
     float value = 0;
     if (text_.next_is('-')) skip_option();
     if (!text_.number(value)) text_.fail("a number was expected");
     return std::isfinite(value) ? value : 0;
   }
-  /// "d -halo 0.5": an option, unless the word is a negative number.
+  /// Skips an option, as in "d -halo 0.5", unless the word is a negative number.
   void skip_option() {
     float value = 0;
-    // A copy, so that a number is still there to be read.
+    // A copy of the scanner looks ahead, so that a number can still be read.
     TextScanner ahead = text_;
     if (!ahead.number(value)) text_.word();
   }
@@ -96,7 +96,7 @@ class MtlReader {
     if (alpha < 1) material().alpha = Material::Alpha::blend;
   }
 
-  /// One number stands for three. Spectral curves and CIE colours are not known; they leave white.
+  /// Reads a colour; one number stands for three. Spectral curves and CIE colours are not supported and give white.
   glm::vec3 color() {
     glm::vec4 srgb(1);
     if (text_.number(srgb.r)) {
@@ -109,13 +109,13 @@ class MtlReader {
   struct Map {
     TextureUse use;
     Texture::Wrap wrap = Texture::Wrap::repeat;
-    std::string file;  ///< empty: there is no map
+    std::string file;  ///< empty: no map
   };
   struct BaseMaps {
     Map color, alpha;  ///< map_Kd, map_d
   };
 
-  /// [-option values]... file name
+  /// Reads "[-option values]... file name".
   Map read_map() {
     Map map;
     glm::vec2 scale(1), offset(0);
@@ -127,7 +127,7 @@ class MtlReader {
         offset = pair(0);
       } else if (option == "-clamp") {
         if (text_.word() == "on") map.wrap = Texture::Wrap::clamp;
-        // Turbulence: of no use here, but its numbers must not become the file's name.
+        // Turbulence is not used, but its numbers must not become the file's name.
       } else if (option == "-t") {
         pair(0);
       } else if (option == "-mm") {
@@ -140,7 +140,7 @@ class MtlReader {
     const std::string file(text_.rest());
     if (file.empty()) text_.fail("a file name was expected");
     map.file = folder_.empty() ? file : folder_ + "/" + file;
-    // In the file v goes up: v' = s v + o there is v' = s v + (1 - s - o) here.
+    // v points up in the file: v' = s v + o there is v' = s v + (1 - s - o) here.
     map.use.scale = scale;
     map.use.offset = {offset.x, 1 - scale.y - offset.y};
     return map;
@@ -153,7 +153,7 @@ class MtlReader {
     return map.use;
   }
 
-  /// Up to three numbers, of which two count.
+  /// Reads up to three numbers and returns the first two.
   glm::vec2 pair(float missing) {
     glm::vec3 values(missing);
     for (int k = 0; k < 3; ++k)
@@ -161,11 +161,11 @@ class MtlReader {
     return {values.x, values.y};
   }
 
-  /// Colours and alpha become one texture. Its options are those of map_Kd, if there is one, else those of map_d.
+  /// Combines the colour and alpha maps to one texture, with the options of map_Kd if there is one, else of map_d.
   ///
-  /// Exporters write their own grey as Kd beside a texture, or black, and mean the texture as it is; MTL's own text
-  /// multiplies the two, and whoever means that gives a hue. Black is white where the texture cannot be read, too; so
-  /// is a black Ke.
+  /// MTL multiplies Kd and the texture. But exporters write a default grey or black Kd beside a texture that is meant
+  /// unchanged, so Kd only counts if it has a hue. A black Kd also becomes white if the texture cannot be read, and so
+  /// does a black Ke.
   void finish_material() {
     const auto found = maps_.find(number_);
     if (found == maps_.end()) return;
@@ -197,7 +197,7 @@ class MtlReader {
   TextureFiles& textures_;
   NamedMaterials& materials_;
   std::uint32_t number_ = no_index;
-  std::map<std::uint32_t, BaseMaps> maps_;  ///< by the number of their material
+  std::map<std::uint32_t, BaseMaps> maps_;  ///< by number of the material
   std::vector<std::uint32_t> glowing_;      ///< materials with a map_Ke
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials of OBJ files: a table of names, filled from material libraries (MTL).
 //
-// Faces may name a material before its library is read, or although there is none. So a name gets its number when it is
-// first met, and what no library has defined by the end is told, and stays plain.
+// Faces may name a material before its library is read, or without any library. So a name gets its number at its first
+// use. Names that no library defines by the end cause a warning and remain plain materials.
 #pragma once
 
 #include <string>
@@ -13,14 +13,14 @@
 
 namespace frontmost {
 
-/// The materials of a scene by name. A name may be used before, after or without its definition.
+/// The scene's materials by name. A name may be used before, after or without its definition.
 class NamedMaterials {
  public:
   NamedMaterials(const ModelSource& source, Scene& scene) : source_(source), scene_(scene) {}
 
   /// The number of the material called `name`. \throws Error limit_exceeded.
   std::uint32_t number(const std::string& name);
-  /// The same, noting that a library defines it.
+  /// The number of the material called `name`, which is marked as defined by a library. \throws Error limit_exceeded.
   std::uint32_t define(const std::string& name);
   [[nodiscard]] Material& operator[](std::uint32_t number) { return scene_.materials[number]; }
   [[nodiscard]] std::vector<std::string>& warnings() { return scene_.warnings; }
@@ -34,7 +34,7 @@ class NamedMaterials {
   std::vector<bool> is_defined_;
 };
 
-/// Reads a material library. `library` stands for it in errors, `folder` is where it lies, relative to the model.
+/// Reads a material library. `library` names it in errors; `folder` is its folder, relative to the model.
 /// \throws Error file_malformed.
 void read_mtl(Bytes bytes, const ModelSource& library, const std::string& folder, TextureFiles& textures,
               NamedMaterials& materials);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OBJ: polygons with separate indices for positions, texture coordinates and normals. Every run of faces under one `o`
-// or `g` name becomes a mesh and its instance, in file order. Curves, lines and points are passed over.
+// OBJ: polygons with separate indices for positions, texture coordinates and normals. Each run of faces under one `o`
+// or `g` name becomes a mesh and its instance, in file order. Curves, lines and points are skipped.
 //
 //   v 0 0 0              lists of the whole file: positions, perhaps with a colour, ...
 //   vt 0.5 1             texture coordinates, ...
@@ -9,7 +9,7 @@
 //   usemtl steel
 //   f 1/1/1 2/2/1 -1//1  corners: position/texture/normal, counted from 1, or backwards from the last one so far
 //
-// An index may be greater than what is there so far: the list is checked at the end, with the line that named it.
+// An index may exceed the current length of its list. The check comes at the end; errors name the line.
 #include <algorithm>
 #include <set>
 
@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::uint64_t max_library_bytes = std::uint64_t(1) << 28;
 
-/// The numbers of one list in a polygon's corners, and the greatest one so far, which may be defined later.
+/// Indices of one list in a polygon's corners, and the greatest index so far, which may be defined later.
 struct IndexList {
   const char* what;
   std::vector<std::uint32_t> corners;
@@ -51,7 +51,7 @@ class ObjReader {
 
  private:
   void statement(std::string_view word) {
-    // The most frequent first; a file is mostly these.
+    // The most frequent statements come first.
     if (word == "v") {
       vertex();
     } else if (word == "f" || word == "fo") {
@@ -60,7 +60,7 @@ class ObjReader {
       glm::vec2 uv(0);
       if (!text_.number(uv.x)) text_.fail("a texture coordinate needs a number");
       (void)text_.number(uv.y);
-      // Down from the top, as in glTF; in the file v goes up.
+      // v points down from the top, as in glTF; in the file it points up.
       pool_.texcoords.emplace_back(uv.x, 1.0f - uv.y);
     } else if (word == "vn") {
       normal();
@@ -91,7 +91,7 @@ class ObjReader {
       if (!text_.number(normal[k])) text_.fail("a normal needs three numbers");
   }
 
-  /// v x y z, v x y z w, v x y z r g b, v x y z w r g b
+  /// Reads v x y z, v x y z w, v x y z r g b, or v x y z w r g b.
   void vertex() {
     glm::vec3 rounded;
     glm::dvec3 exact;
@@ -108,19 +108,19 @@ class ObjReader {
     int count = 0;
     while (count < 4 && text_.number(extra[count])) ++count;
     if (count < 3) return;
-    // With a weight before the colour there are four, and the weight is of no use: it belongs to rational curves.
+    // Four numbers are a weight and a colour. The weight belongs to rational curves and is not used.
     const float* rgb = extra + count - 3;
     pool_.colors.resize(pool_.positions.size() - 1, glm::vec4(1));
     pool_.colors.push_back(linear_color({rgb[0], rgb[1], rgb[2], 1}));
   }
 
   void start_group(const std::string& name) {
-    // Begun by the next face only, so that groups without faces leave no empty objects.
+    // The next face begins the group, so that groups without faces leave no empty objects.
     is_new_group_ = is_new_group_ || name != group_;
     group_ = name;
   }
 
-  /// Appends an index of the file, which counts from 1, or backwards from the last one defined.
+  /// Appends an index of the file. The index counts from 1, or backwards from the last element defined so far.
   void append(IndexList& list, std::int64_t index, std::size_t count) {
     if (index < 0) index += std::int64_t(count) + 1;
     if (index < 1 || index >= std::int64_t(no_index))
@@ -133,7 +133,7 @@ class ObjReader {
     list.corners.push_back(number);
   }
 
-  /// v, v/vt, v//vn or v/vt/vn. What is left out becomes no_index.
+  /// Reads v, v/vt, v//vn or v/vt/vn. Omitted indices become no_index.
   bool corner() {
     std::int64_t index = 0;
     if (text_.at_line_end()) return false;
@@ -179,13 +179,13 @@ class ObjReader {
   void pass_over(std::string_view word) {
     const std::string keyword(word.substr(0, 40));
     constexpr std::size_t most = 16;
-    // Each keyword once, and few: a file of another kind would give a warning for every line.
+    // Each keyword causes one warning, up to a limit: a file of another format would cause one for each line.
     if (passed_over_.size() >= most || !passed_over_.insert(keyword).second) return;
     if (first_odd_line_ == 0) first_odd_line_ = text_.line();
     scene_.warnings.push_back(text_.place() + ": statements " + in_quotes(word) + " are passed over");
   }
 
-  /// A name with blanks or several names, tried in that order.
+  /// Reads the libraries of a statement, which is tried as one name with blanks first, then as several names.
   void library(const std::string& names) {
     const std::string place = text_.place();
     if (names.empty()) return;
@@ -209,7 +209,7 @@ class ObjReader {
 
   bool read_library(const std::string& name, std::string& reason) {
     constexpr std::size_t most = 256;
-    // Files are named by the model: it must not have this machine open thousands.
+    // The model names these files, and must not make this machine open thousands of them.
     if (libraries_.size() >= most) return true;
     try {
       if (!libraries_.insert(name).second) return true;
@@ -219,7 +219,7 @@ class ObjReader {
                materials_);
       return true;
     } catch (const Error& error) {
-      // A model without its colours is better than none, so anything else is a warning.
+      // A model without colours is better than none, so all errors but cancellation become warnings.
       if (error.code() == ErrorCode::cancelled) throw;
       reason = source_.without_name(error);
       return false;
@@ -234,13 +234,13 @@ class ObjReader {
   }
 
   void finish() {
-    // Any text at all is otherwise an OBJ file with some warnings.
+    // Without this check, any text would be an OBJ file with some warnings.
     if (pool_.positions.empty() && first_odd_line_ != 0)
       source_.fail("line " + std::to_string(first_odd_line_), "not an OBJ statement");
     check_greatest(vertices_, pool_.positions.size());
     check_greatest(uvs_, pool_.texcoords.size());
     check_greatest(normals_, pool_.normals.size());
-    // Points, and lines: their places stay, as those of PLY files do, so that somebody can be told how many there are.
+    // A file of only points and lines keeps its positions, as PLY files do, so that a warning can count them.
     if (scene_.meshes.empty() && !pool_.positions.empty())
       builder_.begin(add_object(scene_, group_, source_, text_.place()));
     builder_.finish(scene_, std::move(pool_));

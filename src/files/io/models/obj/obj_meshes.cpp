@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// All faces of an OBJ file share the lists of the whole file; a mesh must own what it uses. Numbers are those of the
-// file while it is read, and are given anew at the end, in the order of first use, mesh by mesh. A table that says what
-// became of each old number is cleared only where it was used: a file may have as many groups as faces.
+// All faces of an OBJ file share the file's lists, but a mesh must own its values. Indices are those of the file during
+// reading, and are renumbered at the end, in the order of first use, mesh by mesh. The table of new numbers is cleared
+// only at used entries, because a file may have as many groups as faces.
 #include "io/models/obj/obj_meshes.h"
 
 namespace frontmost {
 namespace {
 
-/// Appends corner indices for the newest triangles, from the first face on that has any.
+/// Appends corner indices for the newest triangles. The list starts with the first face that has any.
 template <class T>
 void add_corners(Attribute<T>& attribute, std::span<const glm::uvec3> triangles,
                  const std::vector<std::uint32_t>& corners, std::size_t triangles_before) {
@@ -20,14 +20,14 @@ void add_corners(Attribute<T>& attribute, std::span<const glm::uvec3> triangles,
   for (const glm::uvec3& t : triangles) attribute.triangles.emplace_back(corners[t.x], corners[t.y], corners[t.z]);
 }
 
-/// Renumbers by order of first use.
+/// Renumbers indices in the order of first use.
 class Renumbering {
  public:
   explicit Renumbering(std::size_t count) : numbers_(count, no_index) {}
 
-  /// Renumbers all corners but missing ones. \returns the old numbers, in the new order, valid until the next call.
+  /// Renumbers all corners except missing ones. \returns the old numbers in the new order, valid until the next call.
   const std::vector<std::uint32_t>& apply(std::vector<glm::uvec3>& triangles) {
-    // Not the whole table: a file may have as many groups as faces.
+    // Only used entries are cleared, because a file may have as many groups as faces.
     for (const std::uint32_t old : used_) numbers_[old] = no_index;
     used_.clear();
     for (glm::uvec3& t : triangles)
@@ -56,7 +56,7 @@ std::vector<T> gather(const std::vector<T>& pool, const std::vector<std::uint32_
   return values;
 }
 
-/// Corners without a value take one that means nothing; indices equal to the positions' own need no list.
+/// Corners without a value get one that counts as missing. Indices that equal those of the positions need no list.
 template <class T>
 void complete(Attribute<T>& attribute, const Mesh& mesh) {
   if (attribute.triangles.empty()) {
@@ -93,7 +93,7 @@ void ObjMeshes::add_material(Mesh& mesh, std::size_t before, std::uint32_t mater
 }
 
 void ObjMeshes::finish(Scene& scene, ObjPool pool) {
-  // One mesh keeps the file's own numbering, unused vertices too: then numbers of vertices are those of the file.
+  // A single mesh keeps the file's own numbering, with unused vertices, so that vertex numbers are those of the file.
   if (scene.meshes.size() == 1) {
     Mesh& mesh = scene.meshes[0];
     mesh.positions = std::move(pool.positions);
@@ -111,7 +111,7 @@ void ObjMeshes::finish(Scene& scene, ObjPool pool) {
     }
   }
   for (Mesh& mesh : scene.meshes) {
-    // After the positions are final: whether a list of corners is needed depends on how many there are.
+    // This step needs the final positions: their number decides whether a list of corners is needed.
     complete(mesh.texcoords, mesh);
     complete(mesh.normals, mesh);
     if (mesh.material_ids.size() == 1 && mesh.material_ids[0] == no_index) mesh.material_ids.clear();

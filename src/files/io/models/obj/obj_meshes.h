@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the lists of an OBJ file, which all its faces share, to meshes that own what they use.
+// Turns the lists of an OBJ file, which all faces share, into meshes that own their values.
 #pragma once
 
 #include <vector>
@@ -16,10 +16,10 @@ struct ObjPool {
   std::vector<glm::vec3> normals;
 };
 
-/// What one polygon adds to its mesh beside the corners.
+/// A polygon's contribution to its mesh beside the positions.
 struct ObjFace {
-  std::span<const glm::uvec3> triangles;                 ///< as numbers into the corners
-  const std::vector<std::uint32_t>&texcoords, &normals;  ///< one per corner; no_index: none
+  std::span<const glm::uvec3> triangles;                 ///< as indices of the corners
+  const std::vector<std::uint32_t>&texcoords, &normals;  ///< one a corner; no_index: none
   std::uint32_t material;
 };
 
@@ -27,9 +27,9 @@ class ObjMeshes {
  public:
   /// Starts a mesh.
   void begin(const Mesh&) { is_mixed_ = false; }
-  /// Adds what belongs to the triangles that `mesh` just got. Indices are those of the pool for now.
+  /// Adds the attributes of the triangles that `mesh` just got. Indices are those of the pool until finish().
   void add(Mesh& mesh, const ObjFace& face);
-  /// Gives every mesh the part of the pool that it uses. A single mesh gets all of it, in the file's order.
+  /// Gives each mesh its part of the pool. A single mesh gets the whole pool, in the file's order.
   void finish(Scene& scene, ObjPool pool);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY: vertices, polygons and triangle strips become one mesh; other elements are passed over.
+// PLY: vertices, polygons and triangle strips become one mesh; other elements are skipped.
 #include "base/parallel.h"
 #include "io/models/ply/ply_header.h"
 #include "io/models/ply/ply_mesh.h"
@@ -52,7 +52,7 @@ class PlyBody {
   }
 
   void skip(const PlyElement& element) {
-    // Else a header of a hundred bytes could ask for 2^64 rows of nothing.
+    // Elements without properties are skipped at once: a header of a hundred bytes could ask for 2^64 empty rows.
     if (element.properties.empty()) return;
     for (std::uint64_t row = 0; row < element.count; ++row) {
       rows_.begin_row(element, row);

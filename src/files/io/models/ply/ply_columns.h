@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the properties of a PLY file mean to us.
+// Meaning of the properties of a PLY file.
 //
 //   property float x      -> Role::x          a place in FloatRow, in which a row is gathered
-//   property uchar red    -> Role::red        the same, divided by the range of its type
+//   property uchar red    -> Role::red        likewise, divided by the range of its type
 //   property list ...     -> Role::corners    the polygon
-//   property float curvature -> Role::none    passed over
+//   property float curvature -> Role::none    skipped
 //
-// Names differ from program to program (s, u and texture_u are one thing), so there is a table of them.
+// Programs use different names (s, u and texture_u mean the same), so a table lists them.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace frontmost::ply {
 
-/// What a property is to us. The first twelve are places in a row of floats.
+/// Meaning of a property. The first twelve roles are places in a row of floats.
 enum class Role : std::uint8_t { x, y, z, nx, ny, nz, u, v, red, green, blue, alpha, corners, wedge_uv, texture, none };
 inline constexpr std::size_t float_roles = 12;
 
@@ -61,7 +61,7 @@ inline Role role_of(const PlyProperty& property) {
   return property.is_list ? find(list_names) : find(scalar_names);
 }
 
-/// A property, its role, and what its greatest number is if it is a colour.
+/// A property, its role, and the greatest value of its type if it is a colour.
 struct Column {
   PlyProperty property;
   Role role;
@@ -96,7 +96,7 @@ inline glm::vec3 three(const FloatRow& row, Role first) {
   const auto i = std::size_t(first);
   return {row[i], row[i + 1], row[i + 2]};
 }
-/// Texture coordinates of PLY have v going up.
+/// Texture coordinates, converted from PLY, where v points up.
 inline glm::vec2 texcoord(float u, float v) { return {u, 1.0f - v}; }
 inline glm::vec4 color(const FloatRow& row) {
   return linear_color(glm::vec4(three(row, Role::red), row[std::size_t(Role::alpha)]));

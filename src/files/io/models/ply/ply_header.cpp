@@ -107,8 +107,8 @@ class HeaderReader {
     return *type;
   }
 
-  /// Steps over the end of the last line. A single \r ends it only in files whose lines all end so; elsewhere the
-  /// \n after it could not be told from the first byte of binary rows.
+  /// Skips the end of the last line. A single \r ends the line only in files whose lines all end so. In other files, a
+  /// \n behind the \r could not be told from the first byte of binary rows.
   void end_header() {
     text_.rest();
     const std::string_view text = text_of(bytes_);
@@ -120,13 +120,13 @@ class HeaderReader {
     header_.line_count = text_.line();
   }
 
-  /// Before memory is asked for: the rest of the file must have room for the rows.
+  /// Checks, before memory is allocated, that the rest of the file has room for the rows.
   void check_room(const PlyElement& element) const {
     const std::uint64_t room = file_size_ - header_.size;
-    // A text value takes a digit and a separator, which the last one may lack.
+    // A text value takes a digit and a separator, which the last value may lack.
     const std::uint64_t least =
         header_.encoding == PlyEncoding::ascii ? 2 * element.properties.size() : element.least_row_size();
-    // Rows of no properties take no room: there may be any number, and nothing is read for them.
+    // Rows without properties take no room. Any number of them is allowed, and nothing is read for them.
     if (least == 0 || element.count <= (room + 1) / least) return;
     text_.source().fail("header", std::to_string(element.count) + " rows of element " + in_quotes(element.name) +
                                       " do not fit into the " + std::to_string(room) + " bytes that follow");

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The header of a PLY file, which says what its rows hold, and what else reading the file whole and reading it as a
-// stream share.
+// The header of a PLY file, which describes its rows. Also helpers shared by reading whole files and by streaming.
 //
 //   ply
 //   format binary_little_endian 1.0
-//   element vertex 8                       an element: so many rows, which come in the order of the elements
+//   element vertex 8                       an element: a number of rows; rows are in the order of the elements
 //   property float x                       a property: one number of each row
 //   ...
 //   element face 12
-//   property list uchar int vertex_indices a list: how many numbers follow, and these
+//   property list uchar int vertex_indices a list: the count, then so many numbers
 //   end_header
 #pragma once
 
@@ -40,7 +39,7 @@ struct PlyElement {
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
 
-  /// The bytes of a row whose lists are empty: with no lists, of every row.
+  /// The size of a row whose lists are empty; without lists, the size of each row.
   [[nodiscard]] std::size_t least_row_size() const;
   [[nodiscard]] bool has_lists() const;
 };
@@ -61,17 +60,17 @@ struct PlyHeader {
   return header.encoding == PlyEncoding::big ? Endian::big : Endian::little;
 }
 
-/// `bytes` start the file and hold its header at least; the whole file has `file_size` bytes.
+/// Reads the header. `bytes` start the file and hold at least its header; the whole file has `file_size` bytes.
 /// \throws Error file_malformed, also when the file is too short for the rows that the header promises.
 [[nodiscard]] PlyHeader read_ply_header(Bytes bytes, std::uint64_t file_size, const ModelSource& source);
 [[nodiscard]] inline PlyHeader read_ply_header(Bytes bytes, const ModelSource& source) {
   return read_ply_header(bytes, bytes.size(), source);
 }
 
-/// Materials for the texture files that the header names, used by the scene's first mesh.
+/// Adds materials for the texture files that the header names; the scene's first mesh uses them.
 void add_texture_materials(const PlyHeader& header, const ModelSource& source, Scene& scene);
 
-/// For Scene::warnings.
+/// A warning for Scene::warnings.
 [[nodiscard]] std::string skipped_faces_warning(std::uint64_t count);
 
 }  // namespace frontmost

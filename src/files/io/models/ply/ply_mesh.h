@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of a PLY file become one mesh: all of them for read_ply(), some at a time for streams.
+// Turns the rows of a PLY file into one mesh: all rows for read_ply(), some at a time for streams.
 //
-// Readers are templates over the kind of rows (text, binary) and over where vertices come from, so that one source
-// serves files that are read whole and streams, and none of them asks at every number which it is.
+// The readers are templates over the kind of rows (text, binary) and over the source of vertices. So the same code
+// serves whole files and streams, without a test at each number.
 #pragma once
 
 #include "io/models/coordinates.h"
@@ -11,7 +11,7 @@
 
 namespace frontmost::ply {
 
-/// A value of a row into `row`, if its role has a place there. \returns whether it had one.
+/// Reads a value into `row` if its role has a place there. \returns whether it has one.
 template <class Rows>
 bool read_float(Rows& rows, const Column& column, FloatRow& row) {
   if (column.property.is_list || std::size_t(column.role) >= float_roles) return false;
@@ -52,7 +52,7 @@ class VertexReader {
     if (has_colors_) mesh.colors.values.reserve(count);
   }
 
-  /// Appends the rows from `begin` to `end`, which come next in `rows`.
+  /// Appends rows [begin, end), which come next in `rows`.
   template <class Rows>
   void read(Rows& rows, std::uint64_t begin, std::uint64_t end, Coordinates& coordinates, Mesh& mesh) const {
     FloatRow row{};
@@ -71,7 +71,7 @@ class VertexReader {
   }
 
  private:
-  /// A value of a row into `row` and `exact`, if it is a coordinate. \returns whether it was one.
+  /// Reads a value into `row` and `exact` if it is a coordinate. \returns whether it is one.
   template <class Rows>
   static bool read_coordinate(Rows& rows, const Column& column, FloatRow& row, glm::dvec3& exact) {
     if (column.role > Role::z) return false;
@@ -85,7 +85,7 @@ class VertexReader {
   bool has_normals_ = false, has_texcoords_ = false, has_colors_ = false;
 };
 
-/// Corners are numbered as in the file.
+/// Vertices are numbered as in the file.
 struct AllVertices {
   [[nodiscard]] std::uint64_t count(const Mesh& mesh) const { return mesh.positions.size(); }
   std::uint32_t operator()(std::uint64_t index, Mesh&) { return std::uint32_t(index); }
@@ -97,8 +97,8 @@ inline void check_index_type(const PlyElement& element, const Columns& columns, 
       source.fail("header", "the corners of element " + in_quotes(element.name) + " must be integers");
 }
 
-/// Reads faces and strips. `Rows` is one of the classes of ply_rows.h; `Vertices` says how many vertices the file has,
-/// and turns their numbers into those of the mesh.
+/// Reads faces and strips. `Rows` is a class of ply_rows.h. `Vertices` tells the file's number of vertices and converts
+/// their numbers to those of the mesh.
 template <class Rows, class Vertices>
 class FaceReader {
  public:
@@ -107,7 +107,8 @@ class FaceReader {
 
   void read_faces(const PlyElement& element, const Columns& columns, std::uint64_t begin, std::uint64_t end);
   void read_strips(const PlyElement& element, const Columns& columns);
-  /// Colours of vertices go before those of faces. What strips after the faces lack is filled up.
+  /// Completes the mesh. Colours of vertices have precedence over those of faces. Strips behind the faces get default
+  /// values.
   void finish();
   [[nodiscard]] std::uint64_t skipped_count() const { return polygons_.skipped_count(); }
 
@@ -134,7 +135,8 @@ template <class Rows, class Vertices>
 void FaceReader<Rows, Vertices>::read_faces(const PlyElement& element, const Columns& columns, std::uint64_t begin,
                                             std::uint64_t end) {
   check_index_type(element, columns, source_);
-  // Only once: reserve() takes no more than is asked for, so that thousands of elements would move all each time.
+  // Memory is reserved only once: each reserve() allocates the exact size, so thousands of elements would copy all data
+  // each time.
   if (mesh_.triangles.empty()) mesh_.triangles.reserve(std::size_t(end - begin));
   FloatRow row{};
   at(row, Role::alpha) = 1;
@@ -183,7 +185,7 @@ void FaceReader<Rows, Vertices>::add_wedges(std::span<const glm::uvec3> triangle
   const auto first = std::uint32_t(uvs.values.size());
   for (std::size_t i = 0; i < corners_.size(); ++i)
     uvs.values.push_back(usable ? texcoord(wedges_[2 * i], wedges_[2 * i + 1]) : glm::vec2(0));
-  // Strips before the faces have none.
+  // Strips before the faces have no texture coordinates.
   uvs.triangles.resize(mesh_.triangles.size() - triangles.size());
   for (const glm::uvec3& t : triangles) uvs.triangles.push_back(first + t);
 }
@@ -226,7 +228,7 @@ void FaceReader<Rows, Vertices>::read_strips(const PlyElement& element, const Co
   }
 }
 
-/// Every second triangle of a strip has its first two corners swapped, so that all face the same way.
+/// Adds a strip. Every second triangle has its first two corners swapped, so that all have the same winding.
 template <class Rows, class Vertices>
 void FaceReader<Rows, Vertices>::add_strip() {
   std::size_t begin = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The values in the rows of a PLY file, one after the other, in each of its three encodings.
+// Reads the values of a PLY file's rows, one after the other, in each of the three encodings.
 //
-// Text is a TextScanner's, binary is read at the place with its bytes in either order. Both check before they read that
-// a value is there, and name the element and the row in what they complain of.
+// A TextScanner reads text; binary values are read in place, in either byte order. Both check that a value exists
+// before they read it, and name the element and the row in errors.
 #pragma once
 
 #include <cmath>
@@ -12,12 +12,12 @@
 
 namespace frontmost {
 
-/// What both kinds of rows offer:
+/// Interface of both kinds of rows:
 ///   begin_row(element, row)   before the values of a row
 ///   number(type)              the next value as a float
-///   number(type, exact)       the same, and what a double holds of it
+///   number(type, exact)       the next value as a float and as a double
 ///   integer(type)             the next value of an integer type
-///   skip(type, count)         passes over values
+///   skip(type, count)         skips values
 ///   room_for(type, count)     fails unless that many values can follow
 class PlyBinaryRows {
  public:
@@ -91,7 +91,7 @@ class PlyBinaryRows {
   std::uint64_t row_ = 0;
 };
 
-/// Every row is a line of its own.
+/// Each row is a line of its own.
 class PlyAsciiRows {
  public:
   PlyAsciiRows(Bytes rows, std::size_t lines_before, const ModelSource& source)

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binary PLY, piece by piece. Faces name vertices anywhere in the file, so the rows of vertices must stay within reach:
-// those of a file are mapped, and only the blocks that a piece's faces name are parsed with it; a pipe's are kept.
+// Binary PLY, piece by piece. Faces name vertices anywhere in the file, so the rows of vertices must stay accessible.
+// A file is mapped, and a piece parses only the blocks that its faces name. The vertices of a pipe stay in memory.
 //
 //   | header | vertices: rows of one length              | faces: rows of any length |
 //              [block 0][block 1] ...                      | piece 0 | piece 1 | ...
 //                  ^ 512 rows, parsed when a face of the piece names one of them
 //
-// Where faces jump about so much that blocks would be most of the file, single vertices are parsed instead.
+// If faces jump about so much that the blocks would make up most of the file, single vertices are parsed instead.
 #include <algorithm>
 
 #include "base/parallel.h"
@@ -19,12 +19,12 @@ namespace {
 
 using namespace ply;
 
-/// Largest header that is looked for, largest row, and what is kept of the vertices of a pipe.
+/// Greatest header, greatest row, and greatest size of a pipe's vertices, in bytes.
 constexpr std::size_t max_header = std::size_t(1) << 24;
 constexpr std::size_t max_row = std::size_t(1) << 28;
 constexpr std::uint64_t max_kept_vertices = std::uint64_t(1) << 29;
 
-/// How long a row of faces is and how many triangles it makes, without parsing the rest.
+/// Finds the length of a row of faces and its number of triangles, without parsing the rest.
 class RowScanner {
  public:
   RowScanner(const PlyElement& element, Endian endian) : endian_(endian) {
@@ -39,7 +39,7 @@ class RowScanner {
     std::uint64_t size = 0, triangles = 0;
     bool is_whole = false;
   };
-  /// A row that is broken is given as far as it goes, for the parser to complain of.
+  /// The row at the start of `bytes`. An incomplete row is returned as far as it goes, for the parser to report.
   [[nodiscard]] Row scan(Bytes bytes) const {
     Row row;
     for (const Step& step : steps_) {
@@ -79,7 +79,7 @@ class RowScanner {
   std::vector<Step> steps_;
 };
 
-/// The rows of all vertices, and how to parse them.
+/// The rows of all vertices and their parser.
 struct VertexRows {
   Bytes rows;
   const PlyElement* element = nullptr;
@@ -93,7 +93,7 @@ struct VertexRows {
     reader->read(part, begin, end, coordinates, mesh);
   }
 
-  /// Of models near zero, the first block tells.
+  /// The best origin of the vertices. The first block suffices if the model lies near zero.
   [[nodiscard]] glm::dvec3 fitting_origin() const {
     constexpr std::uint64_t block = 4096;
     Coordinates coordinates;
@@ -107,8 +107,8 @@ struct VertexRows {
   }
 };
 
-/// Parses blocks of vertices when a face names one of them. Where faces jump about, so that whole blocks would be too
-/// many, the single vertices instead.
+/// Parses a block of vertices when a face names one of them. If faces jump about so that too many blocks would be
+/// needed, it parses single vertices.
 class NamedVertices {
  public:
   NamedVertices(const VertexRows& rows, const glm::dvec3& origin, std::size_t most_in_blocks)
@@ -139,7 +139,7 @@ class NamedVertices {
   const VertexRows& rows_;
   Coordinates coordinates_;
   std::size_t most_in_blocks_;
-  std::vector<std::uint32_t> places_;  ///< of each block in the mesh; no_index: not there
+  std::vector<std::uint32_t> places_;  ///< first vertex of each block in the mesh; no_index: not parsed
 };
 
 class PlyStream final : public ModelStream {
@@ -204,9 +204,9 @@ class PlyStream final : public ModelStream {
     throw Error(ErrorCode::unsupported, source_.name(), "header", reason);
   }
 
-  /// One element of vertices, then one of faces; whatever else is passed over, if its length is known.
+  /// Finds one element of vertices and one of faces behind it. Others are skipped, if their length is known.
   void choose_elements() {
-    // Each fits into the file, but nobody has said yet that all of them do.
+    // Each element fits into the file, but the sum of all is not checked yet.
     constexpr std::uint64_t farthest = std::uint64_t(1) << 62;
     const std::uint64_t size = file_ ? file_->bytes().size() : farthest;
     std::uint64_t offset = header_.size;
@@ -223,7 +223,7 @@ class PlyStream final : public ModelStream {
         faces_ = &element;
         face_offset_ = offset;
       }
-      if (faces_) continue;  // what comes after them is not looked at
+      if (faces_) continue;  // elements behind the faces are ignored
       if (element.has_lists()) refuse("element " + in_quotes(element.name) + " has lists, and comes before the faces");
       const std::uint64_t row = element.least_row_size();
       if (row > 0 && element.count > (size - std::min(size, offset)) / row)
@@ -234,7 +234,7 @@ class PlyStream final : public ModelStream {
     check_index_type(*faces_, Columns(*faces_), source_);
   }
 
-  /// Of a pipe: what was read already lies in `start_`.
+  /// Keeps the vertices of a pipe. The bytes read so far are in `start_` already.
   void keep_vertices() {
     if (face_offset_ - header_.size > max_kept_vertices)
       source_.fail_limit("header", "the vertices of a pipe are kept in memory, and these take more than " +
@@ -255,7 +255,7 @@ class PlyStream final : public ModelStream {
     source_.fail(element.name + " " + std::to_string(row), "the file ends within the row");
   }
 
-  /// A pipe that ended before the faces.
+  /// Reports a pipe that ended before the faces.
   [[noreturn]] void fail_at(std::uint64_t size) const {
     std::uint64_t offset = header_.size;
     for (const PlyElement& element : header_.elements) {
@@ -266,9 +266,9 @@ class PlyStream final : public ModelStream {
     source_.fail("header", "the file ends before its rows");
   }
 
-  /// Fills the piece with whole rows. What is left of the bytes waits for the next piece, and counts for it: polygons
-  /// make more triangles of their bytes than triangles do. `again`: a row longer than all of them was found, so that
-  /// twice as much is read.
+  /// Fills the piece with whole rows. Remaining bytes wait for the next piece and count for it, because polygons make
+  /// more triangles a byte than triangles do. `again` means that a row was longer than all bytes, so twice as many are
+  /// read.
   void fetch_rows(StreamPiece& piece, std::uint64_t triangles, bool again) {
     const std::size_t row = faces_->least_row_size() + 3 * corner_size();
     const std::size_t enough = std::max<std::size_t>(std::size_t(triangles) * row, 4096);
@@ -284,7 +284,7 @@ class PlyStream final : public ModelStream {
       if (!next.is_whole && got == wanted && next.size <= max_row) break;
       if (!next.is_whole && got == wanted)
         source_.fail_limit("face " + std::to_string(next_row_), "too long to be streamed");
-      // At the end of the file, a row that is cut short goes to the parser, which says so.
+      // An incomplete row at the end of the file goes to the parser, which reports it.
       at = next.is_whole ? at + std::size_t(next.size) : end;
       count += next.is_whole ? next.triangles : 1;
       if (next.triangles == 0) ++skipped_;
@@ -304,26 +304,26 @@ class PlyStream final : public ModelStream {
 
   PlyHeader header_;
   std::unique_ptr<const InputFile> file_;
-  std::vector<std::byte> start_;  ///< of a pipe: up to the last vertex
+  std::vector<std::byte> start_;  ///< bytes of a pipe up to the last vertex
   std::optional<VertexReader> reader_;
   VertexRows vertices_;
   const PlyElement* faces_ = nullptr;
   std::optional<RowScanner> scanner_;
   std::size_t vertex_offset_ = 0;
   std::uint64_t face_offset_ = 0;
-  std::vector<std::byte> left_;  ///< read, but not a whole row yet
+  std::vector<std::byte> left_;  ///< bytes of an incomplete row
   std::uint64_t next_row_ = 0, next_triangle_ = 0, skipped_ = 0;
   bool has_warned_ = false;
 };
 
-/// Reads on until the header is whole. Only its reader knows where it ends: comments and longer words may hold
-/// "end_header" too, and lines may be joined.
+/// Reads on until the header is complete. Only the header's parser finds its end: comments and longer words may contain
+/// "end_header", too, and lines may be joined.
 PlyHeader read_header(StreamStart& start, const ModelSource& source) {
   while (true) {
     const bool is_all = start.has_ended || start.start.size() >= max_header;
     try {
       PlyHeader header = read_ply_header(start.start, start.greatest_size(), source);
-      // With the byte after, should its line end in two.
+      // The header needs the byte behind it, because a line may end with two characters.
       if (is_all || header.size < start.start.size()) return header;
     } catch (const Error&) {
       if (is_all) throw;

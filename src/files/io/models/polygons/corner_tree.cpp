@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A point lies in a triangle if it lies to the left of its three edges, by exact signs. A box may hold such a point if
-// its corner farthest to the left of each edge does. Together with the counts of marked corners in every node, that
-// leaves few boxes to be opened, also in polygons of a million corners.
+// A point lies in a triangle if it lies to the left of its three edges, by exact signs. A box may hold such a point if,
+// for each edge, its corner farthest to the left of the edge lies to the left. Together with the number of marked
+// corners in each node, this test leaves few boxes to open, even in polygons of a million corners.
 //
-// An outline that touches itself has several corners at one place. Which of them block an ear is decided by where their
-// edges lead: the outline does not cross itself, so every edge that enters the ear has an end in it or on its edges.
+// An outline that touches itself has several corners at one place. The directions of their edges decide which of them
+// block an ear: the outline does not cross itself, so every edge that enters the ear ends in it or on its edges.
 #include "io/models/polygons/corner_tree.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 struct BlockableEar {
   const std::array<glm::vec2, 3>& corners;
 
-  /// On which side of ab, bc and ca a point lies: +1 is the inner side.
+  /// The sides of ab, bc and ca on which a point lies; +1 is the inner side.
   [[nodiscard]] std::array<int, 3> sides(const glm::vec2& p) const {
     const auto& [a, b, c] = corners;
     return {orientation(a, b, p), orientation(b, c, p), orientation(c, a, p)};
@@ -38,7 +38,7 @@ struct BlockableEar {
     const std::array<int, 3> at = sides(p);
     if (at[0] < 0 || at[1] < 0 || at[2] < 0) return false;
     const std::array<int, 3> from = sides(before), to = sides(after);
-    // From an edge of the ear only the inner side leads into it.
+    // A corner on an edge of the ear enters only if its edge leads to the inner side.
     const auto enters = [&](const std::array<int, 3>& end) {
       return (at[0] > 0 || end[0] > 0) && (at[1] > 0 || end[1] > 0) && (at[2] > 0 || end[2] > 0);
     };
@@ -78,7 +78,7 @@ void CornerTree::build(std::uint32_t number) {
     for (std::uint32_t i = node.begin; i < node.end; ++i) leaf_of_[order_[i]] = number;
     return;
   }
-  // Halves: the extents of huge polygons would not be finite.
+  // The halves avoid overflow: extents of huge polygons would not be finite.
   const int axis = 0.5f * node.high.x - 0.5f * node.low.x >= 0.5f * node.high.y - 0.5f * node.low.y ? 0 : 1;
   const std::uint32_t middle = node.begin + (node.end - node.begin) / 2;
   std::nth_element(order_.begin() + node.begin, order_.begin() + middle, order_.begin() + node.end,
@@ -105,7 +105,7 @@ bool CornerTree::blocks(const std::array<glm::vec2, 3>& ear, bool by_touching, s
     return h.x < low.x || l.x > high.x || h.y < low.y || l.y > high.y;
   };
   const BlockableEar blockable{ear};
-  std::array<std::uint32_t, 64> stack{};  // deeper than the tree of 2^32 corners
+  std::array<std::uint32_t, 64> stack{};  // deeper than a tree of 2^32 corners
   for (std::size_t depth = 1; depth > 0;) {
     const std::uint32_t number = stack[--depth];
     const Node& node = nodes_[number];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which corners of a polygon can block an ear, found by place.
+// A spatial search for the corners of a polygon that block an ear.
 #pragma once
 
 #include <array>
@@ -10,11 +10,11 @@
 
 namespace frontmost {
 
-/// A tree of boxes over all corners of a polygon, of which some are marked. Halves hold the same number of corners, so
-/// the tree is as deep as the logarithm of their number. Keeps its arrays from polygon to polygon.
+/// A tree of boxes over all corners of a polygon, some of which are marked. Siblings hold the same number of corners,
+/// so the depth is logarithmic. The tree keeps its arrays from polygon to polygon.
 class CornerTree {
  public:
-  /// Borrows the points, none of which is marked then, and for each corner the numbers of its neighbours on the
+  /// Builds the tree, without marks. Borrows the points and, for each corner, the numbers of its neighbours on the
   /// outline, which may change. O(n log n).
   void build(std::span<const glm::vec2> points, std::span<const std::uint32_t> previous,
              std::span<const std::uint32_t> next);
@@ -22,18 +22,18 @@ class CornerTree {
   void mark(std::uint32_t corner, bool is_marked);
 
   /// Whether a marked corner blocks the ear a, b, c with its tip at b. A corner blocks if one of its edges leads into
-  /// the ear. If `by_touching`, a corner on an edge of the ear blocks, too, and so does a corner at b whose edges
-  /// follow those of the ear: it may belong to a bridge that turns there. Adds to `work` one for each box and corner
-  /// looked at.
+  /// the ear. If `by_touching`, two more corners block: one on an edge of the ear, and one at b whose edges follow
+  /// those of the ear, as it may belong to a bridge that turns there. Adds to `work` the number of boxes and corners
+  /// tested.
   [[nodiscard]] bool blocks(const std::array<glm::vec2, 3>& ear, bool by_touching, std::uint64_t& work) const;
 
  private:
   static constexpr std::uint32_t leaf_size = 8;
   /// Node i has the children 2i + 1 and 2i + 2.
   struct Node {
-    glm::vec2 low, high;       ///< of all its corners
-    std::uint32_t begin, end;  ///< of those in order_
-    std::uint32_t marked;      ///< how many of them are
+    glm::vec2 low, high;       ///< bounds of all its corners
+    std::uint32_t begin, end;  ///< range in order_
+    std::uint32_t marked;      ///< number of marked corners
     [[nodiscard]] bool is_leaf() const { return end - begin <= leaf_size; }
   };
   void build(std::uint32_t node);

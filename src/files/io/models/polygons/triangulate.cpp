@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ear clipping with exact tests.
+// Ear clipping with exact predicates.
 //
-// Every cut takes a triangle that turns the polygon's way, so the signed areas add up: for a polygon that does not
-// cross itself, triangles that all turn left cover it once, whatever else went wrong. That is also why the first
-// attempt, a fan whose triangles all turn left, needs no further test; it serves all convex polygons.
+// Each cut takes a triangle of the polygon's winding, so signed areas add up: triangles that all turn left cover a
+// polygon that does not cross itself exactly once, whatever else went wrong. So the first attempt, a fan, needs no
+// further test if all its triangles turn left; it serves all convex polygons.
 //
-// Where an outline touches itself, rounding makes edges cross a little that should lie on each other, unless they have
-// both corners in common. Then no ear may be left, and a triangle turns the other way. So all triangulations are tried,
-// which takes O(n^3), and the one with the least area of such triangles is taken.
+// If an outline touches itself, rounding makes edges cross slightly that should coincide, unless they share both
+// corners. Then there may be no ear left, and a triangle turns the other way. In that case all triangulations are
+// tried, which takes O(n^3), and the one with the least area of such triangles is chosen.
 //
-// What may block an ear is found by place, so that cutting takes time in proportion to the corners and the logarithm of
-// their number, unless ears are far apart: looking for one takes O(n) tests at worst.
+// A spatial search finds corners that block an ear, so cutting takes O(n log n), unless ears are far apart: the search
+// for an ear takes O(n) tests at worst.
 #include "io/models/polygons/triangulate.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 namespace frontmost {
 namespace {
 
-/// Twice the polygon's area as seen along each axis (M. Newell).
+/// Twice the polygon's area, projected along each axis (M. Newell).
 glm::dvec3 area_vector(std::span<const glm::vec3> corners) {
   glm::dvec3 sum{0};
   const glm::dvec3 origin(corners[0]);
@@ -39,7 +39,7 @@ void Triangulator::project(std::span<const glm::vec3> corners) {
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
   is_flat_ =
       size[axis] > 0 && std::all_of(corners.begin(), corners.end(), [](const glm::vec3& p) { return is_finite(p); });
-  // Seen from the side that the area points to, so that left turns are the polygon's own.
+  // The polygon is seen from the side that the area vector points to, so that its own turns are left turns.
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   points_.clear();
   for (const glm::vec3& p : corners) points_.push_back(area[axis] > 0 ? glm::vec2(p[u], p[v]) : glm::vec2(p[v], p[u]));
@@ -51,7 +51,7 @@ bool Triangulator::fan_is_right() const {
   return true;
 }
 
-/// A fan about the corner `first` over all that remain after it.
+/// Adds a fan about the corner `first` over all remaining corners.
 void Triangulator::fan(std::size_t first) {
   const auto tip = std::uint32_t(first);
   for (std::uint32_t i = next_[tip]; next_[i] != tip; i = next_[i]) triangles_.emplace_back(tip, i, next_[i]);
@@ -91,16 +91,16 @@ void Triangulator::clip_ears() {
   is_left_.assign(count, true);
   blockers_.build(points_, previous_, next_);
   for (std::uint32_t i = 0; i < count; ++i) note_turn(i);
-  // Files of any size get time in proportion, and one polygon half a second at once: enough for millions of corners of
-  // which some can always be cut.
+  // The allowed work is proportional to the file's corners, plus half a second once. This suffices for polygons of
+  // millions of corners as long as an ear can always be found.
   allowed_work_ += 1000 * std::uint64_t(count);
 
   std::uint32_t corner = 0;
   for (std::uint32_t left = count; left > 3; --left) {
     std::uint32_t ear = corner;
     bool found = false;
-    // Ears that nothing touches first, and spikes; corners on a line with their neighbours before worse. Something
-    // always is.
+    // Ears that nothing touches and spikes come first, then corners on a line with their neighbours, then touched ears.
+    // The last kind accepts any corner.
     for (const Ear kind : {Ear::clear, Ear::flat, Ear::touched, Ear::any}) {
       ear = corner;
       for (std::uint32_t tried = 0; tried < left && !found && may_work(); ++tried)
@@ -110,7 +110,7 @@ void Triangulator::clip_ears() {
     if (!found) return fan(corner);
     corner = next_[ear];
     clip(ear);
-    // Skipping one corner makes rounder triangles than cutting a fan at one spot.
+    // Skipping one corner gives rounder triangles than cutting a fan at one spot.
     corner = next_[corner];
   }
   triangles_.emplace_back(previous_[corner], corner, next_[corner]);
@@ -143,7 +143,7 @@ void Triangulator::clip(std::uint32_t corner) {
   next_[before] = after;
   previous_[after] = before;
   is_left_[corner] = true;
-  blockers_.mark(corner, false);  // it is gone, so it blocks nothing
+  blockers_.mark(corner, false);  // a corner that was cut off blocks nothing
   note_turn(before);
   note_turn(after);
 }
@@ -156,10 +156,10 @@ double Triangulator::wrong_area(const glm::uvec3& t) const {
   return std::max(u.y * v.x - u.x * v.y, std::numeric_limits<double>::min());
 }
 
-/// Takes the triangulation with the least area that turns the wrong way (G. Klincsek. Minimal Triangulations of
-/// Polygonal Domains. 1980). Does nothing if that is more work than is allowed.
+/// Chooses the triangulation with the least area that turns the wrong way (G. Klincsek. Minimal Triangulations of
+/// Polygonal Domains. 1980). Does nothing if that exceeds the allowed work.
 void Triangulator::try_all() {
-  constexpr std::uint32_t most_corners = 1000;  // 16 MB; the first polygon of a file has work for 580
+  constexpr std::uint32_t most_corners = 1000;  // 16 MB; the first polygon of a file is allowed work for 580
   const auto count = std::uint32_t(points_.size());
   const std::uint64_t work = std::uint64_t(count) * count * count / 6;
   if (count > most_corners || work_ + work > allowed_work_) return;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binary STL, and the choice between the two encodings. Stored normals are not kept: they follow from the corners.
+// Binary STL, and the choice between the two encodings. Stored normals are dropped, because they follow from the
+// corners.
 //
 //   byte   0                    80        84                134               184
 //          | anything, 80 bytes | count   | triangle 0      | triangle 1      | ...
 //                                         normal, three corners (12 floats), 2 bytes: perhaps a colour
 //
-// Neither the header nor the count can be trusted: text may stand in the one, and writers that cannot go back leave the
-// other open. What decides is the size of the file.
+// Neither the header nor the count can be trusted: the header may hold any text, and writers that cannot seek back
+// leave the count open. The file's size decides.
 #include "io/models/stl/stl.h"
 
 #include <algorithm>
@@ -23,7 +24,7 @@ namespace {
 
 constexpr std::size_t header_size = 80, prelude_size = stl_prelude_size, record_size = stl_record_size;
 constexpr std::size_t normal_size = 12, corners_size = 36, attribute_offset = normal_size + corners_size;
-// Every triangle has three vertices of its own, which 32-bit indices must reach.
+// Each triangle has three vertices of its own, and 32-bit indices must reach all of them.
 constexpr std::uint64_t max_triangles = no_index / 3;
 
 bool is_text(Bytes bytes) {
@@ -47,7 +48,7 @@ bool starts_like_ascii(Bytes bytes) {
   return is("solid") || is("facet");
 }
 
-/// Copies records to triangles of the mesh that are there, from number `first` on.
+/// Copies records to existing triangles of the mesh, from number `first` on.
 void copy_records(Bytes records, std::size_t first, Mesh& mesh) {
   const std::byte* record = records.data();
   const std::size_t end = first + records.size() / record_size;
@@ -129,7 +130,7 @@ std::uint64_t stl_checked_count(Bytes prelude, std::uint64_t file_size, const Mo
 std::string stl_header_name(Bytes prelude) {
   std::string name(reinterpret_cast<const char*>(prelude.data()), header_size);
   name.resize(std::min(name.find('\0'), name.size()));
-  // Programs leave dates, colours and rubbish there; what cannot be read is no name.
+  // Programs leave dates, colours and rubbish in the header; unprintable text is no name.
   for (const char c : name)
     if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7E) return {};
   if (name.starts_with("solid ")) name.erase(0, 6);
@@ -139,7 +140,7 @@ std::string stl_header_name(Bytes prelude) {
 
 void append_stl_records(Bytes records, const StlColors* colors, Mesh& mesh) {
   const std::size_t first = mesh.triangles.size(), count = records.size() / record_size;
-  // In blocks small enough that growing (which writes zeros) and filling meet in the cache.
+  // Blocks are small enough that growing (which writes zeros) and filling meet in the cache.
   constexpr std::size_t block = 8192;
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t end = std::min(count, begin + block);
@@ -157,8 +158,8 @@ void append_stl_records(Bytes records, const StlColors* colors, Mesh& mesh) {
 StlEncoding stl_encoding(Bytes start, std::uint64_t file_size) {
   if (file_size >= prelude_size) {
     const std::uint64_t room = file_size - prelude_size, needed = stl_promised_count(start) * record_size;
-    // Before the words: many binary files begin with "solid", and hardly a text has just the length that its bytes 80
-    // to 83 ask for.
+    // Size decides before words: many binary files begin with "solid", and a text hardly has exactly the length that
+    // its bytes 80 to 83 would demand.
     if (room == needed) return StlEncoding::binary;
     if (!is_text(start)) return room > needed && needed > 0 ? StlEncoding::binary : StlEncoding::neither;
   }
@@ -171,7 +172,7 @@ StlEncoding known_stl_encoding(Bytes start, std::uint64_t file_size, const Model
   if (is_text(start)) source.fail("line 1", "text STL starts with \"solid\"");
   if (file_size < prelude_size)
     source.fail("byte " + std::to_string(file_size), "the file ends within the 84 bytes of a binary STL header");
-  return StlEncoding::binary;  // broken, as its reader will say
+  return StlEncoding::binary;  // broken; its reader reports the fault
 }
 
 Scene read_stl(Bytes bytes, const ModelSource& source) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// ASCII STL. Every solid becomes a mesh. Words may be in any case and anywhere on a line, as in files from the wild.
+// ASCII STL. Each solid becomes a mesh. Words may be in any case and anywhere on a line, as in files from the wild.
 //
 //   solid NAME
-//     facet normal nx ny nz           normals are not kept: they follow from the corners
+//     facet normal nx ny nz           normals are dropped: they follow from the corners
 //       outer loop
 //         vertex x y z                three of them
 //       endloop
@@ -64,12 +64,12 @@ class AsciiStl {
     if (!same_word(word, lower)) text_.fail(in_quotes(word) + " where " + in_quotes(lower) + " was expected");
   }
 
-  /// facet normal X Y Z outer loop (vertex X Y Z) x 3 endloop endfacet
+  /// Reads facet normal X Y Z outer loop (vertex X Y Z) x 3 endloop endfacet.
   void facet() {
     if (!in_solid_) begin_solid_without_name();
     Mesh& mesh = scene_.meshes.back();
     expect("normal");
-    // The normal follows from the corners; whatever stands in its place is passed over.
+    // The normal follows from the corners; any three words in its place are skipped.
     for (int k = 0; k < 3 && text_.to_word(); ++k) text_.word();
     expect("outer");
     expect("loop");

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Binary STL, piece by piece: records of 50 bytes.
 //
-// A record has all of its triangle, so a piece is so many records, and nothing of what came before is needed. How many
-// there are is the header's to say, or the size's; of a pipe whose header leaves it open the end says it. Whether
-// triangles have colours must be known at the first piece, so the first thousand records say it.
+// A record holds its whole triangle, so a piece is a number of records and depends on no earlier ones. The header or
+// the size tells their number; for a pipe with an open header, only its end does. The first piece must know whether
+// triangles have colours, so the first thousand records decide.
 #include <algorithm>
 
 #include "base/parallel.h"
@@ -14,7 +14,7 @@
 namespace frontmost {
 namespace {
 
-constexpr std::uint64_t color_window = 1000;  // which a warning names
+constexpr std::uint64_t color_window = 1000;  // stated in a warning
 
 class StlStream final : public ModelStream {
  public:
@@ -34,7 +34,8 @@ class StlStream final : public ModelStream {
     Mesh& mesh = scene_.meshes.emplace_back();
     mesh.name = stl_header_name(start_);
     scene_.instances.push_back({.name = mesh.name, .mesh = 0});
-    // What can be read only once stays about zero, where its floats are: nothing more is lost of them.
+    // A stream that can be read only once keeps its origin at zero. Its coordinates are floats, so no precision is
+    // lost.
     if (can_rewind()) set_origin(scene_, fitting_origin());
   }
 
@@ -85,7 +86,7 @@ class StlStream final : public ModelStream {
   }
 
  private:
-  /// Of models near zero, the first piece tells.
+  /// The best origin. The first piece suffices if the model lies near zero.
   glm::dvec3 fitting_origin() {
     constexpr std::uint64_t triangles_at_once = 4096;
     OriginSearch search;
@@ -99,7 +100,7 @@ class StlStream final : public ModelStream {
     return search.origin();
   }
 
-  /// What the size would have told of a file, of a pipe only its end can tell.
+  /// Reports a pipe that ends early; the size of a file would have told this before.
   void end_early(std::size_t rest) {
     if (is_open_ && rest != 0)
       source_.fail("triangle " + std::to_string(next_),
@@ -115,7 +116,7 @@ class StlStream final : public ModelStream {
 
   void warn_of_the_rest() {
     if (size_ || is_open_) return;
-    // A file tells by its size whether something follows; of a pipe it has to be read.
+    // A file's size tells whether bytes follow; a pipe has to be read to its end.
     std::vector<std::byte> scrap(1 << 16);
     std::uint64_t rest = left_.size();
     for (std::size_t got = 1; got > 0; rest += got) got = bytes_->read(scrap.data(), scrap.size());
@@ -127,9 +128,9 @@ class StlStream final : public ModelStream {
 
   std::optional<std::uint64_t> size_;
   std::vector<std::byte> start_;
-  Bytes left_ = Bytes(start_).subspan(stl_prelude_size);  ///< of the start, not yet in a piece
+  Bytes left_ = Bytes(start_).subspan(stl_prelude_size);  ///< rest of the start that is not in a piece yet
   std::uint64_t promised_ = 0, count_ = 0, next_ = 0;
-  bool is_open_ = false;  ///< a pipe whose header does not say how many triangles follow
+  bool is_open_ = false;  ///< whether this is a pipe whose header does not tell the number of triangles
   StlColors colors_{start_};
   bool has_colors_ = false, has_warned_of_colors_ = false;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rare spellings of a number, out of the way of the short ones that number.h reads in line: many digits, exponents,
-// and everything that C libraries have ever printed for infinity and for no number.
+// Rare spellings of a number, apart from the short ones that number.h reads inline: many digits, exponents, and all
+// that C libraries ever printed for infinity and NaN.
 #include "io/models/text/number.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
-/// Whether the text at `at` is `word` in any case, not as part of a longer word.
+/// If `word`, in any case, is at `at` and not part of a longer word, returns its end, else null.
 const char* match(const char* at, const char* end, std::string_view word) {
   if (std::size_t(end - at) < word.size()) return nullptr;
   for (std::size_t i = 0; i < word.size(); ++i)
@@ -24,7 +24,7 @@ const char* match(const char* at, const char* end, std::string_view word) {
   return after != end && is_letter(*after) ? nullptr : after;
 }
 
-/// Steps over what C libraries print behind "nan": "(ind)", "(snan)", "(0x7ff)".
+/// Skips what C libraries print behind "nan": "(ind)", "(snan)", "(0x7ff)".
 const char* skip_payload(const char* at, const char* end) {
   if (at == end || *at != '(') return at;
   const char* p = at + 1;
@@ -32,7 +32,7 @@ const char* skip_payload(const char* at, const char* end) {
   return p != end && *p == ')' ? p + 1 : at;
 }
 
-/// nan, nan(payload), inf, infinity, and what old Microsoft libraries print: 1.#QNAN, 1.#IND, 1.#INF.
+/// Reads nan, nan(payload), inf, infinity, and the spellings of old Microsoft libraries: 1.#QNAN, 1.#IND, 1.#INF.
 template <class T>
 const char* parse_special(const char* at, const char* end, T& magnitude) {
   constexpr T nan = std::numeric_limits<T>::quiet_NaN(), inf = std::numeric_limits<T>::infinity();
@@ -44,14 +44,15 @@ const char* parse_special(const char* at, const char* end, T& magnitude) {
   for (const auto& special : words)
     if (const char* after = match(at, end, special.word)) {
       magnitude = special.value;
-      // "1.#IND00" pads to the digits that were asked for.
+      // "1.#IND00" is padded to the requested number of digits.
       while (special.word[0] == '1' && after != end && is_digit(*after)) ++after;
       return special.word == "nan" ? skip_payload(after, end) : after;
     }
   return nullptr;
 }
 
-/// Where the decimal number at `at` ends; null if there is none. `is_small`: a number out of range is too small.
+/// The end of the decimal number at `at`; null if there is none. `is_small` tells that a number out of range is too
+/// small.
 const char* scan_decimal(const char* at, const char* end, bool& is_small) {
   const char* p = at;
   std::int64_t leading = 0, point = 0;
@@ -82,13 +83,13 @@ const char* scan_decimal(const char* at, const char* end, bool& is_small) {
   return p;
 }
 
-/// The number nearest to the digits [at, end). False: out of range.
+/// The number nearest to the digits [at, end). \returns false if it is out of range.
 template <class T>
 bool nearest(const char* at, const char* end, T& value) {
 #if defined(__cpp_lib_to_chars)
   return std::from_chars(at, end, value).ec == std::errc();
 #else
-  // Libraries without from_chars for floats (WebAssembly) have the C locale only.
+  // Libraries without from_chars for floats (WebAssembly) have only the C locale.
   if constexpr (sizeof(T) == sizeof(float))
     value = std::strtof(std::string(at, end).c_str(), nullptr);
   else

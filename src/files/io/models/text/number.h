@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decimal numbers out of text, correctly rounded to float or double, several times faster than strtof on what files
-// hold.
+// Reads decimal numbers from text, correctly rounded to float or double, several times faster than strtof on typical
+// files.
 //
 //   "12.375" = 12375 / 1000
 //
-// Both are doubles without rounding (15 digits, powers of ten up to 22), so one division rounds once, and rightly.
-// That serves nearly every number of every file, and its loop is small enough to be in line. All others go the slow
-// way.
+// Both numbers are doubles without rounding (15 digits, powers of ten up to 22), so the division rounds only once, and
+// correctly. Nearly all numbers of all files have this form, and the loop is small enough to be inline. Others take a
+// slow path.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 namespace frontmost {
 
 namespace detail {
-/// The general case: many digits, large exponents, nan and inf in every spelling. Null: not a number.
+/// The general case: many digits, large exponents, nan and inf in every spelling. Returns null if there is no number.
 const char* parse_float_slowly(const char* at, const char* end, float& value);
 const char* parse_double_slowly(const char* at, const char* end, double& value);
 
@@ -25,8 +25,8 @@ inline constexpr double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1
 
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Rounding a correctly rounded double to float is correct, unless the double is half way between two floats: then
-/// the digits lost to it would decide. Also false where floats get sparser (subnormal) or end.
+/// Whether rounding a correctly rounded double to float is correct. False if the double is half way between two floats,
+/// because digits that it lost would decide, and where floats get sparser (subnormal) or end.
 inline bool rounds_once(double magnitude) {
   std::uint64_t bits;
   std::memcpy(&bits, &magnitude, sizeof bits);
@@ -36,8 +36,8 @@ inline bool rounds_once(double magnitude) {
 }  // namespace detail
 
 namespace detail {
-/// Reads [+-]digits[.digits], of at most 15 digits. \returns the first character after the number; null if there is
-/// none or it is longer or goes on.
+/// Reads [+-]digits[.digits] with at most 15 digits. \returns the first character after the number; null if there is no
+/// number, or if it is longer or goes on.
 inline const char* parse_short(const char* at, const char* end, double& value) {
   const char* p = at;
   const bool negative = p != end && *p == '-';
@@ -54,21 +54,23 @@ inline const char* parse_short(const char* at, const char* end, double& value) {
     digit_count += p - fraction;
   }
   const bool has_more = p != end && (*p == 'e' || *p == 'E' || *p == '#');
-  // 15 digits are below 2^53, and powers of ten up to 22 are exact: one division rounds once.
+  // 15 digits are below 2^53, and powers of ten up to 22 are exact, so the division rounds only once.
   if (digit_count == 0 || digit_count > 15 || has_more) return nullptr;
   const double magnitude = double(whole) / powers_of_ten[-exponent];
   value = negative ? -magnitude : magnitude;
   return p;
 }
 
-/// The float nearest to the number that `exact` is the nearest double of, if that tells.
+/// Rounds `exact`, the double nearest to a number, to the float nearest to that number. \returns false if that is
+/// ambiguous.
 inline bool round_to_float(double exact, float& value) {
   value = float(exact);
   return exact == 0 || rounds_once(exact < 0 ? -exact : exact);
 }
 }  // namespace detail
 
-/// Reads [+-]digits[.digits][e[+-]digits], nan or inf at `at`. Beyond the range of float: infinity or zero.
+/// Reads [+-]digits[.digits][e[+-]digits], nan or inf at `at`. Beyond the range of float, the value is infinity or
+/// zero.
 /// \returns the first character after the number; null if there is none.
 inline const char* parse_float(const char* at, const char* end, float& value) {
   double exact;
@@ -77,13 +79,13 @@ inline const char* parse_float(const char* at, const char* end, float& value) {
   return after;
 }
 
-/// The same as the nearest double.
+/// Reads a number as the nearest double; otherwise like parse_float().
 inline const char* parse_double(const char* at, const char* end, double& exact) {
   const char* const after = detail::parse_short(at, end, exact);
   return after != nullptr ? after : detail::parse_double_slowly(at, end, exact);
 }
 
-/// The same number as the nearest float, and as the nearest double.
+/// Reads a number as the nearest float and as the nearest double.
 inline const char* parse_both(const char* at, const char* end, float& value, double& exact) {
   const char* const after = parse_double(at, end, exact);
   if (after == nullptr || detail::round_to_float(exact, value)) return after;
@@ -96,7 +98,7 @@ inline const char* parse_integer(const char* at, const char* end, std::int64_t& 
   const bool negative = p != end && *p == '-';
   if (p != end && (*p == '-' || *p == '+')) ++p;
   const char* const digits = p;
-  std::uint64_t magnitude = 0;  // has room for the 19th digit, which is one too many
+  std::uint64_t magnitude = 0;  // has room for a 19th digit, which is too many
   for (; p != end && detail::is_digit(*p) && p - digits < 19; ++p) magnitude = 10 * magnitude + std::uint64_t(*p - '0');
   if (p == digits || p - digits > 18) return nullptr;
   value = negative ? -std::int64_t(magnitude) : std::int64_t(magnitude);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two steps that text seldom takes, kept out of line so that the loops over words stay short.
+// The two rare steps of the scanner, kept out of line so that the loops over words stay short.
 #include "io/models/text/text_scanner.h"
 
 #include "base/parallel.h"

@@ -2,10 +2,10 @@
 // Walks over a text file word by word and counts its lines.
 //
 //        v 1.5  -2  0  # left rim          word() takes "v", number() 1.5, and at_line_end() is true at the comment
-//               ^ at_                      place() is "line 7" for whoever complains
+//               ^ at_                      place() is "line 7", for messages
 //
-// Readers of text are written with these few steps. None of them copies or allocates, and none reads beyond the bytes:
-// a mapped file has no zero at its end.
+// All readers of text use these few steps. No step copies, allocates, or reads beyond the bytes: a mapped file has no
+// zero at its end.
 #pragma once
 
 #include <string_view>
@@ -16,8 +16,8 @@
 
 namespace frontmost {
 
-/// Lines end with \n, \r\n or \r. A word that starts with '#' ends its line where `comments` says so. A backslash at
-/// the end of a line joins it with the next one. Every step stays within the bytes; none looks for a terminator.
+/// Lines end with \n, \r\n or \r. If `comments` says so, a word that starts with '#' ends its line. A backslash at the
+/// end of a line joins it with the next one. Every step stays within the bytes; none looks for a terminator.
 class TextScanner {
  public:
   enum class Comments : bool { none, hash };
@@ -36,7 +36,7 @@ class TextScanner {
   [[nodiscard]] std::string place() const { return "line " + std::to_string(line_); }
   [[noreturn]] void fail(const std::string& reason) const { source_.fail(place(), reason); }
 
-  /// Moves to the start of the next line. False: there is none.
+  /// Moves to the start of the next line. \returns false if there is none.
   bool next_line() {
     while (at_ != end_ && *at_ != '\n' && *at_ != '\r') ++at_;
     if (at_ == end_) return false;
@@ -48,7 +48,7 @@ class TextScanner {
     skip_blanks();
     return at_ == end_ || *at_ == '\n' || *at_ == '\r' || (*at_ == '#' && comments_ == Comments::hash);
   }
-  /// Moves to the next word, over line ends and comments. False: there is none.
+  /// Moves to the next word, over line ends and comments. \returns false if there is none.
   bool to_word() {
     while (at_line_end())
       if (!next_line()) return false;
@@ -62,7 +62,7 @@ class TextScanner {
     while (at_ != end_ && !is_space(*at_)) ++at_;
     return {start, std::size_t(at_ - start)};
   }
-  /// The rest of the line without blanks around it, comments included.
+  /// The rest of the line, with comments, without blanks around it.
   std::string_view rest() {
     skip_blanks();
     const char* const start = at_;
@@ -71,12 +71,12 @@ class TextScanner {
     while (last != start && is_space(last[-1])) --last;
     return {start, std::size_t(last - start)};
   }
-  /// The next word of this line as a number. False, without moving: it is none.
+  /// Reads the next word of this line as a number. \returns false, without moving, if it is none.
   bool number(float& value) {
     skip_blanks();
     return move_to(parse_float(at_, end_, value));
   }
-  /// The same, and what a double holds of it.
+  /// Reads a number as float and as double.
   bool number(float& value, double& exact) {
     skip_blanks();
     return move_to(parse_both(at_, end_, value, exact));
@@ -85,9 +85,9 @@ class TextScanner {
     skip_blanks();
     return move_to(parse_integer(at_, end_, value));
   }
-  /// The same without skipping blanks.
+  /// Reads an integer without skipping blanks.
   bool integer_here(std::int64_t& value) { return move_to(parse_integer(at_, end_, value)); }
-  /// Takes one character if it comes next, without skipping blanks.
+  /// Consumes the next character if it is `c`, without skipping blanks.
   bool take(char c) {
     if (at_ == end_ || *at_ != c) return false;
     ++at_;
@@ -95,7 +95,7 @@ class TextScanner {
   }
   /// Whether the next word of this line starts with `c`. Skips blanks.
   bool next_is(char c) { return !at_line_end() && *at_ == c; }
-  /// Whether a word ends here.
+  /// Whether a word ends at this place.
   [[nodiscard]] bool at_blank() const { return at_ == end_ || is_space(*at_); }
 
  private:
@@ -112,14 +112,15 @@ class TextScanner {
     at_ = after;
     return true;
   }
-  /// At a line end: steps over it.
+  /// Skips a line end. Precondition: the scanner is at one.
   void end_line() {
     if (*at_ == '\r' && end_ - at_ > 1 && at_[1] == '\n') ++at_;
     ++at_;
     ++line_;
     if (at_ - released_ > release_step) release();
   }
-  /// At a backslash before a line end: moves to the last character of that line end.
+  /// Moves to the last character of the line end that follows a backslash. Precondition: the scanner is at the
+  /// backslash.
   bool join_lines();
   void release();
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one model part of a 3MF file says: objects, what they are coloured by, and what is built of them.
+// Contents of one model part of a 3MF file: objects, their colours, and the items to build.
 //
 //   build      item ----> object 7 (components)
 //                            component ----> object 3 (mesh)      each with a transform
@@ -18,25 +18,25 @@
 
 namespace frontmost::threemf {
 
-/// Colours or materials that triangles refer to by the group's number and one in it.
+/// Colours or materials. Triangles refer to them by the group's number and an index in the group.
 struct PropertyGroup {
   enum class Kind : std::uint8_t { materials, colors, unknown };
   Kind kind = Kind::unknown;
-  std::string element;               ///< of groups that are not known
-  std::uint32_t first_material = 0;  ///< in the scene, of groups of materials
+  std::string element;               ///< element name of unknown groups
+  std::uint32_t first_material = 0;  ///< number in the scene, for groups of materials
   std::uint32_t count = 0;
-  std::vector<glm::vec4> colors;  ///< linear, of groups of colours
+  std::vector<glm::vec4> colors;  ///< linear, for groups of colours
 };
 
-/// One of a group for all corners, or one for each. no_index: none.
+/// Indices in a group: one for all corners, or one for each. no_index: none.
 struct Property {
   std::uint32_t group = no_index;
   std::array<std::uint32_t, 3> corners{no_index, no_index, no_index};
 };
 
-/// An object in a place: a component of another, or an item that is built.
+/// An object with a transform: a component of another object, or an item to build.
 struct PlacedObject {
-  std::string part;  ///< empty: the same part
+  std::string part;  ///< empty: this part
   std::uint32_t object = 0;
   glm::dmat4 outer_from_object{1.0};
   std::size_t line = 0;
@@ -45,9 +45,9 @@ struct PlacedObject {
 struct Object {
   std::string name;
   std::size_t line = 0;
-  std::uint32_t mesh = no_index;              ///< in the scene; none for objects of components
-  Property property;                          ///< of triangles that have none of their own
-  std::vector<Property> triangle_properties;  ///< one a triangle, or none at all
+  std::uint32_t mesh = no_index;              ///< number in the scene; none for objects of components
+  Property property;                          ///< for triangles without one of their own
+  std::vector<Property> triangle_properties;  ///< one a triangle, or none
   std::vector<PlacedObject> components;
 };
 
@@ -64,7 +64,7 @@ struct ModelPart {
 [[nodiscard]] ModelPart read_model_part(const std::string& name, Package& package, const ModelSource& source,
                                         Scene& scene);
 
-/// White materials for triangles that bring their colours along, made when they are asked for.
+/// White materials for triangles with their own colours, made at the first request.
 class PlainMaterials {
  public:
   std::uint32_t get(bool is_see_through, Scene& scene);
@@ -73,8 +73,7 @@ class PlainMaterials {
   std::array<std::uint32_t, 2> numbers_{no_index, no_index};
 };
 
-/// Gives the meshes of a part the materials and colours that its triangles ask for.
-/// What they ask for and the part does not have is a warning.
+/// Gives the meshes of a part the materials and colours that its triangles refer to. Missing ones cause a warning.
 void apply_properties(const ModelPart& part, PlainMaterials& plain, Scene& scene);
 
 }  // namespace frontmost::threemf

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tags of a model part. Those of the core specification, of the materials extension's colours and of the production
-// extension's paths are read; all others, and what is within them, are passed over.
+// The tags of a model part. Tags of the core specification, colours of the materials extension and paths of the
+// production extension are read; all other tags, with their contents, are skipped.
 //
 //   <model unit="millimeter">
 //     <resources>
@@ -10,8 +10,7 @@
 //     <build> <item objectid="3" transform="..."/> </build>
 //   </model>
 //
-// A stack of the open tags says what a tag may be; one that is not known opens a part of the text that is passed over
-// whole.
+// The stack of open tags decides the meaning of a tag. An unknown tag is skipped with all its contents.
 #include <algorithm>
 #include <set>
 
@@ -25,14 +24,14 @@
 namespace frontmost::threemf {
 namespace {
 
-/// Extensions that are followed, or that say nothing about what is seen.
+/// Extensions that are implemented, or that change nothing visible.
 constexpr std::string_view supported[] = {
     "http://schemas.microsoft.com/3dmanufacturing/core/2015/02",
     "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
     "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
     "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07",
 };
-/// Tags beside meshes that change nothing that is seen, or that groups of their own refer to.
+/// Tags beside meshes that change nothing visible, or that groups refer to.
 constexpr std::string_view invisible[] = {"metadatagroup",
                                           "trianglesets",
                                           "texture2d",
@@ -93,7 +92,7 @@ constexpr Rule rules[] = {
     {Tag::build, core, "item", Tag::item},
 };
 
-/// `core_space` is what stands before the names of the core specification's tags in this file.
+/// `core_space` is the prefix that this file's names of core tags have.
 Tag tag_of(Tag parent, std::string_view name, std::string_view core_space) {
   for (const Rule& rule : rules) {
     if (rule.parent != parent || !name.ends_with(rule.name)) continue;
@@ -158,7 +157,7 @@ class ModelPartReader : public XmlPart {
   }
 
  private:
-  /// Values of a tag, with messages that name it.
+  /// Reads values of a tag; its messages name the tag.
   class TagReader {
    public:
     TagReader(const Attributes& attributes, ModelPartReader& reader) : attributes_(attributes), reader_(reader) {}
@@ -179,7 +178,7 @@ class ModelPartReader : public XmlPart {
       if (!value) fail(name, no_index_reason);
       return *value;
     }
-    /// An index that only changes how the model looks: a wrong one is a warning, and counts as absent.
+    /// An index that only affects appearance: a wrong one causes a warning and counts as absent.
     [[nodiscard]] std::uint32_t look_index_or(std::string_view name, std::uint32_t absent) const {
       const std::optional<std::uint32_t> value = find(name) == nullptr ? absent : parse_index(require(name));
       if (!value) warn(name, no_index_reason);
@@ -202,7 +201,7 @@ class ModelPartReader : public XmlPart {
     ModelPartReader& reader_;
   };
 
-  /// Warns of the first of a kind: a file may hold millions.
+  /// Warns about the first of each kind, because a file may hold millions.
   void warn_once(const std::string& kind, const std::string& what) {
     if (warned_.insert(kind).second) part_.warnings.push_back(place() + ": " + what);
   }
@@ -235,7 +234,7 @@ class ModelPartReader : public XmlPart {
     }
   }
 
-  /// What could be seen and is not read.
+  /// Warns about an unknown tag that may have visible contents.
   void pass_over(Tag parent, std::string_view name) {
     if (parent != Tag::resources && parent != Tag::object && parent != Tag::mesh) return;
     const std::string local(name.substr(name.rfind('|') + 1));
@@ -252,7 +251,7 @@ class ModelPartReader : public XmlPart {
     group_->element = name.substr(name.rfind('|') + 1);
   }
 
-  /// \returns white if the value is no colour.
+  /// Reads a colour. \returns white if the value is none.
   static glm::vec4 color(const TagReader& tags, std::string_view name) {
     const char* const value = tags.find(name);
     const std::optional<glm::vec4> color = value == nullptr ? std::nullopt : parse_color(value);
@@ -297,7 +296,7 @@ class ModelPartReader : public XmlPart {
     if (vertices_.size() >= no_index) source().fail_limit(place(), "too many vertices");
     vertices_.emplace_back(tags.number("x"), tags.number("y"), tags.number("z"));
   }
-  /// Doubles are kept until all are known: then so is the origin about which floats hold the most of them.
+  /// The vertices of a mesh stay doubles until all are known, which determines the best origin for floats.
   void end_vertices() {
     Mesh& mesh = this->mesh();
     if (!mesh.positions.empty()) fail("a second list of vertices in one mesh");
@@ -345,15 +344,15 @@ class ModelPartReader : public XmlPart {
 
   Scene& scene_;
   ModelPart part_;
-  std::map<std::string, std::string> spaces_;  ///< that the first tag declares, by prefix
-  std::string core_space_;                     ///< the namespace of the first tag, with a | behind it where it has one
-  std::set<std::string> warned_;               ///< kinds of warnings
+  std::map<std::string, std::string> spaces_;  ///< declared by the first tag, by prefix
+  std::string core_space_;                     ///< the namespace of the first tag, with a | behind it if there is one
+  std::set<std::string> warned_;               ///< kinds of warnings that were given
   std::vector<Tag> path_;
   bool has_model_ = false;
   PropertyGroup* group_ = nullptr;
-  PropertyGroup repeated_group_;  ///< whose number an earlier one has
+  PropertyGroup repeated_group_;  ///< receives a group whose number is taken
   Object* object_ = nullptr;
-  std::vector<glm::dvec3> vertices_;  ///< of the mesh that is being read
+  std::vector<glm::dvec3> vertices_;  ///< of the current mesh
   std::size_t placed_count_ = 0;
 };
 

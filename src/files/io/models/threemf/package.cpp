@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts are unpacked piece by piece, and what they unpack to is counted against what an archive of this size can
-// honestly mean, before memory is asked for: a kilobyte of zip can hold a megabyte of blanks.
+// Unpacks parts piece by piece. The unpacked size is checked against a limit for archives of this size before memory is
+// allocated: a kilobyte of zip can hold a megabyte of blanks.
 #include "io/models/threemf/package.h"
 
 #include <zip.h>
@@ -14,8 +14,8 @@
 namespace frontmost::threemf {
 namespace {
 
-// A kilobyte of zip can hold a megabyte of blanks. Models are 4 to 30 times as long as their archives: every byte of
-// the file earns 64, and 256 MiB are free.
+// Models are 4 to 30 times as large as their archives. Each byte of the file allows 64 unpacked bytes; 256 MiB more are
+// free.
 constexpr std::uint64_t free_bytes = std::uint64_t(1) << 28, bytes_per_byte = 64;
 
 struct CloseFile {
@@ -85,7 +85,7 @@ void Package::unpack(const std::string& part, const std::function<void(std::stri
       report_progress(source_.execution(), "load", std::min(1.0, double(unpacked_ - before) / double(stated.size)));
     const zip_int64_t size = zip_fread(file.get(), piece.data(), piece.size());
     if (size < 0) source_.fail(place, std::string(zip_file_strerror(file.get())) + "; the archive is damaged");
-    // What an archive states of its parts may be a lie.
+    // Sizes stated in an archive may be wrong, so the unpacked bytes are counted.
     if (std::uint64_t(size) > most_ - unpacked_)
       source_.fail_limit(place, "unpacks to far more than an archive of this size should hold");
     unpacked_ += std::uint64_t(size);

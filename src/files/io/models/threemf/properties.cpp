@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials and colours of triangles. Base materials become materials of the scene; colours become colours of corners,
-// on a plain material of their own.
+// with a plain material.
 //
-// A triangle names a group and, of it, one property for all corners or one for each; a triangle without has its
-// object's. Where a colour can be seen through, the plain material is one that blends.
+// A triangle names a group and one property for all corners, or one for each. A triangle without any has its object's.
+// If a colour is transparent, the plain material blends.
 #include <algorithm>
 #include <unordered_map>
 #include <utility>
@@ -56,7 +56,7 @@ class Painter {
     return group_;
   }
 
-  /// Warns once a part: a file may hold millions of such triangles.
+  /// Warns once a part, because a file may hold millions of such triangles.
   void warn(std::size_t triangle, const std::string& reason) {
     if (std::exchange(has_warned_, true)) return;
     scene_.warnings.push_back(printable(part_.name) + ": line " + std::to_string(object_.line) + ": triangle " +
@@ -77,7 +77,7 @@ class Painter {
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t number = property.corners[std::size_t(k)];
       is_see_through = is_see_through || group.colors[number].a < 1;
-      // Many meshes may share a large group: each keeps the colours that it has.
+      // Many meshes may share a large group, so each mesh stores only the colours that it uses.
       const std::uint64_t key = std::uint64_t(property.group) << 32 | number;
       const auto [value, is_new] = values_.try_emplace(key, std::uint32_t(mesh_.colors.values.size()));
       if (is_new) mesh_.colors.values.push_back(group.colors[number]);
@@ -92,9 +92,9 @@ class Painter {
   PlainMaterials& plain_;
   Scene& scene_;
   Mesh& mesh_;
-  const PropertyGroup* group_ = nullptr;  ///< that was looked up last
+  const PropertyGroup* group_ = nullptr;  ///< the group of the last look-up
   std::uint32_t group_number_ = no_index;
-  std::unordered_map<std::uint64_t, std::uint32_t> values_;  ///< of the mesh, by group and number
+  std::unordered_map<std::uint64_t, std::uint32_t> values_;  ///< numbers of the mesh's colours, by group and index
 };
 
 }  // namespace

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which part of a package is the model: the relationships of the package say so and, where they do not, the types of
-// its parts. Both are XML, read by the same reader as the model.
+// Finds the model's part: by the package's relationships or, if these name none, by the content types. Both are XML,
+// read by the same reader as the model.
 #include "io/models/threemf/package.h"
 #include "io/models/threemf/xml_part.h"
 
 namespace frontmost::threemf {
 namespace {
 
-/// A tag that names a part, and what its kind must be for that part to be the model.
+/// A tag that names a part, and the kind that it must state for the model.
 struct Naming {
   const char* part;
   std::string_view tag, kind_attribute, kind, name_attribute;
@@ -22,7 +22,7 @@ class NamingReader : public XmlPart {
  public:
   NamingReader(const Naming& naming, const ModelSource& source) : XmlPart(naming.part, source), naming_(naming) {}
 
-  /// Empty: it names none.
+  /// The named part; empty if there is none.
   std::string find(Package& package) {
     read(package);
     return found_;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// 3MF: a zip archive of XML parts becomes a Scene. One part is the model; it may place objects of others.
+// 3MF: turns a zip archive of XML parts into a Scene. One part is the model; it may place objects of other parts.
 //
 //   package --> start part --> model parts, each read once --> items of the start part --> instances
 //                                                              through components of components, each with a transform
 //
-// A component may name an object of another part, and a few components can stand for a million instances: levels are
-// limited, and what they make is charged to a budget.
+// A component may name an object of another part, and a few components can stand for a million instances. So levels are
+// limited, and instances are charged to a budget.
 #include <set>
 
 #include "base/parallel.h"
@@ -24,7 +24,7 @@ constexpr int most_component_levels = 64;
 
 using ModelParts = std::map<std::string, ModelPart>;
 
-/// Reads a part and all that it refers to, each once.
+/// Reads a part and all parts that it refers to, each once.
 ModelParts read_parts(const std::string& start, Package& package, const ModelSource& source, Scene& scene) {
   ModelParts parts;
   PlainMaterials plain;
@@ -48,7 +48,7 @@ ModelParts read_parts(const std::string& start, Package& package, const ModelSou
   return parts;
 }
 
-/// Makes an instance of every mesh that is built, through all components.
+/// Makes an instance of each built mesh, through all levels of components.
 class ItemPlacer {
  public:
   ItemPlacer(const ModelParts& parts, const ModelPart& root, const Budget& budget, const ModelSource& source,
@@ -61,21 +61,21 @@ class ItemPlacer {
   }
 
  private:
-  /// What is above an object.
+  /// State of the objects above the current one.
   struct Above {
     glm::dmat4 world_from_outer;
-    std::string name;  ///< of the nearest that has one
+    std::string name;  ///< of the nearest object with a name
     int level;
   };
 
-  /// `above` tells of the object of `from` that holds `placed`.
+  /// Places an object. `above` describes the object of `from` that holds `placed`.
   void place(const ModelPart& from, const PlacedObject& placed, const Above& above) {
     check_cancelled(source_.execution());
     const std::string place = printable(from.name) + ": line " + std::to_string(placed.line);
     if (above.level > most_component_levels)
       source_.fail_limit(place, "components within more than " + std::to_string(most_component_levels) +
                                     " others, or within themselves");
-    // Objects of two components each, thirty levels deep, are a thousand million.
+    // Objects of two components each, thirty levels deep, would make a thousand million instances.
     if (++visits_ > 4 * max_objects) source_.fail_limit(place, "too many components");
     const ModelPart& part = placed.part.empty() ? from : parts_.at(placed.part);
     const auto found = part.objects.find(placed.object);
@@ -93,7 +93,8 @@ class ItemPlacer {
                     const std::string& place) {
     const auto& [id, object] = numbered;
     if (scene_.instances.size() >= max_objects) source_.fail_limit(place, "too many objects are built");
-    // No memory here, but ten times as much in whatever looks at the triangles in the world.
+    // Triangles are charged although they take no memory here: code that transforms them to world space needs ten times
+    // as much.
     constexpr std::uint64_t least_cost = 4;
     budget_.charge(scene_.meshes[object.mesh].triangles.size(), least_cost, place, source_);
     budget_.charge(1, sizeof(Instance) + here.name.size(), place, source_);
@@ -106,7 +107,7 @@ class ItemPlacer {
         {here.name.empty() ? "object " + std::to_string(id) : here.name, object.mesh, world_from_mesh});
   }
 
-  /// Nothing is built: then what no other object holds is shown.
+  /// Shows all objects that no other object holds, because the file builds nothing.
   void place_unused() {
     std::set<std::uint32_t> used;
     for (const auto& [id, object] : root_.objects)

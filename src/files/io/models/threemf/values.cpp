@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of attributes, read as strictly as the schema writes them but for blanks: a value with anything behind it is
-// none, because half of a transform would be placed somewhere.
+// Numbers of attributes, read as strictly as the schema defines except for blanks. A value with anything behind it is
+// refused, because half of a transform would place an object somewhere.
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +19,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(0, text.find_last_not_of(blanks) + 1);
 }
 
-/// The value of a hexadecimal digit; 16 for anything else.
+/// The value of a hexadecimal digit; 16 for other characters.
 int digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   const char lower = char(c | 0x20);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parser is C, calls back into this class, and must not be left by an exception: one is kept until it has returned.
+// The parser is C code and calls back into this class. Exceptions must not pass through it, so one is kept until it
+// returns.
 //
-// Memory is bounded whatever the text holds. A document type is refused, and with it every entity that would grow when
-// it is used; tags, levels and different names have limits, because the parser keeps what it has seen of them.
+// Memory is bounded for any text. Document types are refused, and with them all entities that would grow on use. Tags,
+// levels and different names have limits, because the parser keeps data about them.
 #include "io/models/threemf/xml_part.h"
 
 #include <expat.h>
@@ -17,7 +18,7 @@ constexpr int most_tag_levels = 256;
 
 }  // namespace
 
-/// What the parser calls, each with the part that it works for. C code is in between: exceptions wait.
+/// The parser's callbacks, each with its XmlPart as user data. Exceptions are kept, because C code lies between.
 struct XmlPart::Callbacks {
   template <class Body>
   static void guarded(void* user, const Body& body) {
@@ -70,7 +71,7 @@ XmlPart::XmlPart(std::string name, const ModelSource& source)
   XML_SetElementHandler(parser_.get(), Callbacks::start, Callbacks::end);
   XML_SetStartNamespaceDeclHandler(parser_.get(), Callbacks::declare);
   XML_SetStartDoctypeDeclHandler(parser_.get(), Callbacks::document_type);
-  // Text and comments are of no use, but show that the parser gets on.
+  // Text and comments are not used, but show that the parser makes progress.
   XML_SetDefaultHandler(parser_.get(), Callbacks::other);
 }
 
@@ -89,7 +90,7 @@ void XmlPart::note_names(std::string_view element, const char** attributes) {
   for (const char** p = attributes; *p != nullptr; p += 2) note(*p);
 }
 
-/// The parser keeps every name that it meets.
+/// Counts different names, because the parser keeps each one.
 void XmlPart::note(std::string_view name) {
   if (names_.find(name) != names_.end()) return;
   if (names_.size() == most_names)
@@ -102,7 +103,7 @@ void XmlPart::feed(std::string_view text, bool is_last) {
   const XML_Status status = XML_Parse(parser_.get(), text.data(), int(text.size()), is_last ? XML_TRUE : XML_FALSE);
   if (failure_) std::rethrow_exception(failure_);
   if (status != XML_STATUS_OK) fail(XML_ErrorString(XML_GetErrorCode(parser_.get())));
-  // The parser holds a tag until it ends.
+  // The parser holds a tag in memory until the tag ends.
   if (since_event_ > longest_tag) source_.fail_limit(place(), "a tag of more than a megabyte");
 }
 

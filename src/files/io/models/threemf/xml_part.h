@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One part of a package that is XML, read tag by tag from front to back, and the values that attributes of its tags
-// hold: blanks around them are passed over, anything else is no value.
+// Reads one XML part of a package tag by tag, from front to back. Also parsers of attribute values: blanks around a
+// value are skipped, anything else makes the value invalid.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ namespace frontmost::threemf {
 class Attributes {
  public:
   explicit Attributes(const char** pairs) : pairs_(pairs) {}
-  /// The value, or null.
+  /// The value of an attribute, or null.
   [[nodiscard]] const char* find(std::string_view name) const {
     for (const char** p = pairs_; *p != nullptr; p += 2)
       if (name == *p) return p[1];
@@ -35,10 +35,10 @@ class Attributes {
   const char** pairs_;
 };
 
-/// What it reads is the derived class's own. Text between tags is passed over.
+/// Base of readers of XML parts; derived classes interpret the tags. Text between tags is skipped.
 ///
-/// Bounded in memory whatever the part holds: a document type (and with it every entity of one's own) is refused, and
-/// so are tags of more than a megabyte, more than 256 levels, and more than 4096 different names.
+/// Memory is bounded for any part: document types (and so all custom entities) are refused, and so are tags of more
+/// than a megabyte, more than 256 levels, and more than 4096 different names.
 class XmlPart {
  public:
   XmlPart(std::string name, const ModelSource& source);
@@ -53,13 +53,13 @@ class XmlPart {
   /// `name` is "namespace|name".
   virtual void start(std::string_view name, const Attributes& attributes) = 0;
   virtual void end() = 0;
-  /// A namespace that the tag about to start declares.
+  /// Called for each namespace that the next tag declares.
   virtual void declare(std::string_view prefix, std::string_view space) { (void)prefix, (void)space; }
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const ModelSource& source() const { return source_; }
   [[nodiscard]] std::size_t line() const;
-  /// The part and the line that is being read.
+  /// The part and its current line.
   [[nodiscard]] std::string place() const;
   [[noreturn]] void fail(const std::string& reason) const { source_.fail(place(), reason); }
 
@@ -75,7 +75,7 @@ class XmlPart {
   std::string name_;
   const ModelSource& source_;
   std::unique_ptr<XML_ParserStruct, Free> parser_;
-  std::exception_ptr failure_;  ///< of a callback, which may not throw through the parser
+  std::exception_ptr failure_;  ///< thrown by a callback, which must not throw through the parser
   std::size_t since_event_ = 0;
   int depth_ = 0;
   struct Hash : std::hash<std::string_view> {
@@ -84,13 +84,13 @@ class XmlPart {
   std::unordered_set<std::string, Hash, std::equal_to<>> names_;
 };
 
-/// A number, also infinite or NaN: such vertices are kept, as of every format.
+/// A number, which may be infinite or NaN: such vertices are kept, as in all formats.
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);
 /// A whole number below no_index.
 [[nodiscard]] std::optional<std::uint32_t> parse_index(std::string_view text);
-/// #RRGGBB or #RRGGBBAA in sRGB, as linear light.
+/// A colour #RRGGBB or #RRGGBBAA in sRGB, converted to linear light.
 [[nodiscard]] std::optional<glm::vec4> parse_color(std::string_view text);
-/// Twelve finite numbers: the rows of a matrix that row vectors are multiplied by, without its last column.
+/// Twelve finite numbers: the rows of a matrix for row vectors, without its last column.
 [[nodiscard]] std::optional<glm::dmat4> parse_transform(std::string_view text);
 
 }  // namespace frontmost::threemf
