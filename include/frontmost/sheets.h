@@ -42,7 +42,7 @@ struct FigureShape {
   std::size_t first_ring = 0;
   /// Number of the blend group, ascending. The translucent shapes of one blend group have the same opacity. They are
   /// filled opaquely, one after the other, on a transparent ground; the result is then blended with that opacity.
-  std::uint32_t sheet = 0;
+  std::uint32_t blend_group = 0;
 };
 /// A picture of polygons: paths to be filled in order. Pixels of the view, x right, y down.
 struct Figure {

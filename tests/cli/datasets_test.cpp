@@ -101,7 +101,8 @@ TEST_F(Datasets, MasksHaveTheNumbersOfTheirViews) {
   EXPECT_THAT(told["files"], testing::Contains("masks/000001_000000_amodal.png"));
   for (std::size_t i = 0; i < 3; ++i) {
     const std::string alone = "alone" + std::to_string(i);
-    for (const std::string file : succeed("report squares.obj --json --masks " + alone + view_of(i)).json()["files"])
+    const json one = succeed("report squares.obj --json --masks " + alone + view_of(i)).json();
+    for (const std::string file : one["files"])
       EXPECT_EQ(bytes("masks/00000" + std::to_string(i) + "_" + file.substr(alone.size() + 1)), bytes(file)) << file;
   }
   write("views.json", R"({"views": [{}]})");

@@ -107,7 +107,7 @@ TEST(EdgeNeighbours, AreThoseFoundByAllPairs) {
   EXPECT_GT(none, 200);
 }
 
-TEST(DisjointSets, TheLeastNumberStandsForASetWhateverTheOrderAndTheThreads) {
+TEST(DisjointSets, TheLeastNumberLeadsASetWhateverTheOrderAndTheThreads) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Random random(seed);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
@@ -125,13 +125,21 @@ TEST(DisjointSets, TheLeastNumberStandsForASetWhateverTheOrderAndTheThreads) {
         expected[a] = expected[b] = least;
       }
     }
-    DisjointSets sets(500);
+    DisjointSets<> sets(500);
     parallel_for({.threads = 4}, pairs.size(), 1,
                  [&](std::size_t i, std::size_t) { sets.join(pairs[i].first, pairs[i].second); });
     for (std::uint32_t i = 0; i < 500; ++i) {
-      ASSERT_EQ(sets.least_of(i), expected[i]) << "seed " << seed;
-      ASSERT_EQ(sets.is_least(i), expected[i] == i);
+      ASSERT_EQ(sets.leader_of(i), expected[i]) << "seed " << seed;
+      ASSERT_EQ(sets.is_leader(i), expected[i] == i);
     }
+    DisjointSets<std::greater<>> mirrored(500);  // number i as 499 - i
+    std::size_t joined = 0, leaders = 0;
+    for (const auto& [a, b] : pairs) joined += mirrored.join(499 - a, 499 - b);
+    for (std::uint32_t i = 0; i < 500; ++i) {
+      ASSERT_EQ(mirrored.leader_of(499 - i), 499 - expected[i]) << "seed " << seed;
+      leaders += mirrored.is_leader(i);
+    }
+    ASSERT_EQ(joined, 500 - leaders);
   }
 }
 

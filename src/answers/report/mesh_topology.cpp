@@ -79,7 +79,7 @@ class MeshTopology {
     odd.non_manifold_edges = edges.non_manifold;
     odd.inconsistent_edges = edges.inconsistent;
     for (std::uint32_t t = 0; t < kinds_.size(); ++t)
-      topology.shells += has_edges(kinds_[t]) && triangle_sets_.is_least(t);
+      topology.shells += has_edges(kinds_[t]) && triangle_sets_.is_leader(t);
     topology.closed = surface > 0 && edges.boundary == 0;
     if (topology.closed && edges.non_manifold == 0 && edges.inconsistent == 0) {
       // Euler: sum over shells of 2 - 2 genus = vertices - edges + triangles.
@@ -167,7 +167,7 @@ class MeshTopology {
         if (used[corner]) continue;
         used[corner] = true;
         topology.points.push_back(mesh_.positions[corner]);
-        topology.pieces += corner_sets_.is_least(corner);
+        topology.pieces += corner_sets_.is_leader(corner);
       }
     }
   }
@@ -176,7 +176,7 @@ class MeshTopology {
   const Execution& execution_;
   std::vector<glm::uvec3> corners_;
   std::vector<Kind> kinds_;
-  DisjointSets triangle_sets_, corner_sets_;
+  DisjointSets<> triangle_sets_, corner_sets_;
   std::vector<std::uint32_t> twins_;
 };
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps from visible polygons in painting order to a figure: colours, merged neighbours, sheets (blend groups) and
+// The steps from visible polygons in painting order to a figure: colours, merged neighbours, blend groups and
 // outlines. See draw_figure().
 //
 //    VisibleParts --color_order()--> one shape for each colour of each polygon
 //                 --merge_neighbours()--> fewer shapes: neighbours of one colour are merged
-//                 --gather_sheets()--> translucent neighbours in blend groups
+//                 --gather_blend_groups()--> translucent neighbours in blend groups
 //                 --outlined()--> Figure: closed rings, with traps
 //
 // Each step takes a ColoredOrder and returns one, so each can be tested, or left out, separately. All keep the painting
@@ -32,7 +32,7 @@ struct ColoredShape {
   std::size_t first_polygon = 0;
   /// Number of the blend group, ascending. Translucent shapes of one group have the same opacity, and none is painted
   /// over another. Ignored for opaque shapes.
-  std::uint32_t sheet = 0;
+  std::uint32_t blend_group = 0;
 };
 
 /// Shapes in painting order. Each consists of convex polygons with corners in pixels, counter-clockwise on the screen.
@@ -57,7 +57,7 @@ struct ColoredOrder {
   }
   /// Appends a shape with a blend group of its own. The polygons that are added next belong to it.
   void begin_shape(const glm::u8vec4& color) {
-    shapes.push_back({color, 0, polygons.size(), shapes.empty() ? 0 : shapes.back().sheet + 1});
+    shapes.push_back({color, 0, polygons.size(), shapes.empty() ? 0 : shapes.back().blend_group + 1});
   }
   void add_polygon(PrimitiveId id, std::span<const glm::dvec2> outline) {
     polygons.push_back({id, std::uint32_t(outline.size()), corners.size()});
@@ -87,7 +87,7 @@ struct ColoredOrder {
 /// where neither is over the other. Overlapping surfaces are separate groups; a surface that winds over and under
 /// itself has several, with hairlines between these. O(n log n) in polygons and overlapping pairs, on one thread. With
 /// more than 16 million pairs that have translucent shapes between or below them, the figure stays unchanged.
-[[nodiscard]] ColoredOrder gather_sheets(ColoredOrder colored, const Execution& execution = {});
+[[nodiscard]] ColoredOrder gather_blend_groups(ColoredOrder colored, const Execution& execution = {});
 
 /// The outlines of all shapes, without sides that their own polygons share, and with traps of `width` pixels under
 /// later shapes. `occluders` are identified by the polygons' ids; translucent shapes are none. Translucent shapes have

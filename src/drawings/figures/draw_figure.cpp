@@ -80,7 +80,7 @@ Figure figure_of(shading::PreparedScene& scene, const ShadeInput& input, const F
   check_count(parts.polygons.size(), options);
   ColoredOrder colored = color_order(scene, input, parts, options, execution);
   if (options.merges_neighbours) colored = merge_neighbours(colored, execution);
-  colored = gather_sheets(std::move(colored), execution);
+  colored = gather_blend_groups(std::move(colored), execution);
   Figure figure = outlined(colored, kTrap, occluders_of(surfaces, options, Holes::cut_out), execution);
   figure.title = surfaces.scene().name;
   figure.background = options.shade.background;

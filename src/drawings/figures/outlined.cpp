@@ -45,24 +45,24 @@ std::vector<ScreenPolygon> polygons_in_groups(const ColoredOrder& colored, const
 }
 
 /// Consecutive shapes of one blend group.
-struct PaintedSheet {
+struct PaintedGroup {
   std::size_t begin, end;  ///< range of ColoredOrder::polygons
   bool has_traps;          ///< translucent, with several shapes
 };
 
-std::vector<PaintedSheet> sheets_of(const ColoredOrder& colored) {
-  std::vector<PaintedSheet> sheets;
+std::vector<PaintedGroup> groups_of(const ColoredOrder& colored) {
+  std::vector<PaintedGroup> groups;
   const ColoredShape* first = nullptr;
   for (const ColoredShape& shape : colored.shapes) {
     const std::size_t end = shape.first_polygon + shape.polygon_count;
-    if (first && first->sheet == shape.sheet) {
-      sheets.back() = {sheets.back().begin, end, shape.color.a < 255};
+    if (first && first->blend_group == shape.blend_group) {
+      groups.back() = {groups.back().begin, end, shape.color.a < 255};
     } else {
-      sheets.push_back({shape.first_polygon, end, false});
+      groups.push_back({shape.first_polygon, end, false});
       first = &shape;
     }
   }
-  return sheets;
+  return groups;
 }
 
 /// The traps of each polygon. Opaque polygons have traps under later ones, translucent ones under others of their blend
@@ -70,16 +70,16 @@ std::vector<PaintedSheet> sheets_of(const ColoredOrder& colored) {
 TrapList find_traps(const ColoredOrder& colored, double width, const Occluders& occluders, const Execution& execution) {
   std::vector<ScreenPolygon> polygons = polygons_in_groups(colored, occluders);
   TrapList opaque = make_traps(polygons, colored.view, width, execution);
-  const std::vector<PaintedSheet> sheets = sheets_of(colored);
-  if (std::none_of(sheets.begin(), sheets.end(), [](const PaintedSheet& sheet) { return sheet.has_traps; }))
+  const std::vector<PaintedGroup> groups = groups_of(colored);
+  if (std::none_of(groups.begin(), groups.end(), [](const PaintedGroup& group) { return group.has_traps; }))
     return opaque;
   for (ScreenPolygon& polygon : polygons) polygon.is_occluder = true;
   TrapList all;
-  for (const PaintedSheet& sheet : sheets) {
-    const std::span<const ScreenPolygon> members(polygons.data() + sheet.begin, sheet.end - sheet.begin);
-    const TrapList own = sheet.has_traps ? make_traps(members, colored.view, width, execution) : TrapList();
-    for (std::size_t i = sheet.begin; i < sheet.end; ++i)
-      sheet.has_traps ? all.add_polygon(own, i - sheet.begin) : all.add_polygon(opaque, i);
+  for (const PaintedGroup& group : groups) {
+    const std::span<const ScreenPolygon> members(polygons.data() + group.begin, group.end - group.begin);
+    const TrapList own = group.has_traps ? make_traps(members, colored.view, width, execution) : TrapList();
+    for (std::size_t i = group.begin; i < group.end; ++i)
+      group.has_traps ? all.add_polygon(own, i - group.begin) : all.add_polygon(opaque, i);
   }
   return all;
 }
@@ -89,9 +89,9 @@ class Outliner {
  public:
   Outliner(Figure& figure, const TrapList& traps) : figure_(figure), traps_(traps) {}
 
-  void begin_shape(const glm::u8vec4& color, bool is_in_last_sheet) {
-    const std::uint32_t sheet = figure_.shapes.empty() ? 0 : figure_.shapes.back().sheet + !is_in_last_sheet;
-    figure_.shapes.push_back({color, 0, figure_.rings.size(), sheet});
+  void begin_shape(const glm::u8vec4& color, bool is_in_last_group) {
+    const std::uint32_t group = figure_.shapes.empty() ? 0 : figure_.shapes.back().blend_group + !is_in_last_group;
+    figure_.shapes.push_back({color, 0, figure_.rings.size(), group});
   }
   void add_ring(std::span<const TrappedCorner> outline) {
     const std::size_t first = figure_.corners.size();
@@ -121,7 +121,7 @@ Figure outlined(const ColoredOrder& colored, double width, const Occluders& occl
   const ColoredShape* before = nullptr;
   for (const ColoredShape& shape : colored.shapes) {
     check_cancelled(execution);
-    outliner.begin_shape(shape.color, before && shape.color.a < 255 && before->sheet == shape.sheet);
+    outliner.begin_shape(shape.color, before && shape.color.a < 255 && before->blend_group == shape.blend_group);
     before = &shape;
     net.clear();
     for (std::size_t i = shape.first_polygon; i < shape.first_polygon + shape.polygon_count; ++i) {

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <algorithm>
-#include <numeric>
 #include <span>
 #include <vector>
 
@@ -78,24 +77,6 @@ class SideNet {
   std::vector<std::uint8_t> is_used_;
   std::size_t next_ = 0;
   std::vector<Corner> ring_;
-};
-
-/// Disjoint sets of numbers, as of polygons that share sides (union-find). The greatest number of a set identifies it.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : above_(count) { std::iota(above_.begin(), above_.end(), 0u); }
-  std::uint32_t find(std::uint32_t i) {
-    while (above_[i] != i) i = above_[i] = above_[above_[i]];
-    return i;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    above_[std::min(a, b)] = std::max(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> above_;
 };
 
 }  // namespace frontmost::shading

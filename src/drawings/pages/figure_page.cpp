@@ -25,7 +25,9 @@ PageGroup backdrop(const glm::vec3& color, const Page& page) {
 
 /// The end of a blend group of several shapes; otherwise the begin of the next such group.
 std::size_t end_of_group(std::span<const FigureShape> shapes, std::size_t begin) {
-  const auto goes_on = [&](std::size_t i) { return i + 1 < shapes.size() && shapes[i + 1].sheet == shapes[i].sheet; };
+  const auto goes_on = [&](std::size_t i) {
+    return i + 1 < shapes.size() && shapes[i + 1].blend_group == shapes[i].blend_group;
+  };
   std::size_t end = begin;
   if (goes_on(begin)) {
     while (goes_on(end)) ++end;
@@ -39,8 +41,8 @@ std::size_t end_of_group(std::span<const FigureShape> shapes, std::size_t begin)
 PageGroup group_of(const Figure& figure, std::span<const FigureShape> shapes) {
   PageGroup group{"surfaces", Pen{}};
   group.pen.width = 0;
-  const bool is_sheet = shapes.size() > 1 && shapes[0].sheet == shapes[1].sheet;
-  if (is_sheet) group.opacity = shapes[0].color.a;
+  const bool is_blended = shapes.size() > 1 && shapes[0].blend_group == shapes[1].blend_group;
+  if (is_blended) group.opacity = shapes[0].color.a;
   const FigureShape& last = shapes.back();
   const std::size_t ring_count = last.first_ring + last.ring_count - shapes[0].first_ring;
   group.paths.reserve(ring_count);
@@ -54,7 +56,7 @@ PageGroup group_of(const Figure& figure, std::span<const FigureShape> shapes) {
         outline.push_back(figure.corners[ring.first_corner + k] * kMillimetres);
       group.add(outline, true, i > 0);
       group.fills.push_back(page_color(shape.color));
-      if (is_sheet) group.fills.back().opacity = 255;
+      if (is_blended) group.fills.back().opacity = 255;
     }
   return group;
 }

@@ -47,7 +47,7 @@ std::vector<WeldedTriangle> seen_triangles(const PlacedScene& placed, std::uint3
 
 /// Numbers the connected parts in the order of their first triangles. \returns how many there are.
 std::uint32_t tell_parts_apart(std::size_t vertex_count, std::vector<WeldedTriangle>& triangles) {
-  DisjointSets together(vertex_count);
+  DisjointSets<> together(vertex_count);
   for (const WeldedTriangle& t : triangles) {
     together.join(t.corners.x, t.corners.y);
     together.join(t.corners.y, t.corners.z);
@@ -55,7 +55,7 @@ std::uint32_t tell_parts_apart(std::size_t vertex_count, std::vector<WeldedTrian
   std::vector<std::uint32_t> part(vertex_count, no_index);
   std::uint32_t count = 0;
   for (WeldedTriangle& t : triangles) {
-    std::uint32_t& own = part[together.least_of(t.corners.x)];
+    std::uint32_t& own = part[together.leader_of(t.corners.x)];
     if (own == no_index) own = count++;
     t.part = own;
   }

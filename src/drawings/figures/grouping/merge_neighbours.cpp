@@ -13,6 +13,7 @@
 #include "figures/colored_order.h"
 #include "figures/grouping/overlaps.h"
 #include "figures/side_net.h"
+#include "geometry/disjoint_sets.h"
 #include "painter/limits.h"
 
 namespace frontmost {
@@ -44,12 +45,15 @@ struct Polygons {
   std::vector<bool> uncovered;
 };
 
-/// Unites uncovered polygons of one colour that share a part of a side, and those of one shape.
-Sets united(const ColoredOrder& colored, const Polygons& polygons, const Execution& execution) {
+/// The last polygon of a set is its leader: the set is painted in its place.
+using PolygonSets = DisjointSets<std::greater<>>;
+
+/// Joins uncovered polygons of one colour that share a part of a side, and those of one shape.
+PolygonSets joined(const ColoredOrder& colored, const Polygons& polygons, const Execution& execution) {
   const auto& [shapes, uncovered] = polygons;
-  Sets sets(uncovered.size());
+  PolygonSets sets(uncovered.size());
   for (std::uint32_t i = 1; i < uncovered.size(); ++i)
-    if (shapes[i] == shapes[i - 1] && uncovered[i] && uncovered[i - 1]) sets.unite(i, i - 1);
+    if (shapes[i] == shapes[i - 1] && uncovered[i] && uncovered[i - 1]) sets.join(i, i - 1);
   std::vector<std::uint32_t> members;
   for (std::uint32_t i = 0; i < uncovered.size(); ++i)
     if (uncovered[i]) members.push_back(i);
@@ -63,7 +67,7 @@ Sets united(const ColoredOrder& colored, const Polygons& polygons, const Executi
       net.add(colored.corners_of(colored.polygons[members[end]]), members[end]);
     if (end == begin + 1) continue;
     net.weave();
-    net.for_each_shared([&](std::uint32_t a, std::uint32_t b) { sets.unite(a, b); });
+    net.for_each_shared([&](std::uint32_t a, std::uint32_t b) { sets.join(a, b); });
   }
   return sets;
 }
@@ -74,9 +78,9 @@ ColoredOrder merge_neighbours(const ColoredOrder& colored, const Execution& exec
   const std::size_t count = colored.polygons.size();
   const IeeeScope ieee;
   const Polygons polygons{colored.shapes_of_polygons(), find_uncovered(colored, execution)};
-  Sets sets = united(colored, polygons, execution);
+  PolygonSets sets = joined(colored, polygons, execution);
   std::vector<std::uint32_t> places(count), order(count);
-  for (std::uint32_t i = 0; i < count; ++i) places[i] = sets.find(i);
+  for (std::uint32_t i = 0; i < count; ++i) places[i] = sets.leader_of(i);
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(),
             [&](auto a, auto b) { return std::tie(places[a], a) < std::tie(places[b], b); });

@@ -115,13 +115,13 @@ Seams::Seams(const WeldedMesh& mesh, const std::vector<std::uint32_t>& fillers, 
 
 /// By filler, the number of its line. Fillers with a common side are on one line, since they share two points.
 std::vector<std::uint32_t> Seams::number_lines(std::size_t fillers) {
-  DisjointSets lines(fillers);
+  DisjointSets<> lines(fillers);
   for (std::size_t s = 1; s < sides_.size(); ++s) {
     if (!(sides_[s - 1] < sides_[s])) lines.join(sides_[s - 1].seam, sides_[s].seam);
   }
   std::vector<std::uint32_t> numbers(fillers);
   std::uint32_t count = 0;
-  for (std::uint32_t i = 0; i < fillers; ++i) numbers[i] = lines.is_least(i) ? count++ : numbers[lines.least_of(i)];
+  for (std::uint32_t i = 0; i < fillers; ++i) numbers[i] = lines.is_leader(i) ? count++ : numbers[lines.leader_of(i)];
   axes_.assign(count, 0);
   is_open_.assign(count, true);
   return numbers;

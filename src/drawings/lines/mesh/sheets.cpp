@@ -12,7 +12,8 @@
 #include "lines/mesh/sheets.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "geometry/disjoint_sets.h"
 
 namespace frontmost::lines_detail {
 namespace {
@@ -59,32 +60,11 @@ bool pair_up(std::span<const OwnedSide> sides, std::vector<SidesOfSheet>& sheets
   return true;
 }
 
-/// Groups of sheets that are connected (union-find).
-class SheetGroups {
- public:
-  explicit SheetGroups(std::size_t sheets) : group_(sheets), count_(sheets) {
-    std::iota(group_.begin(), group_.end(), std::size_t(0));
-  }
-  [[nodiscard]] std::size_t count() const { return count_; }
-  [[nodiscard]] std::size_t of(std::size_t sheet) {
-    while (group_[sheet] != sheet) sheet = group_[sheet] = group_[group_[sheet]];
-    return sheet;
-  }
-  void unite(std::size_t a, std::size_t b) {
-    a = of(a), b = of(b);
-    if (a == b) return;
-    group_[std::max(a, b)] = std::min(a, b);
-    --count_;
-  }
-
- private:
-  std::vector<std::size_t> group_;
-  std::size_t count_;
-};
-
 /// Whether all sheets are connected by sides that they share or that lie on each other.
 bool is_connected(const std::vector<SidesOfSheet>& sheets, const SheetQuestions& questions) {
-  SheetGroups groups(sheets.size());
+  DisjointSets<> groups(sheets.size());
+  std::size_t count = sheets.size();
+  const auto join = [&](std::size_t a, std::size_t b) { count -= groups.join(std::uint32_t(a), std::uint32_t(b)); };
   std::vector<std::pair<std::uint32_t, std::size_t>> ends;  // opposite vertex, sheet
   for (std::size_t i = 0; i < sheets.size(); ++i) {
     ends.emplace_back(sheets[i].first.opposite, i);
@@ -92,16 +72,16 @@ bool is_connected(const std::vector<SidesOfSheet>& sheets, const SheetQuestions&
   }
   std::sort(ends.begin(), ends.end());
   for (std::size_t i = 1; i < ends.size(); ++i)
-    if (ends[i].first == ends[i - 1].first) groups.unite(ends[i].second, ends[i - 1].second);
-  for (std::size_t i = 1; i < sheets.size() && groups.count() > 1; ++i)
+    if (ends[i].first == ends[i - 1].first) join(ends[i].second, ends[i - 1].second);
+  for (std::size_t i = 1; i < sheets.size() && count > 1; ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      if (groups.of(i) == groups.of(j)) continue;
+      if (groups.leader_of(std::uint32_t(i)) == groups.leader_of(std::uint32_t(j))) continue;
       const auto& [a, b] = sheets[i];
       const auto& [c, d] = sheets[j];
       if (questions.overlap(a, c) || questions.overlap(a, d) || questions.overlap(b, c) || questions.overlap(b, d))
-        groups.unite(i, j);
+        join(i, j);
     }
-  return groups.count() == 1;
+  return count == 1;
 }
 
 }  // namespace

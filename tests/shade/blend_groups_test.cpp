@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Translucent polygons in sheets: neighbours together, and everything in an order that paints the same.
+// Translucent polygons in blend groups: neighbours together, and everything in an order that paints the same.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -21,18 +21,18 @@ std::vector<PrimitiveId> ids_of(const ColoredOrder& colored) {
 }
 
 /// A pane in two halves, another behind the second of them, and a wall before all.
-TEST(GatherSheets, HalvesOfAPaneStayTogetherWhateverIsBehind) {
-  const ColoredOrder gathered = gather_sheets(order_of(
+TEST(BlendGroups, HalvesOfAPaneStayTogetherWhateverIsBehind) {
+  const ColoredOrder gathered = gather_blend_groups(order_of(
       {box(0, 0, 4, 4, kGlass), box(5, 1, 2, 2, kGreenGlass), box(4, 0, 4, 4, kGlass), box(3, 3, 2, 4, kBlue)}));
   EXPECT_EQ(ids_of(gathered), (std::vector<PrimitiveId>{1, 0, 2, 3}));
-  EXPECT_NE(gathered.shapes[0].sheet, gathered.shapes[1].sheet);
-  EXPECT_EQ(gathered.shapes[1].sheet, gathered.shapes[2].sheet);
-  EXPECT_NE(gathered.shapes[2].sheet, gathered.shapes[3].sheet);
+  EXPECT_NE(gathered.shapes[0].blend_group, gathered.shapes[1].blend_group);
+  EXPECT_EQ(gathered.shapes[1].blend_group, gathered.shapes[2].blend_group);
+  EXPECT_NE(gathered.shapes[2].blend_group, gathered.shapes[3].blend_group);
   const Figure figure = outlined(gathered, 1);
   ASSERT_EQ(figure.shapes.size(), 4u);
-  EXPECT_EQ(figure.shapes[1].sheet, figure.shapes[2].sheet);
-  EXPECT_NE(figure.shapes[0].sheet, figure.shapes[1].sheet);
-  EXPECT_NE(figure.shapes[2].sheet, figure.shapes[3].sheet);
+  EXPECT_EQ(figure.shapes[1].blend_group, figure.shapes[2].blend_group);
+  EXPECT_NE(figure.shapes[0].blend_group, figure.shapes[1].blend_group);
+  EXPECT_NE(figure.shapes[2].blend_group, figure.shapes[3].blend_group);
   // The first half reaches under the second, and nothing else under anything.
   EXPECT_NEAR(area_of(figure, 0), 4, 1e-9);
   EXPECT_NEAR(area_of(figure, 1), 16 + 4 - 0.5, 1e-9);
@@ -40,30 +40,30 @@ TEST(GatherSheets, HalvesOfAPaneStayTogetherWhateverIsBehind) {
 }
 
 /// As the front and the back of a box of glass are seen along an axis; in whatever order their halves come.
-TEST(GatherSheets, PanesInOneOutlineStayWhole) {
+TEST(BlendGroups, PanesInOneOutlineStayWhole) {
   const Tile half{{{0, 0}, {0, 4}, {4, 4}}, kGlass}, other{{{0, 0}, {4, 4}, {4, 0}}, kGlass};
   for (const std::vector<Tile>& tiles :
        {std::vector{half, other, half, other, other, half}, std::vector{half, half, half, other, other, other}}) {
-    const ColoredOrder gathered = gather_sheets(order_of(tiles));
+    const ColoredOrder gathered = gather_blend_groups(order_of(tiles));
     ASSERT_EQ(gathered.shapes.size(), tiles.size());
     const Figure figure = outlined(gathered, 1);
     for (std::size_t i = 0; i < tiles.size(); i += 2) {
-      EXPECT_EQ(gathered.shapes[i].sheet, gathered.shapes[i + 1].sheet) << i;
+      EXPECT_EQ(gathered.shapes[i].blend_group, gathered.shapes[i + 1].blend_group) << i;
       if (i > 0) {
-        EXPECT_NE(gathered.shapes[i].sheet, gathered.shapes[i - 1].sheet) << i;
+        EXPECT_NE(gathered.shapes[i].blend_group, gathered.shapes[i - 1].blend_group) << i;
       }
       EXPECT_GT(area_of(figure, i), 8 + 3) << i;  // with a trap under the other half
     }
   }
 }
 
-TEST(GatherSheets, OpacitiesStayApartAndOpaqueFiguresAsTheyAre) {
-  const ColoredOrder glass = gather_sheets(order_of({box(0, 0, 4, 4, kGlass), box(4, 0, 4, 4, kThinGlass)}));
-  EXPECT_NE(glass.shapes[0].sheet, glass.shapes[1].sheet);
+TEST(BlendGroups, OpacitiesStayApartAndOpaqueFiguresAsTheyAre) {
+  const ColoredOrder glass = gather_blend_groups(order_of({box(0, 0, 4, 4, kGlass), box(4, 0, 4, 4, kThinGlass)}));
+  EXPECT_NE(glass.shapes[0].blend_group, glass.shapes[1].blend_group);
   EXPECT_NEAR(area_of(outlined(glass, 1), 1), 16, 1e-9);
-  const ColoredOrder opaque = gather_sheets(order_of({box(0, 0, 4, 4), box(4, 0, 4, 4)}));
+  const ColoredOrder opaque = gather_blend_groups(order_of({box(0, 0, 4, 4), box(4, 0, 4, 4)}));
   EXPECT_EQ(ids_of(opaque), (std::vector<PrimitiveId>{0, 1}));
-  EXPECT_NE(opaque.shapes[0].sheet, opaque.shapes[1].sheet);
+  EXPECT_NE(opaque.shapes[0].blend_group, opaque.shapes[1].blend_group);
 }
 
 bool overlap(const Tile& a, const Tile& b) {
@@ -71,8 +71,9 @@ bool overlap(const Tile& a, const Tile& b) {
          b.corners[0].y < a.corners[2].y;
 }
 
-/// By the definition: whoever lies over another still does, no sheet has two over each other, and shapes are whole.
-TEST(GatherSheets, PaintTheSame) {
+/// By the definition: whoever lies over another still does, no blend_group has two over each other, and shapes are
+/// whole.
+TEST(BlendGroups, PaintTheSame) {
   std::size_t together = 0;
   for (std::uint32_t seed = 1; seed <= 200; ++seed) {
     std::mt19937 random(test::noted_seed(seed));
@@ -92,7 +93,7 @@ TEST(GatherSheets, PaintTheSame) {
       if (i == 0 || tiles[i].color != tiles[i - 1].color) colored.begin_shape(tiles[i].color);
       colored.add_polygon(PrimitiveId(i), tiles[i].corners);
     }
-    const ColoredOrder gathered = gather_sheets(colored);
+    const ColoredOrder gathered = gather_blend_groups(colored);
     const std::vector<PrimitiveId> ids = ids_of(gathered);
     ASSERT_EQ(ids.size(), count);
     const std::vector<std::uint32_t> shapes = colored.shapes_of_polygons(), after = gathered.shapes_of_polygons();
@@ -102,11 +103,11 @@ TEST(GatherSheets, PaintTheSame) {
       for (std::size_t k = i + 1; k < count; ++k) {
         const bool is_same_shape = shapes[ids[i]] == shapes[ids[k]];
         EXPECT_EQ(after[i] == after[k], is_same_shape) << seed;
-        const bool is_sheet = shape.sheet == gathered.shapes[after[k]].sheet && shape.color.a < 255;
-        together += is_sheet && !is_same_shape;
+        const bool is_group = shape.blend_group == gathered.shapes[after[k]].blend_group && shape.color.a < 255;
+        together += is_group && !is_same_shape;
         if (!overlap(tiles[ids[i]], tiles[ids[k]]) || is_same_shape) continue;
         EXPECT_LT(ids[i], ids[k]) << seed;
-        EXPECT_FALSE(is_sheet) << seed;
+        EXPECT_FALSE(is_group) << seed;
       }
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gathers translucent shapes in blend groups (sheets): a painting order in which translucent neighbours are
+// Gathers translucent shapes in blend groups: a painting order in which translucent neighbours are
 // consecutive.
 //
 // Nodes that may all be painted next do not overlap, because one would have to wait for the other. So any of them can
@@ -19,6 +19,8 @@
 #include "figures/colored_order.h"
 #include "figures/grouping/overlaps.h"
 #include "figures/side_net.h"
+#include "geometry/buckets.h"
+#include "geometry/disjoint_sets.h"
 #include "painter/limits.h"
 
 namespace frontmost {
@@ -29,7 +31,7 @@ using namespace shading;
 using NodePair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Nodes are painted as a whole and numbered in the original order.
-struct SheetNodes {
+struct BlendNodes {
   std::vector<std::uint8_t> opacities;  ///< by node
   std::vector<NodePair> over;           ///< the second is painted after the first; sorted, unique
   std::vector<NodePair> beside;         ///< translucent pairs of one opacity, in both directions; sorted, unique
@@ -37,8 +39,8 @@ struct SheetNodes {
 
 /// Nodes in painting order, and the blend group of each, ascending. Translucent nodes of a group have the same opacity,
 /// and none is over another; opaque nodes have groups without translucent ones.
-struct SheetOrder {
-  std::vector<std::uint32_t> nodes, sheets;
+struct BlendOrder {
+  std::vector<std::uint32_t> nodes, groups;
 };
 
 /// Memory of 128 MB. With more pairs, the order stays unchanged.
@@ -103,34 +105,22 @@ std::vector<NodePair> find_beside(const ColoredOrder& colored, const Execution& 
   return beside;
 }
 
-/// For each number, the second numbers of its pairs.
-class NodeLists {
- public:
-  NodeLists(const std::vector<NodePair>& pairs, std::size_t count) : first_(count + 1, 0) {
-    seconds_.reserve(pairs.size());
-    for (const auto& [a, b] : pairs) {
-      ++first_[a + 1];
-      seconds_.push_back(b);
-    }
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-  }
-  [[nodiscard]] std::span<const std::uint32_t> operator[](std::uint32_t i) const {
-    return {seconds_.data() + first_[i], first_[i + 1] - first_[i]};
-  }
+/// For each node, the second nodes of its pairs.
+using NodeLists = Buckets<std::uint32_t>;
 
- private:
-  std::vector<std::size_t> first_;
-  std::vector<std::uint32_t> seconds_;
-};
+NodeLists lists_of(const std::vector<NodePair>& pairs, std::size_t count) {
+  const auto list = [&](std::size_t i, const auto& add) { add(pairs[i].first, pairs[i].second); };
+  return {count, pairs.size(), list, {.threads = 1}};
+}
 
 /// Opaque nodes that may be painted next go first, in their order; then patches that have no waiting node
 /// beside them; if there are none, the patch with the fewest. O(n log n) in the number of nodes and pairs.
-class SheetSorter {
+class BlendSorter {
  public:
-  explicit SheetSorter(const SheetNodes& nodes)
+  explicit BlendSorter(const BlendNodes& nodes)
       : opacities_(nodes.opacities),
-        over_(nodes.over, opacities_.size()),
-        beside_(nodes.beside, opacities_.size()),
+        over_(lists_of(nodes.over, opacities_.size())),
+        beside_(lists_of(nodes.beside, opacities_.size())),
         below_(opacities_.size(), 0),
         states_(opacities_.size(), State::waiting),
         patches_(opacities_.size()),
@@ -140,11 +130,11 @@ class SheetSorter {
     std::iota(next_in_patch_.begin(), next_in_patch_.end(), 0u);
   }
 
-  [[nodiscard]] SheetOrder sort() {
+  [[nodiscard]] BlendOrder sort() {
     for (std::uint32_t node = 0; node < below_.size(); ++node)
       if (below_[node] == 0) make_ready(node);
     while (!opaque_.empty() || !by_open_sides_.empty()) {
-      ++sheet_;
+      ++group_;
       if (opaque_.empty())
         paint_patches();
       else
@@ -165,13 +155,13 @@ class SheetSorter {
     for (const std::uint32_t other : beside_[node]) {
       open += states_[other] == State::waiting;
       if (states_[other] != State::ready) continue;
-      const std::uint32_t joined = patches_.find(other);
+      const std::uint32_t joined = patches_.leader_of(other);
       if (joined != patch) {
         by_open_sides_.erase({open_sides_[joined], joined});
         open += open_sides_[joined];
         std::swap(next_in_patch_[node], next_in_patch_[joined]);
-        patches_.unite(patch, joined);
-        patch = patches_.find(node);
+        patches_.join(patch, joined);
+        patch = patches_.leader_of(node);
       }
       --open;
     }
@@ -204,7 +194,7 @@ class SheetSorter {
       return std::pair(opacities_[a], a) < std::pair(opacities_[b], b);
     });
     for (std::size_t i = 0; i < taken.size(); ++i) {
-      sheet_ += i > 0 && opacities_[taken[i]] != opacities_[taken[i - 1]];
+      group_ += i > 0 && opacities_[taken[i]] != opacities_[taken[i - 1]];
       paint(taken[i]);
     }
     for (const std::uint32_t node : taken) release(node);
@@ -213,7 +203,7 @@ class SheetSorter {
   void paint(std::uint32_t node) {
     states_[node] = State::painted;
     order_.nodes.push_back(node);
-    order_.sheets.push_back(sheet_);
+    order_.groups.push_back(group_);
   }
   void release(std::uint32_t node) {
     for (const std::uint32_t other : over_[node])
@@ -225,21 +215,21 @@ class SheetSorter {
   std::vector<std::uint32_t> below_;  ///< number of unpainted nodes below a node
   std::vector<State> states_;
   std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> opaque_;
-  Sets patches_;                              ///< of translucent nodes that are ready
+  DisjointSets<std::greater<>> patches_;      ///< of translucent nodes that are ready
   std::vector<std::size_t> open_sides_;       ///< by patch: pairs of one of its nodes with a waiting one
   std::vector<std::uint32_t> next_in_patch_;  ///< rings of nodes
   std::set<std::pair<std::size_t, std::uint32_t>> by_open_sides_;
-  SheetOrder order_;
-  std::uint32_t sheet_ = 0;
+  BlendOrder order_;
+  std::uint32_t group_ = 0;
 };
 
-ColoredOrder in_order(const ColoredOrder& colored, const SheetOrder& order) {
+ColoredOrder in_order(const ColoredOrder& colored, const BlendOrder& order) {
   ColoredOrder made;
   made.view = colored.view;
   for (std::size_t k = 0; k < order.nodes.size(); ++k) {
     const ColoredShape& shape = colored.shapes[order.nodes[k]];
     made.begin_shape(shape.color);
-    made.shapes.back().sheet = order.sheets[k];
+    made.shapes.back().blend_group = order.groups[k];
     for (const PaintPolygon& polygon : colored.polygons_of(shape))
       made.add_polygon(polygon.id, colored.corners_of(polygon));
   }
@@ -248,17 +238,17 @@ ColoredOrder in_order(const ColoredOrder& colored, const SheetOrder& order) {
 
 }  // namespace
 
-ColoredOrder gather_sheets(ColoredOrder colored, const Execution& execution) {
+ColoredOrder gather_blend_groups(ColoredOrder colored, const Execution& execution) {
   const auto is_translucent = [](const ColoredShape& shape) { return shape.color.a < 255; };
   if (std::none_of(colored.shapes.begin(), colored.shapes.end(), is_translucent)) return colored;
   const IeeeScope ieee;
-  SheetNodes nodes;
+  BlendNodes nodes;
   for (const ColoredShape& shape : colored.shapes) nodes.opacities.push_back(shape.color.a);
   std::optional<std::vector<NodePair>> over = find_over(colored, execution);
   if (!over) return colored;
   nodes.over = std::move(*over);
   nodes.beside = find_beside(colored, execution);
-  return in_order(colored, SheetSorter(nodes).sort());
+  return in_order(colored, BlendSorter(nodes).sort());
 }
 
 }  // namespace frontmost
