@@ -9,7 +9,7 @@ using namespace frontmost;
 
 constexpr const char* scene_names[] = {"teapot", "spheres", "city", "gallery"};
 
-/// Everything before the step that is measured.
+/// All inputs of the measured step.
 struct Stage {
   explicit Stage(const benchmark::State& state, int samples = 1)
       : scene(builtin(scene_names[state.range(0)])), surfaces(scene), view(frame(surfaces, 1920, 1080)) {
@@ -55,7 +55,7 @@ void shading(benchmark::State& state) {
   state.SetLabel(std::string(scene_names[state.range(0)]) + ", " + std::to_string(state.range(1)) + " samples");
 }
 
-// A PNG on one thread: what it adds to visibility and colour.
+// Saving a PNG on one thread, to compare with the cost of visibility and colour.
 void saving_on_one_thread(benchmark::State& state) {
   const Stage stage(state, 4);
   const Bitmap picture = shade_bitmap(stage.surfaces, zbuffer(stage.surfaces, stage.view));

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# What a build for another kind of machine needs of this one's: the packages that are headers alone, found where Debian
-# has them without the rest of the machine's headers, which would be wrong there.
+# For a build for another kind of machine: finds this machine's header-only packages where Debian has them, but without
+# the rest of this machine's headers, which would be wrong there.
 
 set(headers ${CMAKE_BINARY_DIR}/headers)
 file(MAKE_DIRECTORY ${headers})
@@ -22,5 +22,5 @@ headers_of(hwy hwy::hwy hwy)
 headers_of(glm glm::glm glm)
 headers_of(nlohmann_json nlohmann_json::nlohmann_json nlohmann)
 
-# Without Highway's library there is one instruction set each: a table of one.
+# Without Highway's library, each kernel table holds one instruction set.
 add_compile_definitions(HWY_COMPILE_ONLY_STATIC)

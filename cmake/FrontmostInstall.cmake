@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-# What `cmake --install` lays down: the library with its CMake and pkg-config descriptions, the program, the words.
+# What `cmake --install` installs: the library with its CMake and pkg-config descriptions, the program, its manual page
+# and its completions.
 include(CMakePackageConfigHelpers)
 
 set(FRONTMOST_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/frontmost)
 get_target_property(frontmost_kind frontmost_core TYPE)
 
-# What static libraries make their users link: of each part the CMake packages, and of all together the pkg-config modules
-# and Debian packages, in this order. What the program alone uses (nlohmann-json, CLI11, fmt) never reaches a consumer.
+# Dependencies that users of the static libraries must link: CMake packages for each part, and pkg-config modules and
+# Debian packages for all together, in this order. The program's own dependencies (nlohmann-json, CLI11, fmt) never
+# reach a consumer.
 set(FRONTMOST_LINKED_PC "")
 set(FRONTMOST_LINKED_DEB "")
 # frontmost_links(PARTS CMAKE_PACKAGE PKG_CONFIG_MODULE DEBIAN_PACKAGE)
@@ -41,14 +43,14 @@ endif()
 if(FRONTMOST_DRACO)
   frontmost_links(files draco draco libdraco-dev)
 endif()
-if(FRONTMOST_MESHOPT) # without a pkg-config module, so that frontmost.pc names the library
+if(FRONTMOST_MESHOPT) # has no pkg-config module, so frontmost.pc names the library
   frontmost_links(files meshoptimizer "" libmeshoptimizer-dev)
 endif()
 if(FRONTMOST_3MF)
   frontmost_links(files LibZip libzip libzip-dev)
   frontmost_links(files EXPAT expat libexpat1-dev)
 endif()
-# What the CMake description says of the parts.
+# Lines of the CMake description about the parts.
 set(FRONTMOST_PART_LINES "")
 foreach(part ${FRONTMOST_PARTS})
   get_property(used GLOBAL PROPERTY frontmost_used_by_${part})
@@ -77,11 +79,11 @@ install(FILES ${PROJECT_BINARY_DIR}/frontmostConfig.cmake ${PROJECT_BINARY_DIR}/
   cmake/FindISAL.cmake cmake/FindLibZip.cmake cmake/FindWebP.cmake
   DESTINATION ${FRONTMOST_CMAKE_DIR} COMPONENT development)
 
-# A static library cannot be linked without what it links itself, so there these are plain requirements: consumers
+# A static library cannot be linked without its own dependencies, so these are plain requirements there, and consumers
 # need no --static.
 list(JOIN FRONTMOST_LINKED_PC " " linked_modules)
 set(FRONTMOST_PC_REQUIRES glm)
-list(REVERSE part_targets) # whoever uses another one comes before it
+list(REVERSE part_targets) # a library comes before those that it uses
 list(TRANSFORM part_targets PREPEND -l)
 list(JOIN part_targets " " FRONTMOST_PC_LIBS)
 if(frontmost_kind STREQUAL STATIC_LIBRARY)

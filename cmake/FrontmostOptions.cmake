@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# Compiler settings that every target of the house shares.
+# Compiler settings that all targets share.
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
-if(NOT EMSCRIPTEN) # where code is linked in one piece, and tables of addresses only cost
+if(NOT EMSCRIPTEN) # where code is linked in one piece, and position-independent code only costs time
   set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 endif()
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
@@ -13,14 +13,14 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
 endif()
 
 add_library(frontmost_flags INTERFACE)
-# The same bytes everywhere: no fused multiply-add that only some targets have.
+# No fused multiply-add, so that all targets give the same bytes.
 target_compile_options(frontmost_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wshadow -Wnon-virtual-dtor)
 # g++ 12 warns about its own array headers when inlining vectors (GCC bug 105562).
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(frontmost_flags INTERFACE -Wno-stringop-overflow -Wno-array-bounds -Wno-maybe-uninitialized)
 endif()
-# On Arm's 64-bit processors Highway compiles for those with cryptography, of which nothing is used here; but g++ has to be
-# told so for whole files, or what it makes itself (constructors, closures) does not go with the rest.
+# On 64-bit Arm, Highway compiles for processors with cryptography, which is not used here. g++ needs that option for
+# whole files, or its generated code (constructors, closures) does not match the rest.
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
   include(CheckCXXSourceCompiles)
   check_cxx_source_compiles("#ifndef __ARM_FEATURE_CRYPTO
@@ -32,34 +32,34 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarc
   endif()
 endif()
 
-# With its default settings g++ collects garbage all through a compilation, which takes 3 to 10 % of its time. This is the
-# size of its heap, in KiB, before it collects any.
+# By default g++ collects garbage all through a compilation, which takes 3 to 10 % of its time. The parameter is the
+# heap size in KiB at which collection begins.
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(frontmost_flags INTERFACE --param=ggc-min-heapsize=500000)
 endif()
 
-# Cold code takes half as long again to build at -O3, and nothing that can be measured gets faster.
+# Cold code takes half as long again to build at -O3, without measurable gain.
 set(FRONTMOST_COLD_FLAGS $<$<CONFIG:Release>:-Og> CACHE STRING "Compiler options of code that no speed depends on")
 function(frontmost_cold target)
   target_compile_options(${target} PRIVATE ${FRONTMOST_COLD_FLAGS})
 endfunction()
 
-# Highway's library is needed by builds with assertions only, and costs every start 2 ms.
+# Only builds with assertions need Highway's library, which costs every start 2 ms.
 include(CheckLinkerFlag)
 check_linker_flag(CXX -Wl,--as-needed FRONTMOST_HAS_AS_NEEDED)
 if(FRONTMOST_HAS_AS_NEEDED)
   target_link_options(frontmost_flags INTERFACE -Wl,--as-needed)
 endif()
 
-# Programs are linked without the functions that they do not reach: the command line is 6 % smaller by it, a program with
-# the z-buffer alone half as large.
+# Programs are linked without unreachable functions: the command line becomes 6 % smaller, and a program with the
+# z-buffer alone half as large.
 check_linker_flag(CXX -Wl,--gc-sections FRONTMOST_HAS_GC_SECTIONS)
 if(FRONTMOST_HAS_GC_SECTIONS)
   target_compile_options(frontmost_flags INTERFACE $<$<CONFIG:Release>:-ffunction-sections>)
   target_link_options(frontmost_flags INTERFACE $<$<CONFIG:Release>:-Wl,--gc-sections>)
 endif()
 
-# A sanitizer's build has 45 programs of 100 MB to link, in which lld takes a fifth of the time of ld.
+# A sanitizer's build links 45 programs of 100 MB; lld takes a fifth of the time of ld.
 option(FRONTMOST_LLD "Link by lld where it is there" OFF)
 if(FRONTMOST_LLD)
   check_linker_flag(CXX -fuse-ld=lld FRONTMOST_HAS_LLD)
@@ -74,9 +74,9 @@ if(FRONTMOST_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${FRONTMOST_CCACHE})
 endif()
 
-# A first build has most of its work with headers. So those that most files include are compiled once for each target,
-# and the files of a folder together. Where there is a compiler cache neither is done: checkouts could then share less of
-# what they compiled, and a change of one file would take longer.
+# Headers take most of the time of a first build. So common headers are compiled once for each target, and the files of
+# a folder are compiled together. Neither is done with a compiler cache: checkouts could then share fewer compiled
+# files, and a change of one file would take longer.
 set(together ON)
 if(CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON)
@@ -84,9 +84,9 @@ if(CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 option(FRONTMOST_TOGETHER "Compile the files of a folder as one" ${together})
 
-# frontmost_together(TARGET BYTES [BY_FOLDER]) : consecutive sources form one unit of about BYTES bytes; by folder, those
-# of different folders beside the CMakeLists.txt do not. Kernels are compiled alone, because they include themselves once
-# for each instruction set. CMake compiles files with options of their own alone.
+# frontmost_together(TARGET BYTES [BY_FOLDER]) : joins consecutive sources into units of about BYTES bytes; with
+# BY_FOLDER, sources of different folders are not joined. Kernels are compiled alone, because they include themselves
+# once for each instruction set. CMake compiles files with options of their own alone.
 function(frontmost_together target bytes)
   get_target_property(sources ${target} SOURCES)
   list(FILTER sources EXCLUDE REGEX "_kernel[.]cpp$|^[$]<")
@@ -95,7 +95,7 @@ function(frontmost_together target bytes)
   set(group "")
   foreach(source ${sources})
     cmake_path(ABSOLUTE_PATH source OUTPUT_VARIABLE path)
-    if(NOT EXISTS ${path}) # the build writes it
+    if(NOT EXISTS ${path}) # the build generates it
       continue()
     endif()
     cmake_path(RELATIVE_PATH path BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE name)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Debian packages by CPack: frontmost (the program), libfrontmost-dev (library, headers, descriptions) and, where these
+# Debian packages by CPack: frontmost (the program), libfrontmost-dev (library, headers, descriptions) and, if their
 # modules are built, python3-frontmost and frontmost-mpi.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME frontmost)
@@ -12,7 +12,7 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 
-# Shared libraries that the program needs are found by dpkg-shlibdeps; a static library's are known to CMake alone.
+# dpkg-shlibdeps finds the shared libraries that the program needs; only CMake knows those of a static library.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME frontmost)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
@@ -34,7 +34,7 @@ if(TARGET frontmost_python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-frontmost)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-  # The compiled part is of one version of Python alone.
+  # The compiled part works with one version of Python only.
   math(EXPR next_minor "${FRONTMOST_PYTHON_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
     "python3 (>= 3.${FRONTMOST_PYTHON_MINOR}), python3 (<< 3.${next_minor}), python3-numpy")

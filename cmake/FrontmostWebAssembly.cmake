@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# The options of every compilation by emscripten.
+# Options of every compilation by emscripten.
 #
-# Everything is compiled once, for threads; a module that runs without them is linked from the same objects.
+# Everything is compiled once, for threads; a module without threads is linked from the same objects.
 
 option(FRONTMOST_WEB_SIMD "Compile the kernels for WebAssembly's vectors; else for single numbers" ON)
 add_compile_options(-fwasm-exceptions -pthread)

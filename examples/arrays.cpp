@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture of arrays of positions and triangles: arrays pyramid.png
+// Draws arrays of positions and triangles: arrays pyramid.png
 #include <frontmost/frontmost.h>
 
 #include <cstdio>

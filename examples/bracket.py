@@ -7,7 +7,7 @@
 import math
 
 LENGTH, WIDTH, HEIGHT, THICKNESS = 60, 40, 50, 8
-SIDES = 96  # of a hole; arcs are found in drawings
+SIDES = 96  # of the polygon that stands for a hole; drawings recognise its arcs
 vertices, faces = [], []
 
 
@@ -26,8 +26,8 @@ def circle(radius, centre):
 
 
 def plate(low, high, hole, place, turned):
-    """A rectangle with a hole: a fan to each corner from the quarter of the hole that faces it. Without vertices on its
-    sides, so that neighbours share whole edges."""
+    """A rectangle with a hole: each corner has a fan to the quarter of the hole that faces it. The rectangle's sides
+    have no vertices, so that neighbours share whole edges."""
     corners = [(high[0], high[1]), (low[0], high[1]), (low[0], low[1]), (high[0], low[1])]
     quarter = SIDES // 4
     for q, corner in enumerate(corners):

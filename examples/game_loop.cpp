@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A street with moving boxes and a moving camera, of which only what may be seen is drawn: game_loop city.glb [FRAMES]
+// A street with moving boxes and a moving camera, where only objects that may be seen are drawn: game_loop city.glb
+// [FRAMES]
 #include <frontmost/frontmost.h>
 
 #include <chrono>
@@ -15,7 +16,7 @@ int main(int count, char** arguments) try {
   const Box town = Surfaces(scene).bounds();
   const glm::dvec3 middle = town.centre(), size = glm::dvec3(town.high) - glm::dvec3(town.low);
 
-  // A hundred boxes that drive around the middle, each in its own circle.
+  // A hundred boxes drive around the middle, each on its own circle.
   const auto first_car = std::uint32_t(scene.instances.size()), cars = 100u;
   scene.meshes.push_back(builtin("cubes").meshes[0]);
   scene.meshes.back().material_ids.clear();
@@ -25,7 +26,7 @@ int main(int count, char** arguments) try {
   Surfaces surfaces(scene);
   Occlusion occlusion(surfaces);
   const glm::dvec3 up = direction(scene.up), across(up.y, up.z, up.x), along = glm::cross(up, across);
-  const glm::dvec3 ground = middle - 0.46 * size * up;  // a little above it
+  const glm::dvec3 ground = middle - 0.46 * size * up;  // a little above the ground
   const auto on_circle = [&](double radius, double angle) {
     return radius * size * (std::cos(angle) * across + std::sin(angle) * along);
   };
@@ -43,7 +44,7 @@ int main(int count, char** arguments) try {
     const View view = make_view(0.9, 1280, 720).looking(eye, ground, up).enclosing(town);
     for (const ObjectSight sight : occlusion.cull(view)) {
       drawn += sight == ObjectSight::may_be_seen;  // here a game hands the object to its renderer
-      saved += sight == ObjectSight::hidden;       // in the picture's frame, but behind others
+      saved += sight == ObjectSight::hidden;       // in the view volume, but behind other objects
     }
     const auto culled = std::chrono::steady_clock::now();
     moving += moved - start;

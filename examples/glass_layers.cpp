@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is nearest, and what is seen behind it through glass: glass_layers table.glb nearest.exr behind.exr
+// The nearest surfaces, and the surfaces seen behind them through glass: glass_layers table.glb nearest.exr behind.exr
 #include <frontmost/frontmost.h>
 
 #include <cstdio>

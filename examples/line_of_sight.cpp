@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of a thousand places a watcher sees: line_of_sight city.glb
+// Finds which of a thousand places a watcher sees: line_of_sight city.glb
 #include <frontmost/frontmost.h>
 
 #include <algorithm>

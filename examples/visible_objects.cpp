@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many pixels of each object are seen: visible_objects city.glb
+// Counts the visible pixels of each object: visible_objects city.glb
 #include <frontmost/frontmost.h>
 
 #include <cstdio>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arbitrary geometry and an arbitrary camera into the A-buffer, and into pictures of its layers. Must not crash or
-// hang; lists are in order and their nearest layer is the z-buffer's; threads and instruction sets change no bit.
+// Feeds arbitrary geometry and an arbitrary camera to the A-buffer and to pictures of its layers. They must not crash
+// or hang; lists are in order and their nearest layer is the z-buffer's; threads and instruction sets change no bit.
 // Input: support/geometry_fuzz.h.
 #include <cstdlib>
 
@@ -23,7 +23,7 @@ bool equal(const Fragment& a, const Fragment& b) {
   return a.mask == b.mask && a.primitive == b.primitive && std::memcmp(found, wanted, sizeof found) == 0;
 }
 
-/// Some opaque, some nearly invisible.
+/// Colours, some opaque, some nearly invisible.
 std::vector<glm::vec4> colors_of(std::size_t count, std::uint8_t seed) {
   std::vector<glm::vec4> colors;
   for (std::size_t i = 0; i < count; ++i) {
@@ -75,7 +75,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::vector<Visible> layers = visible_layers(surfaces, view, 2, options, kWide);
     require(content_hash(layers[0]) == content_hash(zbuffer(surfaces, view, kWide)));
   } catch (const Error&) {
-    // A camera at its own target, or not finite: a stated outcome.
+    // The camera is at its own target or not finite, which is a documented error.
   }
   return 0;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arbitrary geometry through a depth buffer in an arbitrary state. Must not crash or hang; threads and instruction sets
-// must not change a bit; and drawing in two calls must be drawing in one.
+// Feeds arbitrary geometry to a depth buffer in an arbitrary state. The buffer must not crash or hang; threads and
+// instruction sets change no bit; and drawing in two calls gives the picture of one call.
 //
-// Input: the bytes of a state, then what support/geometry_fuzz.h takes.
+// Input: the bytes of a state, then the input of support/geometry_fuzz.h.
 #include <cmath>
 #include <cstdlib>
 
@@ -61,7 +61,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     twice.draw(surfaces, view, {.state = state, .begin = cut});
     if (!same(wide, plain, view) || !same(wide, twice, view)) std::abort();
   } catch (const Error&) {
-    // A camera or a state that is refused.
+    // The camera or the state is refused.
   }
   return 0;
 }

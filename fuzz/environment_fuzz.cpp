@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes read as an environment: one that lighting can rely on, or an Error that names the file.
+// Reads any bytes as an environment: lighting can rely on the result, or an Error names the file.
 #include <cstdlib>
 
 #include "frontmost/files.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arbitrary geometry and an arbitrary camera into the z-buffer and the ray caster. Must not crash or hang; and threads,
-// instruction sets and whether there are clusters must not change a bit of the answer. Input: support/geometry_fuzz.h.
+// Feeds arbitrary geometry and an arbitrary camera to the z-buffer and the ray caster. They must not crash or hang;
+// threads, instruction sets and clusters must not change a bit of the answer. Input: support/geometry_fuzz.h.
 #include "support/geometry_fuzz.h"
 
 #include <cstdlib>
@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const View view = test::view_of(bytes);
     const Surfaces surfaces(scene);
-    // The first two come from the scene's own arrays, the ZBuffer's from clusters.
+    // The first two pictures come from the scene's own arrays, the ZBuffer's from clusters.
     const Visible wide = zbuffer(surfaces, view, {.threads = 2, .isa = Isa::best, .watch = nullptr});
     const Visible plain = zbuffer(surfaces, view, {.threads = 1, .isa = Isa::scalar, .watch = nullptr});
     if (content_hash(wide) != content_hash(plain)) std::abort();
@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (id != no_primitive && id >= surfaces.primitive_count()) std::abort();
     }
   } catch (const Error&) {
-    // A camera at its own target, or not finite: a stated outcome.
+    // The camera is at its own target or not finite, which is a documented error.
   }
   return 0;
 }

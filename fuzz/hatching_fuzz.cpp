@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arbitrary geometry, camera and light into hatching and stippling. Must not crash or hang; lines and dots lie in the
-// picture, on their rows; threads and instruction sets change no bit. Input: support/geometry_fuzz.h.
+// Feeds arbitrary geometry, camera and light to hatching and stippling. They must not crash or hang; lines and dots lie
+// in the picture, on their rows; threads and instruction sets change no bit. Input: support/geometry_fuzz.h.
 #include <cmath>
 #include <cstdlib>
 
@@ -46,7 +46,7 @@ bool equal(const std::vector<Stipple>& a, const std::vector<Stipple>& b) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  // Every line is held against all triangles that it passes.
+  // Every line is tested against all triangles that it passes.
   const std::optional<test::FuzzInput> input = test::read_input(data, size, 64);
   if (!input) return 0;
   const auto& [bytes, scene] = *input;
@@ -69,7 +69,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const Stipple& dot : stipples) require(is_within(dot.at, view));
     require(equal(stipples, stipple(surfaces, view, dots, plain)));
   } catch (const Error&) {
-    // A camera at its own target, or not finite: a stated outcome.
+    // The camera is at its own target or not finite, which is a documented error.
   }
   return 0;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes read as an image: a valid one or an Error. What was read can be compared, shown and hashed.
+// Reads any bytes as an image: the result is a valid image or an Error. A valid image can be compared, shown and
+// hashed.
 #include <cstdlib>
 
 #include "frontmost/files.h"
@@ -11,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
       validate(image);
     } catch (const Error&) {
-      std::abort();  // readers promise images that hold together
+      std::abort();  // readers promise consistent images
     }
     if (compare(image, image).differing != 0) std::abort();
     (void)content_hash(image);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arbitrary geometry and an arbitrary camera into hidden lines. Must not crash or hang; parts follow each other within
-// the picture; threads and instruction sets change no bit. Input: support/geometry_fuzz.h.
+// Feeds arbitrary geometry and an arbitrary camera to hidden lines. They must not crash or hang; parts follow each
+// other within the picture; threads and instruction sets change no bit. Input: support/geometry_fuzz.h.
 #include <cstdlib>
 
 #include "support/geometry_fuzz.h"
@@ -32,7 +32,7 @@ void check(const Drawing& drawing) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  // Every two triangles may cross, and every crossing may hide behind all others.
+  // Any two triangles may cross, and any crossing may hide behind all others.
   const std::optional<test::FuzzInput> input = test::read_input(data, size, 64);
   if (!input) return 0;
   const auto& [bytes, scene] = *input;
@@ -49,7 +49,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(wide.parts.size() == plain.parts.size());
     for (std::size_t i = 0; i < wide.parts.size(); ++i) require(equal(wide.parts[i], plain.parts[i]));
   } catch (const Error&) {
-    // A camera at its own target, or not finite: a stated outcome.
+    // The camera is at its own target or not finite, which is a documented error.
   }
   return 0;
 }

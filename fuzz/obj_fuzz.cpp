@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes read as OBJ, and what follows the first zero byte as the material library: a valid scene or an Error.
+// Reads any bytes as OBJ, and the bytes after the first zero as its material library: a valid scene or an Error.
 #include <algorithm>
 
 #include "support/reader_fuzz.h"

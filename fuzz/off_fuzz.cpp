@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes read as OFF: a valid scene or an Error.
+// Reads any bytes as OFF: the result is a valid scene or an Error.
 #include "support/reader_fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arbitrary geometry and an arbitrary camera into the painter's order. Must not crash or hang; threads change no bit;
-// pieces and what is seen of them are polygons within the picture; and where coordinates are no longer than a few bits,
-// so that corners touch and faces lie in one plane, the painted order is what the z-buffer shows.
-// Input: support/geometry_fuzz.h.
+// Feeds arbitrary geometry and an arbitrary camera to the painter's order. It must not crash or hang; threads change no
+// bit; pieces and their visible parts are polygons within the picture. If coordinates have only a few bits, so that
+// vertices touch and faces are coplanar, the painted order gives the z-buffer's picture. Input:
+// support/geometry_fuzz.h.
 #include <cmath>
 #include <cstdlib>
 
@@ -13,14 +13,14 @@ using namespace frontmost;
 
 namespace {
 
-/// All may be cut by all.
+/// Few triangles, as all may be cut by all.
 constexpr std::size_t kMostTriangles = 24;
 
 void require(bool holds) {
   if (!holds) std::abort();
 }
 
-/// Nine signed bytes a triangle, in sixteenths.
+/// Each triangle takes nine signed bytes, in sixteenths.
 Scene coarse_scene_of(const std::uint8_t* data, std::size_t size) {
   std::vector<glm::vec3> corners(std::min(size / 9, kMostTriangles) * 3);
   for (std::size_t i = 0; i < corners.size(); ++i)
@@ -28,7 +28,7 @@ Scene coarse_scene_of(const std::uint8_t* data, std::size_t size) {
   return test::scene_of(reinterpret_cast<const std::uint8_t*>(corners.data()), corners.size() * sizeof(glm::vec3));
 }
 
-/// Of an order, or of parts.
+/// Checks the polygons of a PaintOrder or of VisibleParts.
 template <class Order>
 void check(const Surfaces& surfaces, const Order& order) {
   for (const PaintPolygon& polygon : order.polygons) {
@@ -45,7 +45,7 @@ void check_parts(const VisibleParts& parts) {
   }
 }
 
-/// Samples where one picture shows something else than the other, for no reason.
+/// Marks samples where the two pictures differ without a reason.
 std::vector<bool> wrong(const Surfaces& surfaces, const Visible& expected, const Visible& painted) {
   const Agreement found = check_agreement(surfaces, expected, painted, {.threads = 1});
   std::vector<bool> is_wrong(painted.primitives.size());
@@ -54,7 +54,8 @@ std::vector<bool> wrong(const Surfaces& surfaces, const Visible& expected, const
   return is_wrong;
 }
 
-/// paint() covers from snapped corners, so beside a cut it may show what ends there.
+/// Whether `at` is beside a cut: paint() covers from snapped vertices, so it may show there the face that ends at the
+/// cut.
 bool is_next_to_cut(const PaintOrder& order, const glm::dvec2& at) {
   for (const PaintPolygon& polygon : order.polygons)
     for (std::size_t i = 0; i < polygon.corner_count; ++i) {
@@ -67,7 +68,7 @@ bool is_next_to_cut(const PaintOrder& order, const glm::dvec2& at) {
   return false;
 }
 
-/// Close to the eye corners on 1/256 pixel tilt triangles so far that the z-buffer itself parts from rays.
+/// Skips faces close to the eye: vertices on 1/256 pixel tilt those so far that even the z-buffer differs from rays.
 void check_picture(const Surfaces& surfaces, const PaintOrder& order) {
   const Visible painted = paint(surfaces, order);
   const std::vector<bool> by_samples = wrong(surfaces, zbuffer(surfaces, order.view, {.threads = 1}), painted);
@@ -124,7 +125,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!is_right || !is_coarse || !(std::abs(bytes.eye_x) < 100 && std::abs(bytes.eye_y) < 100)) return 0;
     check_picture(surfaces, order);
   } catch (const Error&) {
-    // A camera at its own target, or not finite, or more cuts than allowed: stated outcomes.
+    // The camera is at its own target or not finite, or there are too many cuts: all are documented errors.
   }
   return 0;
 }

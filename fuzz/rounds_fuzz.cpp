@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arbitrary triangles, and tubes that they are joined to, into rounds. Must not crash or hang; what is found is round,
-// and made of triangles that are there; threads change no bit. Input: support/geometry_fuzz.h.
+// Feeds arbitrary triangles, and tubes joined to them, to the search for rounds. The search must not crash or hang;
+// each find is round and made of existing triangles; threads change no bit. Input: support/geometry_fuzz.h.
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -15,7 +15,7 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-/// A tube about the z axis, of as many sides as said; some corners lie where the first ones of the mesh are.
+/// A tube about the z axis with `sides` sides; some vertices coincide with the first vertices of the mesh.
 void add_tube(Mesh& mesh, std::uint32_t sides, float radius, float height, std::uint32_t moved) {
   const auto first = std::uint32_t(mesh.positions.size());
   for (std::uint32_t i = 0; i < sides; ++i) {
@@ -68,7 +68,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check(rounds, surfaces);
     require(equal(rounds, find_rounds(surfaces, {.threads = 1, .isa = Isa::scalar, .watch = nullptr})));
   } catch (const Error&) {
-    // Positions that no scene may have: a stated outcome.
+    // Positions that no scene may have are a documented error.
   }
   return 0;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes read as a scene file, whose models can only be built-in ones, and as a file of categories: a valid scene or
-// an Error.
+// Reads any bytes as a scene file, whose models can only be built-in ones, and as a file of categories: the result is
+// valid or an Error.
 #include "support/reader_fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arbitrary triangles or solids and an arbitrary plane into a section. Must not crash or hang; what is left lies behind
-// the plane, and faces in it; threads change no bit. Input: support/geometry_fuzz.h.
+// Cuts arbitrary triangles or solids by an arbitrary plane. The section must not crash or hang; the rest lies behind
+// the plane, and cut faces lie in it; threads change no bit. Input: support/geometry_fuzz.h.
 #include <cmath>
 #include <cstdlib>
 
@@ -14,12 +14,12 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-/// Corners on a coarse lattice, so that they touch each other and the plane. What is not finite or huge stays.
+/// Moves vertices to a coarse lattice, so that they touch each other and the plane. Infinite, NaN and huge values stay.
 void put_on_lattice(Mesh& mesh) {
   for (glm::vec3& p : mesh.positions) p = glm::round(p * 2.0f) / 2.0f;
 }
 
-/// Every four corners a tetrahedron in place of triangles: closed, however they pass through each other.
+/// Replaces triangles by a tetrahedron for every four vertices: closed solids that may pass through each other.
 void make_solids(Mesh& mesh) {
   mesh.triangles.clear();
   for (std::uint32_t i = 0; i + 3 < mesh.positions.size(); i += 4)
@@ -74,7 +74,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Section* const sections[] = {&section};
     require(section_hatch_sets(section, hatch_styles(sections)).size() == section.faces.size());
   } catch (const Error&) {
-    // A plane that is not finite: a stated outcome.
+    // A plane that is not finite is a documented error.
   }
   return 0;
 }

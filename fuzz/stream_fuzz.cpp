@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes read as STL or PLY in pieces, from a file and from a pipe: the triangles that load() reads, or an Error.
+// Reads any bytes as STL or PLY in pieces, from a file and from a pipe: the result is the triangles of load(), or an
+// Error.
 #include "support/stream_fuzz.h"
 
 #include <filesystem>

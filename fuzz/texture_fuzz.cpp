@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes decoded as a texture: pixels of the size that the header states, or an Error that names the file.
+// Decodes any bytes as a texture: the result has the size that the header states, or an Error names the file.
 #include <cstdint>
 #include <cstdlib>
 

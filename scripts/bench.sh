@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# bench.sh FOLDER [ARGS]: says what machine this is, then runs every benchmark program of FOLDER.
-# bench.sh FOLDER zbuffer|abuffer|drawings [ARGS]: the tables of one method alone; stream [ARGS]: models of growing length,
-# streamed; shade MODEL... : pictures of models one after another, beside llvmpipe's; python: the module beside the library,
-# and beside VTK and Open3D; web: the WebAssembly module beside the program, beside WebGL and beside three.js, when ./dev page
-# has built it.
+# bench.sh FOLDER [ARGS]: describes this machine, then runs every benchmark program of FOLDER.
+# bench.sh FOLDER zbuffer|abuffer|drawings [ARGS]: runs the tables of one method alone. Other words: stream [ARGS],
+# models of growing length, streamed; shade MODEL..., pictures of models one after another, beside llvmpipe's; python,
+# the module beside the library, and beside VTK and Open3D; web, the WebAssembly module beside the program, WebGL and
+# three.js, if ./dev page has built it.
 set -euo pipefail
 folder=$1
 shift

@@ -15,12 +15,12 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-MADE = {"build", "out", ".git"}  # by ./dev and git
+MADE = {"build", "out", ".git"}  # made by ./dev and git
 CODE = {".h", ".cpp"}
 MARKED = CODE | {".py", ".sh", ".cmake"}
-LARGEST_FILE = 512 * 1024  # bytes; what a command wrote is soon there by mistake, and stays in the history
+LARGEST_FILE = 512 * 1024  # bytes; a larger file is soon committed by mistake, and stays in the history
 LIBRARY = {"include", "src", "cli", "python", "web"}  # a name has one meaning in all of these
-FACES = {"cli", "examples", "python", "web"}  # see include/frontmost alone; tests and benchmarks look inside
+FACES = {"cli", "examples", "python", "web"}  # these include include/frontmost alone; tests and benchmarks look inside
 
 
 def tracked_files():
@@ -40,7 +40,7 @@ def read(path):
 
 
 class House:
-    """What docs/design.md says of parts and rooms."""
+    """The parts and rooms that docs/design.md describes."""
 
     def __init__(self, page):
         self.part_of_header, self.budgets, self.part_of_room = {}, {}, {}
@@ -55,10 +55,10 @@ class House:
                 self.part_of_room[match[1]] = part
                 rooms[match[1]] = self.named(match[2])
         self.parts, self.rooms = self.closed(parts), self.closed(rooms)
-        # Where every room of a part has a header of its name, the rooms' arrows hold for the headers, too.
+        # If every room of a part has a header of its name, the arrows between rooms hold for the headers too.
         of_part = {part: {room for room in rooms if self.part_of_room[room] == part} for part in parts}
         self.room_of_header = {room: room for part, within in of_part.items() if within <= self.part_of_header.keys() for room in within}
-        # Headers that are nothing but others: for users, not for the library.
+        # Headers that only include others are for users, not for the library.
         self.gathering = {"frontmost"} | {part for part in parts if len(of_part[part]) > 1 and part not in rooms}
 
     @staticmethod
@@ -67,7 +67,7 @@ class House:
 
     @staticmethod
     def closed(direct):
-        """Name -> all that it may include, itself among them."""
+        """Maps each name to all names that it may include, itself among them."""
         found = {}
 
         def close(name):
@@ -80,13 +80,13 @@ class House:
         return found
 
     def may_include(self, room, other):
-        """Rooms of parts below may be included, and of the own part those that the room's line allows."""
+        """Whether `room` may include `other`: a room of a part below, or a room of its own part that its line allows."""
         part, below = self.part_of_room[room], self.part_of_room[other]
         return other in self.rooms[room] if part == below else below in self.parts[part]
 
 
 def header_errors(house):
-    """Every header of include/frontmost is of a part, but for the one that includes them all."""
+    """Every header of include/frontmost belongs to a part, except the one that includes them all."""
     there = {path.stem for path in (ROOT / "include/frontmost").glob("*.h")} - {"frontmost"}
     for name in sorted(there - house.part_of_header.keys()):
         yield f"include/frontmost/{name}.h: docs/design.md does not say which part it is of"
@@ -128,7 +128,7 @@ def arrow_errors(path, text, house):
 
 
 def budget_errors(texts, house):
-    """The lines of a part are those of its folder and of its public headers."""
+    """The lines of a part are the lines of its folder and of its public headers."""
     lines = dict.fromkeys(house.budgets, 0)
     for path, text in texts.items():
         part = path.parts[1] if path.parts[0] == "src" else house.part_of_header.get(path.stem) if path.parts[0] == "include" else None
@@ -142,24 +142,25 @@ def budget_errors(texts, house):
 
 
 def lost_includes(texts):
-    """Every include in quotes of a header of the house names one that is there: a header that was merged into another one
-    may still be asked for by a file that was written meanwhile. `texts`: path -> text."""
+    """Every quoted include of a header of the house must name an existing file. An include of a header that was merged
+    into another one is caught here. `texts`: path -> text."""
     there = {str(path) for path in texts}
     homes = ("", "include/", "tests/", "bench/", *{f"src/{path.parts[1]}/" for path in texts if path.parts[0] == "src"})
     ours = {folder for path in texts for folder in path.parts[:-1][:3]}
     for path, text in texts.items():
         for number, line in enumerate(text.splitlines(), 1):
             match = re.match(r'\s*#\s*include\s+(?:"([^"]+)"|<(frontmost/[^>]+)>)', line)
-            if not match or (name := match[1] or match[2]) == "frontmost/version.h":  # which the build makes
+            if not match or (name := match[1] or match[2]) == "frontmost/version.h":  # the build generates it
                 continue
-            if "/" in name and name.split("/")[0] not in ours:  # another library's
+            if "/" in name and name.split("/")[0] not in ours:  # a header of another library
                 continue
             if not any(f"{home}{name}" in there for home in (*homes, f"{path.parent}/")):
                 yield f"{path}:{number}: there is no {name}"
 
 
 def cli_folder_errors(texts):
-    """Folders of cli include each other one way only. `texts`: path -> text. Files beside the folders are everybody's."""
+    """Folders of cli include each other in one direction only. `texts`: path -> text. Any folder may include the files
+    beside the folders."""
     included = {}  # folder -> {folder: where}
     for path, text in texts.items():
         if path.parts[0] != "cli" or len(path.parts) < 3:
@@ -182,8 +183,8 @@ def cli_folder_errors(texts):
 
 
 def types_of(text):
-    """(line number, name, meaning) of the types that a file defines at namespace scope; of an alias the meaning is what
-    it stands for, of all others it is their place."""
+    """(line number, name, meaning) of the types that a file defines at namespace scope. The meaning of an alias is its
+    target; the meaning of any other type is its place."""
     for number, line in enumerate(text.splitlines(), 1):
         if match := re.match(r"using ([A-Z]\w\w+) = (.*);", line):
             yield number, match[1], match[2]
@@ -202,7 +203,7 @@ def name_errors(places):
 
 
 def highway_errors(path, text):
-    """Highway's operations are included by way of base/highway-inl.h: they may be precompiled."""
+    """Highway's operations are included through base/highway-inl.h only, because they may be precompiled."""
     if path.parts[:3] == ("src", "core", "base") and path.name in {"highway-inl.h", "all_targets.h"}:
         return
     for number, line in enumerate(text.splitlines(), 1):

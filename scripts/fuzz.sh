@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# fuzz.sh NAME SECONDS LIMIT : runs the fuzz target NAME from its corpus for so many seconds. An input that takes longer
-# than LIMIT seconds is a finding. New inputs go to out/fuzz/NAME, findings to out/fuzz/NAME-*; the corpus of the
-# repository stays as it is.
+# fuzz.sh NAME SECONDS LIMIT : runs the fuzz target NAME from its corpus for SECONDS seconds. An input that takes longer
+# than LIMIT seconds is a finding. New inputs go to out/fuzz/NAME, findings to out/fuzz/NAME-*; the repository's corpus
+# does not change.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 mkdir -p "out/fuzz/$1" "fuzz/corpus/$1"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures what the visibility methods cost as triangles, pixels and layers grow, and draws it for docs/methods.md.
+"""Measures the cost of the visibility methods as triangles, pixels and layers grow, and draws it for docs/methods.md.
 
     method_curves.py measure PROGRAM ROWS.json     runs frontmost compare on made-up models
     method_curves.py draw ROWS.json DRAWING.svg
@@ -26,7 +26,7 @@ AXES = {
 
 
 def sphere(path, triangles):
-    """A sphere of about so many triangles, as binary STL."""
+    """A sphere of about `triangles` triangles, as binary STL."""
     rows = max(2, round(math.sqrt(triangles / 4)))
     columns = 2 * rows
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the second half of docs/python.md, every call of the Python module, in the words of its stubs.
+"""Writes the second half of docs/python.md: every call of the Python module, in the words of its stubs.
 
     python_page.py update    writes the page
-    python_page.py check     says whether it is as it would be written
+    python_page.py check     reports whether the page is up to date
 """
 import ast
 import pathlib

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs a command and shows one line; all of its output only when it fails.
+# Runs a command and shows one line; shows all of its output only if it fails.
 set -u
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
@@ -12,5 +12,5 @@ if [ "$status" = 0 ]; then
 else
   cat "$log"
   echo "FAILED $* with $status"
-  exit 1 # the others still run: one run tells of all faults
+  exit 1 # other checks still run, so that one run reports all faults
 fi

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# sanitized.sh PROGRAM [ARGUMENTS...] : runs a program of a sanitizer's build, which stops at the first finding. The exit
-# status is 77 (skipped) if the program is not built; ./dev test builds it. A filter of GoogleTest that selects no test
-# is an error; it is the last argument.
+# sanitized.sh PROGRAM [ARGUMENTS...] : runs a program of a sanitizer's build, which stops at the first finding. The
+# exit status is 77 (skipped) if the program is not built; ./dev test builds it. A GoogleTest filter must be the last
+# argument; it is an error if it selects no test.
 set -euo pipefail
 [ -x "$1" ] || {
   echo "skipped: $1 is not built"
@@ -11,7 +11,7 @@ set -euo pipefail
 if [[ "${!#}" == --gtest_filter=* ]]; then
   filter=${!#}
   filter=${filter#--gtest_filter=}
-  # Of patterns that select alone, each must select a test: a stale one would go unnoticed.
+  # Each pattern of a filter that only selects must select a test: a stale pattern would go unnoticed.
   patterns=("$filter")
   if [[ "$filter" != *-* ]]; then IFS=: read -ra patterns <<<"$filter"; fi
   for pattern in "${patterns[@]}"; do

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same pictures by more threads, and by every instruction set.
+// A-buffer pictures by one thread and by all, and by every instruction set.
 #include <algorithm>
 #include <thread>
 

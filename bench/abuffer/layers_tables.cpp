@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth complexity: what it costs in time and in memory.
+// Cost of depth complexity in time and in memory.
 #include "abuffer/tables.h"
 #include "harness/measure.h"
 
@@ -18,7 +18,7 @@ constexpr LargePicture kLargePictures[] = {
 }  // namespace
 
 Table measure_layers(const Options& options) {
-  // So thin that all of them are shaded.
+  // Layers are so thin that all of them are shaded.
   constexpr float kOpacity = 0.01f;
   Table table("sheets that fill 240 x 135 pixels, one thread",
               {"sheets", "sub-samples", "ms", "ns a fragment", "of these to count it"});
@@ -43,7 +43,7 @@ Table measure_layers(const Options& options) {
 }
 
 Table measure_abuffer_memory(const Options&) {
-  // Of a hundred layers some eighty are shaded: what is behind adds nothing.
+  // With this opacity, some eighty of a hundred layers are shaded; layers behind them add nothing.
   constexpr float kOpacity = 0.3f;
   Table table("memory of one picture, all threads",
               {"picture", "sub-samples", "ms", "MiB", "of these planes", "at most"});

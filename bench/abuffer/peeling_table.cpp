@@ -8,7 +8,7 @@
 namespace frontmost::bench {
 namespace {
 
-/// Pixels whose channels differ by more than three eighth bits: every layer of peeling is rounded to one.
+/// Number of pixels with a channel that differs by more than 3/255, as every layer of peeling is rounded to 1/255.
 std::size_t differing(const Image& ours, const std::vector<glm::vec4>& theirs) {
   constexpr float kMost = 3 / 255.0f;
   std::size_t count = 0;
@@ -21,10 +21,10 @@ std::size_t differing(const Image& ours, const std::vector<glm::vec4>& theirs) {
   return count;
 }
 
-/// What peeling draws, and whether it is what we draw.
+/// Number of layers that depth peeling draws, and how far its picture differs from ours.
 struct Comparison {
   int layers = 0;
-  double differing = std::nan("");  ///< of a million pixels
+  double differing = std::nan("");  ///< pixels in a million
 
   explicit Comparison(const Stage& stage) {
     const auto peer = make_peeling({stage.scene, stage.view, 1});
@@ -38,7 +38,7 @@ struct Comparison {
 };
 
 void measure(std::string_view scene, const Options& options, Table& table) {
-  // Edges of snapped triangles are elsewhere than those of llvmpipe's in so many pixels of a million.
+  // Allowed pixels in a million: llvmpipe snaps vertices to other places, which moves edges.
   constexpr double kMostDiffering = 2000;
   const Stage stage = make_lit(scene, options.models);
   const Execution execution{.threads = options.threads};

@@ -12,12 +12,12 @@ namespace frontmost::bench {
 namespace {
 
 constexpr std::string_view kScenes[] = {"teapot", "bunny", "sphere1m", "terrain1m", "city-fly", "boxes-random"};
-/// Of the painter, beyond the default: BSP trees cut a terrain of a million triangles more often.
+/// Limit of cuts for the painter, above the default: BSP trees cut a terrain of a million triangles more often.
 constexpr std::size_t kMostCuts = std::size_t(1) << 26;
-/// Of hatch lines and dots, in pixels: about a millimetre on a sheet of A4.
+/// Spacing of hatch lines and dots in pixels, about a millimetre on a sheet of A4.
 constexpr double kSpacing = 7;
 
-/// Hidden lines: feature edges, and what it takes to cut them, with and without intersections, and on all threads.
+/// Hidden lines: finding feature edges and cutting them, with and without intersections, and on all threads.
 Table measure_lines(const Options& options) {
   Table table("hidden lines, ms", {"scene", "edges", "parts", "one thread", "no crossings", "all threads", "times"});
   const int all = std::max(2, int(std::thread::hardware_concurrency()));
@@ -41,8 +41,8 @@ Table measure_lines(const Options& options) {
   return table;
 }
 
-/// The painter's order beside the z-buffer, step by step as a figure takes them. Fails where painting the order gives
-/// another picture than the z-buffer without a reason.
+/// The painter's order beside the z-buffer, in the steps that a figure takes. The table fails if the painted order
+/// differs from the z-buffer's picture without a reason.
 Table measure_painter(const Options& options) {
   const int threads = options.threads;
   Table table(std::string("painter's order, ms, threads: ").append(std::to_string(threads)),
@@ -72,7 +72,7 @@ Table measure_painter(const Options& options) {
   return table;
 }
 
-/// Hatching and dots, with and without the shadows that are cast, and on all threads.
+/// Hatching and dots, with and without cast shadows, and on all threads.
 Table measure_tones(const Options& options) {
   Table table("hatching and dots, ms",
               {"scene", "lines", "one thread", "no shadows", "all threads", "times", "dots", "one thread"});

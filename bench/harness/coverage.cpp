@@ -10,13 +10,13 @@
 namespace frontmost::bench {
 namespace {
 
-// Rounding of one depth, relative to the terms it is summed from: four roundings of 2^-24.
+// Rounding error of a depth, relative to the terms of its sum: four roundings of 2^-24.
 constexpr double kRounding = 0x1p-22;
 
-/// Where one of the two programs puts a vertex, in 1/256 pixel from the top left corner of the picture.
+/// Position that one of the two programs gives a vertex, in 1/256 pixel from the top left corner of the picture.
 struct Place {
   std::int64_t x = 0, y = 0;
-  bool is_cut = false;  ///< outside what that program draws without clipping
+  bool is_cut = false;  ///< outside the region that the program draws without clipping
 
   bool operator==(const Place&) const = default;
 };
@@ -28,8 +28,9 @@ Place our_place(const ScreenTransform& t, const glm::vec3& position) {
   return {s.x + t.centre_x, s.y + t.centre_y};
 }
 
-/// As Mesa 22.3 does it: src/gallium/auxiliary/draw/draw_llvm.c, generate_clipmask() and generate_viewport(), then
-/// src/gallium/drivers/llvmpipe/lp_setup_tri.c, calc_fixed_position(). Its fmuladd is fused where the processor can.
+/// Computes vertex positions by the steps of Mesa 22.3: src/gallium/auxiliary/draw/draw_llvm.c, generate_clipmask() and
+/// generate_viewport(), then src/gallium/drivers/llvmpipe/lp_setup_tri.c, calc_fixed_position(). Mesa's fmuladd is
+/// fused if the processor has FMA.
 class TheirPlaces {
  public:
   explicit TheirPlaces(const View& view)
@@ -57,7 +58,7 @@ class TheirPlaces {
   [[nodiscard]] float scaled(float ndc, float half) const {
     return fuses_ ? std::fma(ndc, half, half) : ndc * half + half;
   }
-  /// From the first pixel's centre, as there; the half pixel is added again.
+  /// Rounds from the first pixel's centre, as llvmpipe does, and then adds the half pixel again.
   [[nodiscard]] static std::int64_t fixed(float window) {
     return std::int64_t(std::nearbyint((window - 0.5f) * float(kSubPixels))) + kSubPixels / 2;
   }
@@ -75,7 +76,7 @@ std::int64_t edge(const Place& a, const Place& b, const Place& p) {
   return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
 
-/// The exact rule: inside, or on an edge that is a left or a top one.
+/// The exact rule: a point is covered if it is inside, or on a left or a top edge.
 bool covers(Corners c, const Place& p) {
   const std::int64_t area = edge(c[0], c[1], c[2]);
   if (area == 0) return false;
@@ -89,13 +90,13 @@ bool covers(Corners c, const Place& p) {
   return true;
 }
 
-/// A depth at a pixel, and what floats make of it: the plane is evaluated from the corner of the picture, so that
-/// steep planes lose digits.
+/// Depth at a pixel with its rounding error in floats. The plane is evaluated from the corner of the picture, so steep
+/// planes lose digits.
 struct Depth {
   double value, error;
 };
 
-/// A corner on the screen in pixels, with its depth there.
+/// Vertices in pixels on the screen, each with its depth.
 using DepthCorners = std::array<glm::dvec3, 3>;
 
 Depth depth_at(const DepthCorners& c, const Place& pixel) {
@@ -126,7 +127,7 @@ class Judge {
     return moved;
   }
 
-  /// Adds one pixel, at which we see `a` and they see `b`, to its reason.
+  /// Counts one pixel, where we see `a` and they see `b`, under the reason for the difference.
   void judge(const Place& pixel, PrimitiveId a, PrimitiveId b, CoverageReport& report) const {
     const Seen by_us = look(a, pixel), by_them = look(b, pixel);
     if (by_us.is_cut || by_them.is_cut) {
@@ -141,13 +142,13 @@ class Judge {
                can_hide(their_depth(b, pixel), their_depth(a, pixel))) {
       ++report.depth;
     } else {
-      ++report.disagreed;  // somebody drew what by the rule it must not, or left out what it must
+      ++report.disagreed;  // one program drew a triangle that the rule excludes, or left out one that it requires
     }
   }
 
  private:
   struct Seen {
-    bool in_ours = false, in_theirs = false;  ///< covers the pixel there, by the exact rule
+    bool in_ours = false, in_theirs = false;  ///< whether each program's triangle covers the pixel, by the exact rule
     bool is_cut = false;
   };
 
@@ -168,7 +169,7 @@ class Judge {
     if (is_cut(ours) || is_cut(theirs)) return {false, false, true};
     return {covers(ours, pixel), covers(theirs, pixel), false};
   }
-  /// Planes through the snapped corners.
+  /// The plane goes through the snapped vertices.
   [[nodiscard]] Depth our_depth(PrimitiveId id, const Place& pixel) const {
     DepthCorners corners;
     for (int k = 0; k < 3; ++k) {
@@ -178,7 +179,7 @@ class Judge {
     }
     return depth_at(corners, pixel);
   }
-  /// llvmpipe's planes go through the corners before they are snapped.
+  /// llvmpipe's plane goes through the vertices before snapping.
   [[nodiscard]] Depth their_depth(PrimitiveId id, const Place& pixel) const {
     DepthCorners corners;
     for (int k = 0; k < 3; ++k) corners[std::size_t(k)] = theirs_.window(clip_[mesh_.triangles[id][k]]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same frames by more threads, and by every instruction set.
+// Z-buffer frames by one thread and by all, and by every instruction set.
 #include <algorithm>
 #include <cmath>
 #include <thread>
@@ -10,12 +10,12 @@
 namespace frontmost::bench {
 namespace {
 
-constexpr double kThreadTarget = 0.9;  // of the number of threads
+constexpr double kThreadTarget = 0.9;  // speed-up wanted, as a share of the number of threads
 constexpr std::string_view kMillions[] = {"sphere1m", "terrain1m", "terrain1m-fly", "soup1m"};
 constexpr std::string_view kVaried[] = {"teapot", "bunny",    "sphere1m",    "terrain1m-fly",
                                         "soup1m", "city-fly", "boxes-random"};
 
-/// How fast an instruction set shall be, of AVX-512's speed.
+/// Wanted speed of an instruction set, relative to AVX-512.
 double isa_target(Isa isa) {
   switch (isa) {
     case Isa::avx2: return 0.6;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles are seen and how much of each: from one place, and from many around the scene.
+// Visible triangles and their visible areas: from one place, and from many around the scene.
 #include <frontmost/report.h>
 
 #include <cmath>

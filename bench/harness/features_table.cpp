@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Promises that are ratios of Frontmost's own frames.
+// Promises that are ratios between Frontmost's own frames.
 #include <cmath>
 
 #include "harness/stage.h"
@@ -18,7 +18,7 @@ View with_samples(View view, int samples) {
   return view;
 }
 
-/// How many times dearer `a` is than `b`, on one thread.
+/// Cost of `a` divided by the cost of `b`, on one thread.
 double ratio(Frames& a, Frames& b, const Options& options) {
   const std::vector<Time> times = race(
       {Contestant([&] { a.draw({.threads = 1}); }), Contestant([&] { b.draw({.threads = 1}); })}, options.sampling);

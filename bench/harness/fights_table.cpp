@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which pairs of faces a depth buffer cannot tell apart, beside the picture that it starts from.
+// Pairs of faces that a depth buffer cannot tell apart, beside the picture that the search starts from.
 #include <frontmost/precision.h>
 
 #include "harness/stage.h"

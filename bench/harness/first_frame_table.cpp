@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one frame costs from the scene on, in new memory: with clusters and without.
+// Cost of one frame from the scene on, in new memory: with clusters and without.
 #include <algorithm>
 #include <thread>
 

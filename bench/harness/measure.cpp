@@ -33,8 +33,8 @@ Time timed(const Contestant& contestant) {
   return {after.wall - before.wall, after.processor - before.processor};
 }
 
-/// One turn: again and again for a while, so that a quick contestant finds its caches as it left them more often than
-/// as a slow one did. What asks for preparation runs once.
+/// One turn: repeats a contestant for a while, so that a quick one finds its caches warm as often as a slow one does. A
+/// contestant with a preparation runs once.
 Time turn(const Contestant& contestant) {
   constexpr double kLeastMs = 50;
   Time sum = timed(contestant);
@@ -65,14 +65,14 @@ std::uint64_t sum(const Buffer<std::uint64_t>& array) {
   return parts[0] + parts[1] + parts[2] + parts[3];
 }
 
-/// A chain of multiplications, of which each waits 3 cycles for the one before: so on every x86-64 since 2011.
+/// A chain of multiplications. Each waits 3 cycles for the one before, on every x86-64 processor since 2011.
 void multiply(std::uint64_t count) {
   std::uint64_t value = 3;
   for (std::uint64_t i = 0; i < count; ++i) value *= value;
   keep(value);
 }
 
-/// "VmHWM:   1234 kB" of /proc/self/status.
+/// Reads a field of /proc/self/status, such as "VmHWM:   1234 kB", as bytes.
 std::size_t status_bytes(const char* field) {
   std::FILE* file = std::fopen("/proc/self/status", "r");
   if (file == nullptr) return 0;
@@ -132,7 +132,7 @@ void reset_peak() {
   malloc_trim(0);
 #endif
   if (std::FILE* file = std::fopen("/proc/self/clear_refs", "w")) {
-    std::fputs("5", file);  // the peak becomes what is resident now
+    std::fputs("5", file);  // resets the peak to the present resident size
     std::fclose(file);
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measuring that can be trusted on a machine that does other things too: alternating runs, medians, processor time; how
-// much memory this process has; and what the machine allows at most, on one thread.
+// Measuring on a machine that does other things too: alternating runs, medians and processor time; the memory of this
+// process; and the limits of the machine on one thread.
 #pragma once
 
 #include <cstddef>
@@ -9,24 +9,24 @@
 
 namespace frontmost::bench {
 
-/// Milliseconds.
+/// Times in milliseconds.
 struct Time {
-  double wall = 0, processor = 0;  ///< the processor's is summed over all threads of the process
+  double wall = 0, processor = 0;  ///< the processor's time is summed over all threads of the process
 };
 
-/// What counts: one thread's processor time is the steadier clock; of several threads the wall's is the answer.
+/// The time to compare: processor time for one thread, as it is the steadier clock; wall time for several threads.
 [[nodiscard]] inline double cost(const Time& time, int threads) { return threads == 1 ? time.processor : time.wall; }
 
 struct Sampling {
-  int rounds = 7;            ///< of every contestant in turn
-  double most_seconds = 10;  ///< after which no further round is begun, from the third on
+  int rounds = 7;            ///< for each contestant
+  double most_seconds = 10;  ///< no further round begins after this time, from the third round on
 };
 
-/// What is measured, and what is done before it each time, unmeasured.
+/// Work to measure, and unmeasured work to do before each run.
 struct Contestant {
   Contestant(std::function<void()> what, std::function<void()> before = nullptr)
       : run(std::move(what)), prepare(std::move(before)) {}
-  /// Somebody whose own clock counts.
+  /// A contestant that runs elsewhere and reports its own time.
   static Contestant elsewhere(std::function<Time()> what) {
     Contestant contestant(nullptr);
     contestant.run_timed = std::move(what);
@@ -37,11 +37,11 @@ struct Contestant {
   std::function<Time()> run_timed;
 };
 
-/// Runs the contestants in turn, once unmeasured and then `rounds` times, so that what slows the machine for a while
-/// slows them all. A turn is at least 50 ms long. \returns the medians of its mean, in the order given.
+/// Runs the contestants in turn, once unmeasured and then `rounds` times, so that a slow spell of the machine hits all.
+/// A turn lasts at least 50 ms. \returns the median of the mean times per turn of each contestant, in the order given.
 [[nodiscard]] std::vector<Time> race(const std::vector<Contestant>& contestants, const Sampling& sampling);
 
-/// Now, on both clocks.
+/// The present time on both clocks.
 [[nodiscard]] Time now();
 
 struct MachineLimits {
@@ -49,14 +49,14 @@ struct MachineLimits {
   double clock = 0;           ///< cycles a millisecond
 };
 
-/// About a second.
+/// Takes about a second.
 [[nodiscard]] MachineLimits measure_machine();
 
 /// Resident memory of this process in bytes; 0 where the system does not say.
 [[nodiscard]] std::size_t resident_bytes();
-/// The most since reset_peak().
+/// Most resident memory since reset_peak(), in bytes.
 [[nodiscard]] std::size_t peak_resident_bytes();
-/// Gives free memory back to the system first, so that what is used again is seen again.
+/// Resets the peak, after returning free memory to the system, so that memory in use again counts again.
 void reset_peak();
 
 }  // namespace frontmost::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much memory is asked for, and how near a frame comes to what memory and processor allow.
+// Memory that is requested, and how near a frame comes to the limits of memory and processor.
 #include <cmath>
 
 #include "harness/measure.h"

@@ -23,7 +23,7 @@ namespace {
   throw Error(ErrorCode::unsupported, std::string("peer process: ").append(what));
 }
 
-/// Starts this program again with other arguments, its input and output at the given ends of pipes.
+/// Starts this program again with other arguments; `input` and `output` are ends of pipes.
 pid_t start(std::array<std::string, 7> arguments, int input, int output) {
   std::array<char*, 8> pointers{};
   for (std::size_t i = 0; i < arguments.size(); ++i) pointers[i] = arguments[i].data();
@@ -84,7 +84,7 @@ Time PeerProcess::draw() {
 
 void serve_peer(const char* const* arguments) {
 #if defined(__GLIBC__)
-  // Left alone, glibc raises both thresholds with the largest block that was ever freed, here while the scene is made.
+  // Unless set, glibc raises both thresholds to the largest block that was ever freed, here while the scene is made.
   constexpr int kInitialThreshold = 128 * 1024, kNever = 1 << 30;
   const int threshold = std::atoi(arguments[3]) != 0 ? kNever : kInitialThreshold;
   mallopt(M_TRIM_THRESHOLD, threshold);
@@ -95,7 +95,7 @@ void serve_peer(const char* const* arguments) {
   for (const glm::vec3& position : scene.meshes.at(0).positions) bounds.include(position);
   const View view = make_view(bounds, find_scene(arguments[1]).camera);
   const std::unique_ptr<Peer> peer = make_peer(arguments[0], {scene, view, std::atoi(arguments[2])});
-  // Ready, or not there at all.
+  // Reports that the peer is ready, or absent.
   say({peer ? 0.0 : -1.0, 0});
   for (char line[16]; peer && std::fgets(line, sizeof line, stdin) != nullptr;) {
     const Time before = now();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Peers in processes of their own, as their users run them.
 //
-// In our process llvmpipe would be 1.2 to 1.4 times faster than in its own: it gives its memory back after every frame
-// and takes it again for the next, and where other blocks lie above it, glibc cannot hand it to the system in between.
-// `keeps_memory` turns that handing back off, so that both figures can be told.
+// In our process llvmpipe would run 1.2 to 1.4 times faster than in its own. llvmpipe frees its memory after every
+// frame and allocates it again for the next. glibc cannot hand that memory to the system if other blocks lie above it.
+// `keeps_memory` turns the handing back off, so that both times can be reported.
 #pragma once
 
 #include <cstdio>
@@ -20,18 +20,18 @@ struct PeerRequest {
   bool keeps_memory = false;
 };
 
-/// A process that draws one scene with one peer whenever it is asked.
+/// A process that draws one scene with one peer on request.
 class PeerProcess {
  public:
-  /// \throws Error unsupported when it does not start.
+  /// \throws Error unsupported if the process does not start.
   PeerProcess(const PeerRequest& request, const Options& options);
   ~PeerProcess();
   PeerProcess(const PeerProcess&) = delete;
   PeerProcess& operator=(const PeerProcess&) = delete;
 
-  /// Whether the peer was found when this was built.
+  /// Whether this build has the peer.
   [[nodiscard]] bool is_present() const { return is_present_; }
-  /// One frame, timed over there.
+  /// Draws one frame; the other process measures the time.
   [[nodiscard]] Time draw();
 
  private:
@@ -43,8 +43,8 @@ class PeerProcess {
   bool is_present_ = false;
 };
 
-/// The other end: "PROGRAM --serve PEER SCENE THREADS KEEPS_MEMORY MODELS". Draws a frame for every line of
-/// input and says how long it took, until the input ends.
+/// Runs the other end: "PROGRAM --serve PEER SCENE THREADS KEEPS_MEMORY MODELS". For every line of input, it draws a
+/// frame and reports the time, until the input ends.
 void serve_peer(const char* const* arguments);
 
 }  // namespace frontmost::bench

@@ -8,7 +8,7 @@
 namespace frontmost::bench {
 namespace {
 
-/// The peers of one row, each in its process; null where it is not wanted or not there.
+/// The peers of one row, each in its process; null if a peer is not wanted or absent.
 struct Peers {
   std::unique_ptr<PeerProcess> llvmpipe, llvmpipe_keeping, embree;
 
@@ -31,7 +31,7 @@ void measure(const SceneEntry& entry, const Options& options, Table& table) {
   const Execution execution{.threads = options.threads};
   Frames frames(stage), others(stage);
   std::vector<Contestant> contestants{Contestant([&] { frames.draw(execution); }),
-                                      // Its planes hold another picture each time.
+                                      // Planes hold another picture before each frame.
                                       Contestant([&] { others.draw(execution); }, [&] { others.draw_other(cover); })};
   const auto add = [&](const std::unique_ptr<PeerProcess>& peer) {
     if (peer) contestants.push_back(Contestant::elsewhere([&] { return peer->draw(); }));

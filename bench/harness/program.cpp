@@ -14,7 +14,7 @@
 namespace frontmost::bench {
 namespace {
 
-/// `tables`: the names that a program has. \throws Error bad_argument naming the flag.
+/// Reads the options; `tables` are the names that the program knows. \throws Error bad_argument naming the flag.
 Options parse_options(int count, const char* const* arguments, std::span<const std::string_view> tables) {
   Options options;
   options.models = FRONTMOST_MODELS;

@@ -8,8 +8,8 @@
 namespace frontmost::bench {
 namespace {
 
-// Snapping moves a vertex by up to half of 1/256 pixel each way, and so an edge by up to 0.71 of it; the rays' own
-// arithmetic, in floats about the eye, moves it by as much again.
+// Snapping moves a vertex by up to half of 1/256 pixel each way, and so an edge by up to 0.71 of 1/256 pixel. The rays'
+// own arithmetic, in floats about the eye, moves the edge by as much again.
 constexpr double kNearEdge = kSubPixels / 128.0;
 constexpr double kSameDistance = 1e-5;
 
@@ -20,8 +20,8 @@ double distance_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::
   return glm::length(p - (a + t * along));
 }
 
-/// How near an edge of the triangle comes to a point, in 1/256 pixel from the centre of the picture; negative where
-/// the triangle is clipped.
+/// Distance from a point to the nearest edge of the triangle, in 1/256 pixel; `point` is relative to the centre of the
+/// picture. Negative if the triangle is clipped.
 double distance_to_edge(const ScreenTransform& t, const Mesh& mesh, PrimitiveId id, const glm::dvec2& point) {
   glm::dvec2 corners[3];
   for (int k = 0; k < 3; ++k) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray casting beside Embree, in this process and in turn: the index, one view, and single rays in all directions.
+// Ray casting beside Embree, in this process and in turn: building the index, one view, and single rays in all
+// directions.
 #include <cmath>
 
 #include "harness/random.h"
@@ -12,7 +13,7 @@ namespace {
 
 constexpr std::size_t kRays = 100'000;
 
-/// From anywhere in the scene's box to anywhere in it.
+/// Segments between random points of the scene's box.
 std::vector<Segment> make_segments(const Box& box) {
   Random random{1};
   const auto point = [&] {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Accounts of a view's objects, and reports of many views of a few objects, as data sets are made of: ids, depths,
-// boxes and shares of every view.
+// Accounts of a view's objects, and reports of many views of a few objects, as for data sets: ids, depths, boxes and
+// shares of every view.
 #include <cmath>
 #include <numbers>
 
@@ -14,7 +14,7 @@ constexpr std::string_view kScenes[] = {"teapot", "bunny", "sphere100k"};
 constexpr std::string_view kAccounts[] = {"city-fly", "teapot", "bunny"};
 constexpr int kViews = 200, kObjects = 10;
 
-/// The first object of a scene many times, in rows of five that hide each other.
+/// Copies the first object of a scene `count` times, in rows of five that hide each other.
 Scene repeated(Scene scene, int count) {
   const Box bounds = Surfaces(scene).bounds();
   const double step = 0.6 * bounds.diagonal();
@@ -28,7 +28,7 @@ Scene repeated(Scene scene, int count) {
   return scene;
 }
 
-/// From around the scene, a third of them so near that objects are cut by the frame.
+/// Views from around the scene. A third of them is so near that the frame cuts objects.
 std::vector<View> views_around(const Surfaces& surfaces) {
   const glm::dvec3 middle(surfaces.bounds().centre());
   std::vector<View> views;
@@ -43,7 +43,7 @@ std::vector<View> views_around(const Surfaces& surfaces) {
   return views;
 }
 
-/// One row: a picture, and what each account adds to it.
+/// One row: the time of a picture, and the time that each account adds.
 void measure_accounts_of(std::string_view name, const Surfaces& surfaces, const View& view, const Sampling& sampling,
                          Table& table) {
   const Execution one{.threads = 1};
@@ -92,7 +92,7 @@ Table measure_reports(const Options& options) {
     const std::vector<View> views = views_around(surfaces);
     const Execution one{.threads = 1};
     ZBuffer buffer;
-    // Each begins with the picture, which is taken off again.
+    // Each contestant begins with the picture; the picture's time is subtracted afterwards.
     const auto for_views = [&](const auto& what) {
       return Contestant([&buffer, &surfaces, &views, one, what] {
         for (const View& view : views) what(buffer.draw(surfaces, view, one));

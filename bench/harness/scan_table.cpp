@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scans from inside a model: rays in packets, and the same rays one by one, in turn.
+// Scans from inside a model: rays in packets and the same rays one by one, in turn.
 #include <frontmost/files.h>
 #include <frontmost/raycast.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTurn = 6.28318530717958647692;
 
-/// Every triangle cut into steps * steps of its shape.
+/// Cuts every triangle into steps * steps similar ones.
 Scene finer(const Scene& scene, int steps) {
   Scene result;
   for (const Mesh& from : scene.meshes) {
@@ -45,7 +45,7 @@ std::vector<Ray> rays_of(const RayCamera& camera) {
   return rays;
 }
 
-/// Of one model, from the middle of its box.
+/// Measures scans of one model from the middle of its box.
 void measure(const char* name, const Scene& scene, const Options& options, Table& table) {
   const Surfaces surfaces(scene);
   const RayIndex index(surfaces);

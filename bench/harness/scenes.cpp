@@ -101,7 +101,7 @@ void add_box(Mesh& mesh, const glm::vec3& centre, const BoxAxes& axes) {
 
 enum class BoxOrder : std::uint8_t { inner_first, outer_first, shuffled };
 
-/// Boxes inside each other, each a little turned: every pixel of the picture is covered a thousand times.
+/// Boxes inside each other, each turned a little: every pixel is covered a thousand times.
 Mesh nested_boxes(std::size_t count, BoxOrder order) {
   std::vector<std::size_t> rank(count);
   std::iota(rank.begin(), rank.end(), std::size_t(0));
@@ -123,7 +123,7 @@ glm::vec3 random_point(Random& random, float scale) {
   return {x, y, z};
 }
 
-/// Triangles that share nothing, with edges of about `edge`, anywhere in the unit cube.
+/// Triangles that share no vertex, with edges of about `edge`, anywhere in the unit cube.
 Mesh soup(std::size_t triangles, float edge) {
   Mesh mesh;
   Random random{7};
@@ -142,7 +142,7 @@ Mesh city(std::size_t houses) {
   Random random{11};
   const auto side = std::size_t(std::ceil(std::sqrt(double(houses))));
   for (std::size_t i = 0; i < houses; ++i) {
-    // Drawn from the generator last axis first; the evaluation order is part of the scene.
+    // The generator draws the last axis first; the evaluation order is part of the scene.
     const float a = random.unit(), b = random.unit();
     const float half_height = 0.5f + 2.5f * a * b;
     const float half_depth = 0.2f + 0.2f * random.unit(), half_width = 0.2f + 0.2f * random.unit();
@@ -159,7 +159,7 @@ Mesh walled_city(bool wall) {
   return mesh;
 }
 
-/// A few triangles of which each covers most of the picture, one behind the other.
+/// A few triangles, each covering most of the picture, one behind the other.
 Mesh huge_triangles() {
   Mesh mesh;
   for (int k = 0; k < 200; ++k) {
@@ -187,10 +187,10 @@ Mesh make_mesh(std::string_view name) {
   if (name == "boxes-random") return nested_boxes(500, BoxOrder::shuffled);
   if (name == "huge") return huge_triangles();
   if (name == "outside") return terrain(1'000'000);
-  return sphere(69'451);  // in the bunny's place
+  return sphere(69'451);  // a stand-in for the bunny
 }
 
-/// What a camera looks at, before near and far are known.
+/// Position and direction of a camera, before near and far are known.
 View aim(Camera camera, const glm::dvec3& centre) {
   View view;
   const auto look = [&](const glm::dvec3& eye, const glm::dvec3& target) {

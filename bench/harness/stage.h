@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene made ready, and one frame of it.
+// A scene ready to draw, and frames of it.
 #pragma once
 
 #include "harness/scenes.h"
@@ -22,7 +22,7 @@ struct Stage {
 [[nodiscard]] inline Scene make_cover(const View& view) {
   const Projection& p = view.projection;
   const double z = -0.5 * (p.clip.near + p.clip.far);
-  // Twice the picture's height and width from its lower left corner, and a little more on each side.
+  // The triangle has twice the picture's height and width from the lower left corner, and a little more on each side.
   const double x0 = -z * (p.left - 0.1), y0 = -z * (p.bottom - 0.1);
   const double width = -z * (p.right - p.left + 0.3), height = -z * (p.top - p.bottom + 0.3);
   Scene scene;
@@ -34,14 +34,14 @@ struct Stage {
   return scene;
 }
 
-/// Draws one view again and again, in the same memory.
+/// Draws one view repeatedly, in the same memory.
 class Frames {
  public:
   explicit Frames(const Stage& stage) : Frames(stage.surfaces, stage.view) {}
   Frames(const Surfaces& surfaces, const View& view) : surfaces_(surfaces), view_(view) {}
 
   const Visible& draw(const Execution& execution) { return zbuffer_.draw(surfaces_, view_, execution); }
-  /// Another picture into the same planes: tiles that were left blank are so no more, and must be cleared again.
+  /// Draws another picture into the same planes, so that the next frame must clear all tiles, also those left blank.
   void draw_other(const Stage& other) { (void)zbuffer_.draw(other.surfaces, other.view, {.threads = 1}); }
 
  private:

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a frame's time goes. The stages of the z-buffer are interleaved tile by tile, so no clock can be put between
-// them; instead frames are drawn that stop early, and what each adds to the one before is the cost of its last stage:
+// Where a frame's time goes. The z-buffer interleaves its stages tile by tile, so no clock fits between them. Instead,
+// the table draws frames that stop early; the time that each adds to the one before is the cost of its last stage:
 //
-//   clear      no surfaces at all: both planes are written. Before each frame another covers them, so that no tile can
-//              be left as it is
-//   cull       the same surfaces, all nearer than the near plane: every cluster is looked at and left out
-//   transform  every triangle collapsed to its first corner: clusters are binned and transformed, and every triangle
-//              falls at the first test, as it covers no sample
-//   set-up     Culling::both: triangles are fetched and tested, and fall because of the way they face
+//   clear      no surfaces at all: both planes are written. Before each frame another picture covers the planes, so
+//              that no tile can be left as it is
+//   cull       the same surfaces, all nearer than the near plane: every cluster is tested and rejected
+//   transform  every triangle collapsed to its first vertex: clusters are binned and transformed, and every triangle
+//              fails the first test, as it covers no sample
+//   set-up     Culling::both: triangles are fetched and tested, and rejected for their facing
 //   raster     the frame itself: edges and depth planes, coverage, depth tests
 //
-// In the last only, near surfaces hide clusters before they are transformed. Where much is hidden the stages before it
-// look dearer than they are, and raster cheaper; it can even be negative.
+// Only in the last stage do near surfaces hide clusters before these are transformed. If much is hidden, the stages
+// before look dearer than they are and raster looks cheaper; its time can even be negative.
 #include "harness/stage.h"
 #include "harness/tables.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results: printed as they come, because a table may take an hour, and kept for a JSON file. All columns but the first
-// have one width.
+// Tables of results. Rows are printed as they come, because a table may take an hour, and kept for a JSON file. All
+// columns but the first have one width.
 #pragma once
 
 #include <string>
@@ -20,13 +20,13 @@ struct Cell {
   static Cell whole(unsigned long long number);
 };
 
-/// One table: columns of one width, rows printed at once, so that a long run shows what it has.
+/// One table, with columns of one width. Rows are printed at once, so that a long run shows its progress.
 class Table {
  public:
   Table(std::string name, std::vector<std::string> columns);
   void add(const std::vector<Cell>& cells);
   [[nodiscard]] std::string json() const;
-  /// A row breaks a promise that does not depend on how fast the machine is.
+  /// Reports that a row breaks a promise that does not depend on the machine's speed.
   void fail() { holds_ = false; }
   [[nodiscard]] bool holds() const { return holds_; }
 

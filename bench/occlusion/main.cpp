@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// occlusion_table [--rounds N] [MODEL...] : culling of ten thousand houses, and of models from a corner of each, beside
-// Masked Occlusion Culling; boxes against what is covered; one of ten thousand that moves; and a million houses. One
-// thread; the least of all rounds counts, in which all take turns.
+// occlusion_table [--rounds N] [MODEL...] : culling of ten thousand houses, and of models seen from a corner of each,
+// beside Masked Occlusion Culling; boxes against the covered cells; one moving house of ten thousand; and a million
+// houses. All run on one thread and take turns; the least time of all rounds counts.
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -17,7 +17,7 @@ namespace {
 
 int rounds = 200;
 
-/// Milliseconds, of contestants in turn.
+/// Least time of each contestant in milliseconds; the contestants take turns.
 std::vector<double> least_times(const std::vector<std::function<void()>>& contestants) {
   std::vector<double> least(contestants.size(), std::numeric_limits<double>::infinity());
   for (int round = 0; round < rounds; ++round)
@@ -37,7 +37,7 @@ struct Row {
   bool is_closed;
 };
 
-/// By object, whether sixteen samples a pixel show it.
+/// For each object, whether sixteen samples a pixel show it.
 std::vector<std::uint8_t> found_by_samples(const Row& row) {
   View view = row.view;
   view.samples = 16;
@@ -84,7 +84,7 @@ void measure(const Row& row, Table& table) {
              {peer ? double(peer_wrong) : none, 0}});
 }
 
-/// Boxes against what is covered in the last view.
+/// Tests boxes against the cells that the last view covered.
 void measure_boxes(const Row& row) {
   Occlusion occlusion(row.surfaces);
   static_cast<void>(occlusion.cull(row.view, {.cell = 1}));
@@ -95,7 +95,7 @@ void measure_boxes(const Row& row) {
   std::printf("%s: %.1f million boxes a second\n", row.name.c_str(), double(boxes.size()) / ms / 1000);
 }
 
-/// One of many objects moves; all that is kept is ready again.
+/// Moves one of many objects, and updates all kept structures.
 void measure_move(Scene scene, const View& view) {
   Surfaces surfaces(scene);
   RayIndex index(surfaces);
@@ -120,7 +120,7 @@ void measure_move(Scene scene, const View& view) {
               times[1]);
 }
 
-/// Houses as in the city, which are all instances of one.
+/// A city of separate instances of one house.
 Scene placed_city(const Mesh& house, int side) {
   Scene city;
   city.meshes.push_back(house);
@@ -139,7 +139,7 @@ Scene placed_city(const Mesh& house, int side) {
   return city;
 }
 
-/// \returns whether nothing that a sample finds is hidden.
+/// \returns whether no object that a sample finds is hidden.
 bool measure_many(const Mesh& house, int side) {
   const Scene city = placed_city(house, side);
   const Surfaces surfaces(city);

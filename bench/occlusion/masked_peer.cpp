@@ -12,7 +12,7 @@ namespace frontmost::bench {
 #ifdef FRONTMOST_BENCH_MASKED
 namespace {
 
-/// Where an object is on the screen, in clip space divided by w.
+/// Place of an object on the screen, in clip space divided by w.
 struct Placed {
   std::uint32_t instance;
   float x0, y0, x1, y1;
@@ -25,7 +25,7 @@ class Masked : public MaskedPeer {
   Masked(const Surfaces& surfaces, const View& view, bool leaves_out_backs)
       : scene_(surfaces.scene()), seen_(scene_.instances.size()), leaves_out_backs_(leaves_out_backs) {
     culling_ = MaskedOcclusionCulling::Create();
-    // Whole tiles alone.
+    // The library works on whole tiles only.
     culling_->SetResolution(unsigned(view.width + 7) / 8 * 8, unsigned(view.height + 7) / 8 * 8);
     culling_->SetNearClipPlane(float(view.projection.clip.near));
     const glm::dmat4 clip_from_world = clip_from_eye(view.projection) * glm::inverse(view.world_from_eye);
@@ -84,7 +84,7 @@ class Masked : public MaskedPeer {
 
   const Scene& scene_;
   MaskedOcclusionCulling* culling_;
-  std::vector<Placed> placed_;  ///< what is within the viewing volume, the nearest first
+  std::vector<Placed> placed_;  ///< objects within the view volume, the nearest first
   std::vector<std::uint8_t> seen_;
   bool leaves_out_backs_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Before each file of Masked Occlusion Culling: it has functions of its own by names that newer compilers' headers
-// have.
+// Included before each file of Masked Occlusion Culling, whose own functions have names that newer compilers' headers
+// define too.
 #pragma once
 
 #include <cpuid.h>

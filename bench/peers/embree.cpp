@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Casts one ray through every pixel centre with Embree: coherent packets of 4 x 4, the way its documentation
+// Casts one ray through every pixel centre with Embree, in coherent packets of 4 x 4, as Embree's documentation
 // recommends for primary rays.
 #include <embree3/rtcore.h>
 #include <pmmintrin.h>
@@ -62,7 +62,7 @@ class Embree : public RayPeer {
     const int tiles_x = (view_.width + kTile - 1) / kTile, tiles_y = (view_.height + kTile - 1) / kTile;
     arena_.execute([&] {
       tbb::parallel_for(0, tiles_x * tiles_y, [&](int tile) {
-        // As Embree's documentation asks.
+        // Embree's documentation asks for both modes.
         _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
         _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
         cast_tile(tile % tiles_x * kTile, tile / tiles_x * kTile);
@@ -99,7 +99,7 @@ class Embree : public RayPeer {
     for (const Segment& segment : segments) {
       RTCRay query = single(segment.from, segment.to - segment.from, 1);
       rtcOccluded1(scene_, &context, &query);
-      count += query.tfar < 0;  // its way of saying yes
+      count += query.tfar < 0;  // Embree sets tfar to minus infinity if a ray is blocked
     }
     return count;
   }
@@ -110,7 +110,7 @@ class Embree : public RayPeer {
   }
 
   void build() {
-    // Embree reads 16 bytes at the last vertex.
+    // Embree reads 16 bytes at the last vertex, so the array is padded.
     positions_ = mesh_.positions;
     positions_.emplace_back();
     scene_ = rtcNewScene(device_);

@@ -13,7 +13,7 @@ void fail_gl(const std::string& what) { throw Error(ErrorCode::unsupported, "llv
 void ensure_gl_context(int threads) {
   static bool done = false;
   if (done) return;
-  // 0 draws on the calling thread.
+  // With 0, llvmpipe draws on the calling thread.
   setenv("LP_NUM_THREADS", std::to_string(threads == 1 ? 0 : threads).c_str(), 1);
   setenv("GALLIUM_DRIVER", "llvmpipe", 1);
   setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What both llvmpipe peers need of OpenGL.
+// OpenGL code that both llvmpipe peers share.
 #pragma once
 
 #define GL_GLEXT_PROTOTYPES
@@ -13,8 +13,8 @@ namespace frontmost::bench {
 
 [[noreturn]] void fail_gl(const std::string& what);
 
-/// One context for the whole process, without a display: Mesa reads its settings once, so the number of threads of the
-/// first call holds for all. \throws Error unsupported.
+/// Makes one context for the whole process, without a display. Mesa reads its settings once, so the number of threads
+/// of the first call holds for all. \throws Error unsupported.
 void ensure_gl_context(int threads);
 
 [[nodiscard]] GLuint compile_shader(GLenum kind, const char* source);
@@ -25,10 +25,10 @@ struct GlFormat {
   GLint internal;
   GLenum channels, type;
 };
-/// As large as the picture, unfiltered.
+/// A texture of the picture's size, unfiltered.
 [[nodiscard]] GLuint make_gl_texture(const GlFormat& format, const View& view);
 
-/// The mesh as bound vertex array with attribute 0.
+/// The mesh as a bound vertex array with positions in attribute 0.
 struct GlMesh {
   explicit GlMesh(const Mesh& mesh);
   ~GlMesh();
@@ -39,8 +39,8 @@ struct GlMesh {
   GLuint vertex_array = 0, vertices = 0, corners = 0;
 };
 
-/// Upside down, which OpenGL does not mind: llvmpipe's first row is then our first row, and its fill rule, which is
-/// top-left in its own rows, is top-left in ours.
+/// A clip matrix that turns the picture upside down, which OpenGL does not mind. llvmpipe's first row is then our first
+/// row, and its fill rule, top-left in its own rows, is top-left in ours.
 [[nodiscard]] glm::mat4 upside_down_clip_from_world(const View& view);
 
 }  // namespace frontmost::bench

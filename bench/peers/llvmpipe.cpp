@@ -17,7 +17,7 @@ constexpr const char* kIdShader =
     "out uint id;\n"
     "void main() { id = uint(gl_PrimitiveID); }\n";
 
-/// `captures`: records gl_Position instead of drawing.
+/// `captures`: the program records gl_Position instead of drawing.
 GLuint link(bool captures) {
   const GLuint program = glCreateProgram();
   glAttachShader(program, compile_shader(GL_VERTEX_SHADER, kVertexShader));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth peeling with Mesa's software OpenGL. A layer needs its nearest fragments alone, so each is resolved by depth
-// into a picture of its own and then blended under the sum.
+// Depth peeling with Mesa's software OpenGL. A layer needs its nearest fragments only, so each layer is resolved by
+// depth into a picture of its own and then blended under the sum.
 #include <array>
 #include <glm/gtc/type_ptr.hpp>
 
@@ -49,7 +49,7 @@ GLuint make_target(GLuint color, GLuint depth) {
   return target;
 }
 
-/// Nothing is deleted: the process ends with the peer.
+/// Nothing is deleted, as the process ends with the peer.
 class Peeling : public PeelingPeer {
  public:
   explicit Peeling(const PeerInput& input);

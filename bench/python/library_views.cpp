@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library's own time for what bench/python/module.py does: library_views MODEL VIEWS prints milliseconds of the
-// processor a view of drawing, and of drawing and planar depths, at 640x480 on one thread.
+// The library's own time for the work of bench/python/module.py. `library_views MODEL VIEWS` prints processor
+// milliseconds per view, for drawing and for drawing with planar depths, at 640x480 on one thread.
 #include <frontmost/frontmost.h>
 
 #include <cstdio>

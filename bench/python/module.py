@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the Python module costs beside the library: ./dev bench python.
+"""Measures what the Python module costs beside the library: ./dev bench python.
 
     PYTHONPATH=BUILD/python module.py BUILD/bench/library_views
 
-Times are those of the processor, so that other work on the machine counts little.
+Times are processor times, so that other work on the machine counts little.
 """
 import pathlib
 import resource
@@ -40,7 +40,7 @@ def milliseconds(work, times):
 
 
 def against_the_library(program, folder):
-    """Depth and ids of 20 thousand triangles; rounds take turns."""
+    """Measures depths and ids of 20 thousand triangles; the rounds take turns."""
     scene = fm.Scene.from_arrays(*globe(100, 100))
     path = pathlib.Path(folder) / "globe.ply"
     scene.save(path)
@@ -79,7 +79,7 @@ def arrays():
     for of_vertices in (numpy.float32, numpy.float64):
         for of_faces in (numpy.uint32, numpy.int64):
             v, f = vertices.astype(of_vertices), faces.astype(of_faces)
-            milliseconds(lambda: fm.Scene.from_arrays(v, f), 20)  # memory that the process has got is quicker
+            milliseconds(lambda: fm.Scene.from_arrays(v, f), 20)  # memory that the process already has is quicker
             best = statistics.median(milliseconds(lambda: fm.Scene.from_arrays(v, f), 3) for _ in range(ROUNDS))
             print(f"from_arrays, 1,000,000 triangles   {v.dtype}, {f.dtype}: {best:.1f} ms")
 

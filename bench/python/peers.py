@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Depths and triangle ids as NumPy's arrays, beside what people use for that in Python today: ./dev bench python.
+"""Depths and triangle ids as NumPy arrays, beside what people use for them in Python today: ./dev bench python.
 
     PYTHONPATH=BUILD/python peers.py
 
-Each draws the same triangles from the same cameras at 640x480 pixels on one thread, and gives two arrays; times are those of the
-processor. A peer that is not installed, or does not work here, is named. VTK needs a display; xvfb-run gives it one. trimesh,
-which has no package in Debian 12, is left out.
+Each peer draws the same triangles from the same cameras at 640x480 pixels on one thread, and gives two arrays; times
+are processor times. A peer that is not installed, or does not work here, is named. VTK needs a display, which xvfb-run
+provides. trimesh, which has no package in Debian 12, is left out.
 """
 import os
 import statistics
@@ -23,7 +23,7 @@ WIDTH, HEIGHT, VIEWS, ROUNDS = 640, 480, 8, 5
 
 
 class Absent(Exception):
-    """Why a peer is not there."""
+    """The reason why a peer is missing."""
 
 
 class ZBuffer:
@@ -61,7 +61,7 @@ class Vtk:
         if "DISPLAY" not in os.environ:
             raise Absent("needs a display: xvfb-run")
         self.to_numpy = numpy_support.vtk_to_numpy
-        # Triangles are told by flat colours, as there is no faster way to have their numbers.
+        # Flat colours tell triangles apart, as no faster way gives their numbers.
         number = numpy.arange(1, len(faces) + 1, dtype=numpy.uint32)
         color = numpy.stack([number & 255, number >> 8 & 255, number >> 16], -1).astype(numpy.uint8)
         cells = vtk.vtkCellArray()
@@ -107,7 +107,7 @@ class Vtk:
 
 
 def rays_of(view):
-    """(h * w, 3) directions that are 1 deep, so that distances along them are depths."""
+    """(h * w, 3) directions of depth 1, so that distances along them are depths."""
     x, y = numpy.meshgrid(numpy.arange(WIDTH), numpy.arange(HEIGHT))
     rays = numpy.stack([x, y, numpy.ones_like(x)], -1).reshape(-1, 3) @ numpy.linalg.inv(view.K).T
     return (rays @ view.pose("opencv_camera_to_world")[:3, :3].T).astype(numpy.float32)
@@ -140,7 +140,7 @@ class Open3d:
 
 def compare(rows, columns):
     vertices, faces = globe(rows, columns)
-    vertices *= 1 + 0.2 * numpy.sin(9 * vertices).prod(1, keepdims=True)  # hills, so that something hides something
+    vertices *= 1 + 0.2 * numpy.sin(9 * vertices).prod(1, keepdims=True)  # hills, so that some parts hide others
     turns = 2 * numpy.pi * numpy.arange(VIEWS) / VIEWS
     views = [fm.View.look_at((3 * numpy.cos(t), 1, 3 * numpy.sin(t)), (0, 0, 0), near=1, far=6, fov=40) for t in turns]
     print(f"{len(faces):,} triangles, {WIDTH}x{HEIGHT}")

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// shade_table [--size W,H] [--frames N] [--samples N] [--picture FILE.png] MODEL... : pictures of models one after
-// another while the camera turns about them, on one thread, beside llvmpipe with base colours alone, in turns of one
-// frame each. builtin:NAME is a scene of the library, scene:NAME one of harness/scenes.h; through those with a camera
-// inside it flies.
+// shade_table [--size W,H] [--frames N] [--samples N] [--picture FILE.png] MODEL... : draws models one after another on
+// one thread while the camera turns about them, beside llvmpipe with base colours alone, alternating frame by frame.
+// builtin:NAME is a scene of the library, scene:NAME one of harness/scenes.h. The camera flies through scenes that have
+// a camera inside.
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
@@ -18,7 +18,7 @@ namespace {
 
 struct Request {
   int width = 640, height = 480, frames = 15, samples = 1;
-  std::string picture;  ///< of the peer's last frame
+  std::string picture;  ///< file for the peer's last frame
   std::vector<std::string> models;
 };
 
@@ -34,7 +34,7 @@ double milliseconds(const std::function<void()>& work) {
   return now() - start;
 }
 
-/// Times of the first frame and of those after it.
+/// Times of the first frame and of later ones.
 struct Times {
   std::vector<double> all;
 
@@ -46,7 +46,7 @@ struct Times {
   }
 };
 
-/// Our frames: what is visible, then colours.
+/// Draws our frames: visibility, then colours.
 class Pictures {
  public:
   Pictures(const Surfaces& surfaces, Shadows shadows, ShadingRate rate = ShadingRate::each_pixel)
@@ -68,7 +68,7 @@ class Pictures {
   ShadeOptions options_;
 };
 
-/// What is drawn, and how the camera moves.
+/// The scene to draw, and how the camera moves.
 struct Subject {
   std::string name;
   Scene scene;
@@ -91,7 +91,7 @@ View first_view(const Subject& subject, const Surfaces& surfaces, const Request&
   return frame(surfaces, request.width, request.height);
 }
 
-/// A step about the middle, or ahead.
+/// Moves the camera one step, about the middle or ahead.
 View next_view(const View& view, const Subject& subject, const Box& bounds) {
   const glm::dvec3 middle = bounds.centre(), up = direction(subject.scene.up);
   if (subject.camera == Camera::fit) {

@@ -35,7 +35,7 @@ struct Vertex {
   glm::vec2 texcoord;
 };
 
-/// Triangles of one material of a mesh.
+/// The triangles of a mesh that have one material.
 struct Part {
   std::uint32_t material = no_index;
   GLuint corners = 0;
@@ -48,7 +48,7 @@ struct MeshBuffers {
   std::vector<Part> parts;
 };
 
-/// One vertex for each position where all attributes go by positions, else one for each corner.
+/// Makes one vertex for each position if all attributes are by position, else one for each corner.
 MeshBuffers buffers_of(const Mesh& mesh) {
   const bool is_shared = mesh.normals.triangles.empty() && mesh.texcoords.triangles.empty();
   std::vector<Vertex> vertices;

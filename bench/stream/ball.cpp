@@ -14,7 +14,7 @@ struct Vertex {
   float x, y, z;
 };
 
-/// Rings of twice as many vertices as there are rings between the poles.
+/// A ball of rings between the poles; each ring has twice as many vertices as there are rings.
 class Ball {
  public:
   explicit Ball(std::uint64_t about) : rings_(std::uint32_t(std::max(2.0, std::round(std::sqrt(double(about) / 4))))) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rough ball of any number of triangles, written as it is made.
+// A rough ball of any number of triangles, written while it is made.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +7,11 @@
 
 namespace frontmost::bench {
 
-/// What a file of about so many triangles holds exactly.
+/// Exact number of triangles in a ball of `about` triangles.
 [[nodiscard]] std::uint64_t ball_triangle_count(std::uint64_t about);
 
-/// Writes a binary STL or, with `ply`, PLY to `path`, "-" for standard output. Memory: two rings of vertices.
-/// \returns false where something reads no further.
+/// Writes a binary STL or, with `ply`, PLY to `path`, where "-" is standard output. Memory: two rings of vertices.
+/// \returns false if the reader of the output stops reading.
 bool write_ball(std::uint64_t about, bool ply, const std::string& path);
 
 }  // namespace frontmost::bench

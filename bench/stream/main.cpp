@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models drawn with --stream and without: time and greatest memory of whole processes, as the length of the file grows.
+// Models drawn with --stream and without: time and peak memory of whole processes, as the length of the file grows.
 //
 //     stream_table [--millions N]... [--rounds N] [--folder DIR]
 //     stream_table --write MILLIONS PATH     a ball as .stl or .ply; "-" is binary STL on standard output
@@ -37,7 +37,7 @@ std::vector<std::string> words_of(const std::string& line) {
 
 double seconds_of(const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); }
 
-/// Becomes the program with these words, `input` as its standard input.
+/// Replaces this process by the program with these words; `input` becomes its standard input.
 [[noreturn]] void become(std::vector<std::string> words, int input) {
   if (input >= 0) dup2(input, STDIN_FILENO);
   dup2(open("/dev/null", O_WRONLY | O_CLOEXEC), STDERR_FILENO);
@@ -48,7 +48,7 @@ double seconds_of(const timeval& time) { return double(time.tv_sec) + 1e-6 * dou
   _exit(127);
 }
 
-/// One process from start to end. What it leaves behind is overwritten by the next.
+/// Measures one process from start to end. The next process overwrites its output files.
 Run measured(const std::vector<std::string>& words, int input) {
   const auto start = std::chrono::steady_clock::now();
   const pid_t process = fork();
@@ -65,7 +65,7 @@ Run measured(const std::vector<std::string>& words, int input) {
   return {time.count(), seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime), double(usage.ru_maxrss) / 1024};
 }
 
-/// The end of a pipe into which another process writes a ball.
+/// Reading end of a pipe into which another process writes a ball.
 int open_ball(double millions) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) std::exit(1);
@@ -83,12 +83,12 @@ struct Settings {
   std::string folder = std::filesystem::temp_directory_path();
 };
 
-/// A row of the table: what is drawn of which source.
+/// A row of the table: a source and the options to draw it.
 struct Case {
   const char* what;
   const char* source;  ///< "stl", "ply", "pipe"
   const char* options;
-  double most_millions;  ///< larger ones are left out
+  double most_millions;  ///< larger models are left out
 };
 
 constexpr const char* placed = " --camera-position 3,2,4 --camera-focal-point 0,0,0 --near 1 --far 10";
@@ -111,17 +111,17 @@ std::string line_of(const Case& one, const std::string& model, const Settings& s
   return words.find("stream") != std::string::npos ? line + " --stream" : line;
 }
 
-/// The median round by time.
+/// The run with the median time.
 Run median_of(const Case& one, double millions, const Settings& settings, const std::string& model) {
   std::vector<Run> runs;
   for (int i = 0; i < settings.rounds; ++i)
     runs.push_back(measured(words_of(line_of(one, model, settings)), model == "-" ? open_ball(millions) : -1));
-  while (wait(nullptr) > 0) continue;  // who wrote into the pipes
+  while (wait(nullptr) > 0) continue;  // waits for the processes that wrote into pipes
   std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.seconds < b.seconds; });
   return runs[runs.size() / 2];
 }
 
-/// Written when first needed.
+/// Path of the model, which is written when first needed.
 std::string model_of(const Case& one, double millions, const Settings& settings) {
   if (one.source == std::string("pipe")) return "-";
   std::ostringstream path;

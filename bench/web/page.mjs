@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// page.mjs PAGE: the page as people meet it, in Chromium: how soon there is a first picture over a line of 10 Mbit/s, with
-// files compressed as hosts do it; and how many pictures a second it shows while it is turned at 1280x720.
+// page.mjs PAGE: measures the page in Chromium: the time to the first picture over a line of 10 Mbit/s, with files
+// compressed as hosts compress them; and the pictures a second while the view turns at 1280x720.
 import { createServer } from "node:http";
 import { brotliCompressSync } from "node:zlib";
 import { openBrowser, openPage } from "../../tests/web/browser.mjs";
@@ -9,7 +9,7 @@ const [folder] = process.argv.slice(2);
 const megabits = 10, delay = 20, seconds = 4;
 const { browser, address, close } = await openBrowser(folder);
 
-/** The same files over a slow line, which all connections share. */
+/** Serves the files over a slow line that all connections share. */
 async function slowLine() {
   const kept = new Map(), chunk = 4096, pause = (chunk * 8) / (megabits * 1e6) * 1000;
   let free = 0, sent = 0;
@@ -54,7 +54,7 @@ async function open(at, scene) {
 
 const line = await slowLine();
 for (const scene of ["teapot", "gallery"]) {
-  // The first time files are compressed, which no host does for every visitor.
+  // In the first round files are compressed, which no host does for every visitor.
   for (let round = 0; round < 4; ++round) {
     line.forget();
     const { page, context } = await open(line.at, scene);

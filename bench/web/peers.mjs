@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// peers.mjs PAGE: the module beside WebGL on SwiftShader and beside three.js's SVGRenderer, in one run of one Chromium, at
-// 1280x720: ids of triangles, the least of 30 frames each; shaded polygons as SVG, the least of 10, and the pixels that are
-// wrong in 12 views all around.
+// peers.mjs PAGE: the module beside WebGL on SwiftShader and beside three.js's SVGRenderer, in one run of one Chromium,
+// at 1280x720. Measures triangle ids, the least time of 30 frames each; and shaded polygons as SVG, the least time of
+// 10, with the number of wrong pixels in 12 views all around.
 import { readFileSync } from "node:fs";
 import { openBrowser, openPage } from "../../tests/web/browser.mjs";
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What bench/web/peers.mjs runs in the browser: the module, WebGL and three.js on the same triangles and cameras.
+// The browser's side of bench/web/peers.mjs: the module, WebGL and three.js draw the same triangles from the same
+// cameras.
 import * as three from "three";
 import { SVGRenderer } from "three/addons/renderers/SVGRenderer.js";
 
@@ -17,21 +18,21 @@ function ask(question) {
 }
 const plane = (place) => m.HEAPU8.slice(place.at, place.at + place.bytes);
 
-/** A camera that shows all of a scene, and looks at the model that is open; with its near and far planes. */
+/** Returns a camera that shows the whole open model, with its near and far planes. */
 function look(name, forward) {
   const camera = ask({ ask: "lesson.frame", scene: name, ...size, forward });
   const { near, far } = ask({ ask: "draw", camera, show: "primitives" });
   return { ...camera, near, far };
 }
 
-/** A built-in scene, its corners in the world, and a camera. */
+/** Opens a built-in scene; returns its vertices in world space and a camera. */
 function open(name) {
   ask({ ask: "builtin", name });
   const camera = look(name, [-0.6, -0.45, -0.8]);
   return { positions: new Float32Array(plane(ask({ ask: "triangles" }).corners).buffer), camera };
 }
 
-/** Which triangle each pixel shows, by the module: an NPY of uint32, of which a file's header is left out. */
+/** Triangle id of each pixel, by the module: an NPY of uint32 without its header. */
 function seenIds() {
   const file = plane(ask({ ask: "write", what: "primitives", format: "npy" }).file);
   return new Uint32Array(file.slice(file.length - 4 * pixels).buffer);
@@ -88,7 +89,7 @@ function glDrawing(positions, camera) {
   } };
 }
 
-/** The least times of both, in turn, and at how many pixels they show another triangle. */
+/** The least times of both, in turn, and the number of pixels where they show different triangles. */
 export function compareIds(name, frames) {
   const { positions, camera } = open(name), gl = glDrawing(positions, camera);
   let module = Infinity, webgl = Infinity;
@@ -100,7 +101,7 @@ export function compareIds(name, frames) {
   }
   const ids = seenIds();
   let differing = 0;
-  // Rows of WebGL begin below, and nothing is 0 there.
+  // WebGL's first row is the lowest, and its 0 means no triangle.
   for (let y = 0; y < size.height; ++y)
     for (let x = 0; x < size.width; ++x) differing += ids[y * size.width + x] !== (gl.ids[(size.height - 1 - y) * size.width + x] - 1) >>> 0;
   return { triangles: positions.length / 9, module, webgl, differing, renderer: gl.renderer };
@@ -128,16 +129,16 @@ function svgDrawing(positions, colors, camera, side) {
 
 const moduleSvg = () => new TextDecoder().decode(plane(ask({ ask: "write", what: "figure", format: "svg" }).file));
 
-/** A colour of its own for every triangle, as three bytes; 0 is nothing. */
+/** A unique colour for every triangle, as three bytes; 0 means no triangle. */
 const colorOf = (id) => Math.imul(id + 1, 0x287f8d) & 0xffffff;
-/** As linear numbers, of every corner. */
+/** The triangles' colours as linear numbers, three for every vertex. */
 function idColors(count) {
   const linear = (byte) => (byte <= 10 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4), colors = new Float32Array(9 * count);
   for (let i = 0; i < 3 * count; ++i) [16, 8, 0].forEach((shift, k) => (colors[3 * i + k] = linear((colorOf(Math.floor(i / 3)) >> shift) & 255)));
   return colors;
 }
 
-/** The same triangles as a file of glTF, unlit in these colours. */
+/** Opens the triangles as a glTF file, unlit, in these colours. */
 function openColored(positions, colors) {
   const view = (byteOffset, { byteLength }) => ({ buffer: 0, byteOffset, byteLength }), vec3 = (bufferView, more) => ({ bufferView, componentType: 5126, count: positions.length / 3, type: "VEC3", ...more });
   const ends = [Math.min, Math.max].map((least) => [0, 1, 2].map((axis) => positions.reduce((found, n, i) => (i % 3 === axis ? least(found, n) : found), positions[axis])));
@@ -157,7 +158,8 @@ function openColored(positions, colors) {
   ask({ ask: "open", name: "ids.glb" });
 }
 
-/** A file of SVG as the browser shows it, a colour a pixel; read often, it is drawn without a GPU, whose edges are smooth. */
+/** Draws an SVG as the browser shows it, one colour a pixel. The canvas is marked as read often, so the browser draws
+ * without a GPU, whose edges are smooth. */
 async function rastered(svg) {
   const image = new Image();
   image.src = URL.createObjectURL(new Blob([svg.replace("<svg ", '<svg shape-rendering="crispEdges" ')], { type: "image/svg+xml" }));
@@ -167,7 +169,7 @@ async function rastered(svg) {
   return new Uint32Array(pen.getImageData(0, 0, size.width, size.height).data.buffer);
 }
 
-/** Pixels that show what is seen neither there nor at one of the eight beside it. */
+/** Counts pixels whose triangle is seen neither there nor at one of the eight neighbours. */
 async function countWrong(svg, ids) {
   const shown = await rastered(svg), { width, height } = size;
   const truth = Uint32Array.from(ids, (id) => (id === 0xffffffff ? 0 : colorOf(id)));
@@ -180,8 +182,8 @@ async function countWrong(svg, ids) {
   return wrong;
 }
 
-/** The least times to write a shaded file, in turn, their lengths, and the pixels that each gets wrong in colours of ids, of
- * so many views all around. */
+/** The least times to write a shaded file, in turn; the lengths of the files; and the number of wrong pixels of each,
+ * drawn in id colours from `views` directions all around. */
 export async function compareSvg(name, rounds, views) {
   const { positions, camera } = open(name), shade = svgDrawing(positions, undefined, camera, three.FrontSide);
   const times = { module: Infinity, three: Infinity }, lengths = {};
@@ -197,7 +199,7 @@ export async function compareSvg(name, rounds, views) {
   for (let i = 0; i < views; ++i) {
     const around = (2 * Math.PI * i) / views, seen = look(name, [Math.cos(around), -0.45, Math.sin(around)]), ids = seenIds();
     wrong.module.push(await countWrong(moduleSvg(), ids));
-    // With the sides of triangles that suit it better.
+    // three.js gets the triangle sides that suit it better.
     const both = [three.FrontSide, three.DoubleSide].map((side) => countWrong(svgDrawing(positions, colors, seen, side)(), ids));
     wrong.three.push(Math.min(...await Promise.all(both)));
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// speed.mjs MODULE PROGRAM [PAGE]: the z-buffer and shading, of a picture at rest and of one while the view turns, in Node,
-// and in Chromium where a page is given, on one thread and on all, beside the z-buffer of the program on one thread with
-// SSE4, on the same views: the least of 30 frames, in milliseconds, as machines are shared.
+// speed.mjs MODULE PROGRAM [PAGE]: times of the z-buffer and of shading, for a picture at rest and while the view
+// turns. Runs in Node, and in Chromium if a page is given, on one thread and on all, beside the program's z-buffer on
+// one thread with SSE4 on the same views. Each time is the least of 30 frames in milliseconds, as machines are shared.
 import { execFileSync } from "node:child_process";
 import { openBrowser, openPage } from "../../tests/web/browser.mjs";
 import { loadModule } from "../../tests/web/module.mjs";
@@ -10,7 +10,7 @@ const [path, program, folder] = process.argv.slice(2);
 const scenes = ["teapot", "gallery", "city"], frames = 30;
 const size = { width: 1280, height: 720 };
 
-/** In Node and in Chromium alike: of a function that asks. */
+/** Measures with `ask`, in Node and in Chromium alike. */
 function measure(ask, name, { width, height }, count) {
   ask({ ask: "builtin", name });
   const camera = ask({ ask: "frame", width, height, view: "three-quarter" });
@@ -30,7 +30,7 @@ function native(name) {
   return JSON.parse(told).timings_ms.visible.min;
 }
 
-/** In a worker, as the page has it: threads are waited for there alone. */
+/** Runs in a worker, as the page does: only a worker may wait for threads. */
 async function inChromium(module) {
   const { browser, address, close } = await openBrowser(folder);
   const { page } = await openPage(browser);
@@ -72,4 +72,4 @@ scenes.forEach((name, i) => {
   const cells = columns.map((column) => `${column[i].see.toFixed(1).padStart(7)} +${column[i].shade.toFixed(1).padStart(6)} (${column[i].quick.toFixed(1)})`);
   console.log(name.padEnd(30), native(name).toFixed(1).padStart(8), ...cells);
 });
-process.exit(0); // threads wait for more
+process.exit(0); // waiting threads would keep Node alive

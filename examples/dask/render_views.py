@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Depths of many views, by the workers of Dask: python3 render_views.py engine.glb 64 FOLDER [SCHEDULER]"""
+"""Depths of many views, drawn by Dask workers: python3 render_views.py engine.glb 64 FOLDER [SCHEDULER]"""
 import math
 import os
 import pathlib
@@ -12,10 +12,10 @@ import frontmost as fm
 
 def render(model, number, count, path):
     if path.exists():
-        return path  # by an earlier run: files appear only when they are whole
+        return path  # an earlier run made it: files appear only when they are whole
     worker = get_worker()
     if not hasattr(worker, "surfaces"):
-        worker.surfaces = fm.Surfaces(fm.load(model))  # once for all of its views
+        worker.surfaces = fm.Surfaces(fm.load(model))  # once for all views of this worker
     angle = math.tau * number / count
     view = fm.frame(worker.surfaces, 320, 240, forward=(math.sin(angle), -0.4, -math.cos(angle)))
     fm.save({"Z": worker.surfaces.zbuffer(view, threads=1).depth}, path)
@@ -28,7 +28,7 @@ def main(model, count, folder, scheduler=None):
     views = [client.submit(render, model, number, int(count), folder / f"{number}.exr", retries=3)
              for number in range(int(count))]
     progress(views)
-    print(f"{len(client.gather(views))} views")  # or the error of a view's last try
+    print(f"{len(client.gather(views))} views")  # raises the error of a view's last try
 
 
 if __name__ == "__main__":

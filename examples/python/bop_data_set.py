@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A data set as BOP has it, of 50 views: pictures, depths, masks, poses and shares. bop_data_set.py FOLDER"""
+"""A data set in BOP's format, of 50 views: pictures, depths, masks, poses and shares. bop_data_set.py FOLDER"""
 import json
 import pathlib
 import sys
@@ -11,7 +11,7 @@ import frontmost as fm
 folder = pathlib.Path(sys.argv[1])
 for name in ("rgb", "depth", "mask", "mask_visib"):
     (folder / name).mkdir(parents=True, exist_ok=True)
-scene = fm.load("builtin:gallery")  # a unit counts as a millimetre
+scene = fm.load("builtin:gallery")  # one unit counts as a millimetre
 surfaces = fm.Surfaces(scene)
 cameras, truths, infos, shown = {}, {}, {}, []
 for n in range(50):  # from above downwards, a golden angle apart
@@ -36,4 +36,4 @@ for n in range(50):  # from above downwards, a golden angle apart
     shown += [np.vstack([seen.shade(), seen.shade(shading="ids")])] if n % 30 == 5 else []
 for name, what in (("camera", cameras), ("gt", truths), ("gt_info", infos)):
     (folder / f"scene_{name}.json").write_text(json.dumps(what))
-fm.save(np.hstack(shown), folder / "bop_data_set.png")  # two of the pictures, and below them who is seen where
+fm.save(np.hstack(shown), folder / "bop_data_set.png")  # two of the pictures, and below each its object ids

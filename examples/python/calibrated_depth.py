@@ -25,6 +25,6 @@ print(f"{there.mean():.0%} of the photograph shows the model, {near:.2f} to {far
 share = np.where(there, (seen.depth - near) / (far - near), 0)[..., None]
 color = np.clip(np.concatenate([1.5 - 2.2 * share, 1.1 - abs(2 * share - 0.9), 2.2 * share - 0.6], -1), 0, 1)
 steps = (share * 16).astype(int)
-lines = (steps != np.roll(steps, 1, 0)) | (steps != np.roll(steps, 1, 1))  # of equal depth
+lines = (steps != np.roll(steps, 1, 0)) | (steps != np.roll(steps, 1, 1))  # contours of equal depth
 mixed = np.where(there[..., None], 0.45 * photo + 0.55 * color, photo)
 fm.save(np.where(lines, 1, mixed).astype(np.float32), "calibrated_depth.png")

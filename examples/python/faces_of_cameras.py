@@ -8,7 +8,7 @@ scene = fm.load("builtin:city")
 surfaces = fm.Surfaces(scene)
 random = np.random.default_rng(4)
 views = []
-for x, z in random.integers(-3, 4, (100, 2)) * 60 - 30:  # the middle of crossings
+for x, z in random.integers(-3, 4, (100, 2)) * 60 - 30:  # the middles of crossings
     ahead = random.normal(size=3) * [1, 0.1, 1]
     eye = np.array([x, 6, z])
     views.append(fm.View.look_at(eye, eye + ahead, width=320, height=240, fov=60, near=0.1, far=250))
@@ -17,7 +17,8 @@ print(f"{len(faces)} of {surfaces.triangle_count} faces are seen; {(faces['views
 
 color = np.full((surfaces.triangle_count, 3), 235, dtype=np.uint8)
 often = np.log(faces["views"]) / np.log(50)
-for channel, stops in enumerate([(255, 225, 50), (210, 80, 35), (70, 65, 105)]):  # amber: one; dark: fifty and more
+for channel, stops in enumerate([(255, 225, 50), (210, 80, 35), (70, 65, 105)]):  # amber: one camera; dark: fifty and
+                                                                                  # more
     color[faces["primitive"], channel] = np.interp(often, [0, 0.5, 1], stops)
 scene.save("seen.ply", of_triangles=dict(zip(("red", "green", "blue"), color.T)))
 seen = fm.load("seen.ply")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hidden lines as a figure of matplotlib, whose fonts and formats it shares. hidden_line_figure.py MODEL"""
+"""Hidden lines as a matplotlib figure, with its fonts and formats. hidden_line_figure.py MODEL"""
 import sys
 
 import matplotlib

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where a depth buffer of 16 bits shows the wrong surface, which objects fight, and what ends it. z_fighting.py"""
+"""Shows where a 16-bit depth buffer shows the wrong surface, which objects fight, and the remedy. z_fighting.py"""
 import numpy as np
 
 import frontmost as fm
@@ -7,7 +7,7 @@ import frontmost as fm
 scene = fm.load("builtin:gallery")
 surfaces = fm.Surfaces(scene)
 view = fm.frame(surfaces, 400, 300)
-view = view.between(0.02, view.far)  # far too near
+view = view.between(0.02, view.far)  # a near plane far too near
 buffer = fm.DepthBuffer(view.width, view.height, format="d16")
 buffer.draw(surfaces, view)
 exact = surfaces.find_exact_visible(view)
@@ -22,5 +22,5 @@ for pair in areas.objects[:5]:
               f"there the buffer tells {pair['gap']:.2g} apart")
 for setup, wrong in exact.try_remedies(areas.setup):
     print(f"with {setup} {wrong} pixels are wrong")
-shown = buffer.visible().shade(see_through="never")  # as it is drawn, glass and all
+shown = buffer.visible().shade(see_through="never")  # as drawn, glass included
 fm.save(np.hstack([shown, fights.image()]), "z_fighting.png")

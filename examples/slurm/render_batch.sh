@@ -4,7 +4,7 @@
 #
 #   sbatch --array=1-16 render_batch.sh engine.glb views.json --resolution 1920,1080
 #
-# A task that ended early goes on where it was when it is submitted again: SHARDS=16 sbatch --array=3 render_batch.sh ...
+# A task that ended early resumes when it is submitted again: SHARDS=16 sbatch --array=3 render_batch.sh ...
 #SBATCH --job-name=frontmost
 #SBATCH --cpus-per-task=4
 #SBATCH --requeue

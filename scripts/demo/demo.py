@@ -21,7 +21,7 @@ from shows import SECTIONS
 
 @dataclasses.dataclass
 class Result:
-    """What one command did."""
+    """The outcome of one command."""
 
     show: object
     files: list
@@ -40,12 +40,13 @@ def run_show(program, folder, show):
 
 
 def same_bytes(program):
-    """(how it ran, the hash of what is visible) for the instruction sets that this machine has, and odd threads."""
+    """Pairs (options of the run, hash of the visible surfaces) for this machine's instruction sets, and for odd
+    threads."""
     rows = []
     for how in ["--isa scalar --threads 1", "--isa sse4", "--isa avx2", "--isa avx512", "--threads 7"]:
         command = [program, "render", "builtin:city", "--resolution", "640,360", "--hash", *how.split()]
         done = subprocess.run(command, capture_output=True, text=True)
-        if done.returncode == 0:  # a set that the machine lacks is refused
+        if done.returncode == 0:  # the program refuses a set that the machine lacks
             rows.append((how, done.stdout.split()[1]))
     return rows
 

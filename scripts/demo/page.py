@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The demo's page: one HTML file that holds its pictures and needs nothing from anywhere."""
+"""The demo's page: one HTML file that holds its pictures and needs no other file."""
 import base64
 import html as html_escape
 import pathlib
@@ -12,7 +12,7 @@ def escaped(text):
 
 
 def picture(path, title):
-    """Drawings lie on white: they are black lines on nothing."""
+    """A drawing on a white background, as drawings are black lines on nothing."""
     data = base64.b64encode(path.read_bytes()).decode()
     kind, paper = ("svg+xml", ' class="paper"') if path.suffix == ".svg" else ("png", "")
     return f'<img{paper} src="data:image/{kind};base64,{data}" alt="{escaped(title)}" loading="lazy">'
@@ -39,7 +39,7 @@ def timings(result):
 
 
 def command(result):
-    """Lines end between words, and not at the hyphens of options."""
+    """The command, wrapped between words and not at the hyphens of options."""
     words = f"frontmost {result.show.command} {result.show.arguments}".split(" ")
     return f'<pre><code>{" ".join(f"""<span class="word">{escaped(word)}</span>""" for word in words)}</code></pre>'
 
@@ -82,7 +82,7 @@ set and number of threads on this machine. {verdict}</p><table>{lines}</table></
 
 
 def link_to(browser_page):
-    """The page that runs the library in a browser, where it has been built."""
+    """The page that runs the library in a browser, if it has been built."""
     if browser_page is None:
         return ""
     return f"""<p><a href="{escaped(browser_page)}">Turn your own model, and watch the methods at work, in this browser</a>; it is

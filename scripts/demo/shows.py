@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the demo shows: sections of pictures, each with the arguments of the command that makes it."""
+"""The demo's contents: sections of pictures, each with the arguments of the command that makes it."""
 import dataclasses
 import shlex
 

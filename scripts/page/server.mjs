@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// server.mjs [FOLDER [PORT]]: hands out the files of a folder on this machine alone. Pages are isolated from others, so
-// that they may have threads.
+// server.mjs [FOLDER [PORT]]: serves the files of a folder on this machine only. Pages are isolated from others, so
+// that they may use threads.
 import { createReadStream, existsSync, statSync } from "node:fs";
 import { createServer } from "node:http";
 import { extname, join, normalize, resolve } from "node:path";

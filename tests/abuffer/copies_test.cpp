@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same triangles again and again, more of them than there is time for.
+// Copies of the same triangles, too many to go through one by one.
 
 #include <gtest/gtest.h>
 
@@ -14,10 +14,10 @@
 namespace frontmost::test {
 namespace {
 
-// More than a tile has room for, also of the small squares.
+// More than fit into one tile's storage, also for the small squares.
 const int kCrowd = under_sanitizer ? 12'000 : 100'000;
 
-/// A square in two triangles, `count` times: as it is, and with its corners in other orders.
+/// A square of two triangles, `count` times: as it is, and with its vertices in other orders.
 Mesh squares(int count, float size) {
   Mesh mesh;
   mesh.positions = {{-size, -size, -0.2f}, {size, -size, 0.1f}, {size, size, -0.3f}, {-size, size, 0.2f}};
@@ -38,8 +38,8 @@ Scene glass_scene(Mesh mesh) {
   return scene;
 }
 
-// Small ones lie in a few tiles, where they are parts of clusters; large ones are drawn one by one. Of 100,000 the
-// fragments would be more than what is gone through: an hour, for what one triangle shows.
+// Small copies lie in a few tiles, as parts of clusters; large ones are drawn one by one. 100,000 copies have more
+// fragments than can be gone through: an hour of work to show one triangle.
 TEST(Copies, OfOpaqueTrianglesCostAndShowWhatOneDoes) {
   for (const float size : {0.08f, 1.5f})
     for (const int grid : {0, 4}) {
@@ -106,12 +106,12 @@ TEST(Copies, OfGlassAreRefusedBeforeTheyAreGathered) {
   EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { (void)abuffer(surfaces, view); }), wanted);
   EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { (void)flat_picture(surfaces, view); }), wanted);
   EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { (void)count_fragments(surfaces, view); }), wanted);
-  // Everything may be made of glass.
+  // All surfaces may be translucent.
   const Scene opaque = scene_of(squares(kCrowd, 1.5f));
   EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { (void)abuffer(Surfaces(opaque), view, {0, 0.5f}); }), wanted);
 }
 
-// What is large, but mostly outside of the picture, counts for what is within.
+// A large triangle that is mostly outside the picture counts only for its part inside.
 TEST(Limit, CountsWhatThePictureShows) {
   constexpr int count = 1000;
   Mesh mesh;
@@ -122,7 +122,7 @@ TEST(Limit, CountsWhatThePictureShows) {
   const Scene scene = scene_of(std::move(mesh));
   View view = front_view(1600, 900);
   view.projection = make_orthographic(-1, 1, -1, 1, {0.5, 6});
-  // The line x + y = 1.8 leaves a two hundredth of the picture, which itself would be too much.
+  // The line x + y = 1.8 leaves one two-hundredth of the picture; the whole picture would exceed the limit.
   const std::uint64_t picture = view.pixel_count(), fragments = count_fragments(Surfaces(scene), view).fragments;
   EXPECT_GT(picture * count, abuffer_detail::most_gathered_fragments(view, count));
   EXPECT_NEAR(double(fragments), double(picture * count) / 200, 0.01 * double(picture * count) / 200);

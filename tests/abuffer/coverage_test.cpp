@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Masks against exact areas, and what must add up.
+// Coverage masks against exact areas, and sums that must come out exactly.
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ View straight_view(int width, int height) {
 }
 
 TEST(Coverage, IsNearTheExactArea) {
-  // Of pixels cut by an edge. Measured: 0.068, 0.024, 0.0079 in the mean, and at most 0.43, 0.18, 0.073.
+  // Errors at pixels cut by an edge. Measured: 0.068, 0.024, 0.0079 in the mean, and at most 0.43, 0.18, 0.073.
   const struct {
     int grid;
     double mean, worst;
@@ -90,7 +90,7 @@ TEST(Coverage, IsNearTheExactArea) {
 }
 
 TEST(Coverage, OfASheetAddsUp) {
-  // A sheet seen straight on covers every sub-sample within once: no pixel twice, none missed.
+  // A sheet seen straight on covers every sub-sample inside exactly once.
   const Scene scene = scene_of(random_mesh(Kind::shared_grid, 400, 3));
   const Surfaces surfaces(scene);
   const View view = straight_view(97, 83);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long lists: the same triangles again and again, and sheets that cross.
+// Long lists: many copies of the same triangles, and sheets that cross.
 
 #include <gtest/gtest.h>
 
@@ -49,9 +49,9 @@ void expect_brute_force(const Scene& scene, const View& view, const AbufferOptio
         << std::string(name(isa));
 }
 
-// Lists of 100 are gone through sixteen pixels at a time, those of 400 pixel by pixel. Where the shared edge crosses a
-// pixel, copies of one side are held against those of the other in vain: of 400 these are more pairs than are looked
-// at.
+// Lists of 100 are processed sixteen pixels at a time, lists of 400 pixel by pixel. Where the shared edge crosses a
+// pixel, copies of one triangle are compared with copies of the other in vain. With 400 copies, these are more pairs
+// than are examined.
 TEST(LongLists, OfCopiesEqualBruteForce) {
   for (const int count : {100, 400})
     for (const int grid : {0, 4, 8}) {
@@ -70,7 +70,7 @@ TEST(LongLists, OfSheetsThatCrossEqualBruteForce) {
     }
 }
 
-// Every pair of copies in a pixel was looked at: 100,000 then take half an hour. Blue is what all of them have.
+// Comparing every pair of 100,000 copies in a pixel would take half an hour. All copies are blue.
 TEST(LongLists, OfAHundredThousandCopiesAreComposited) {
   const Scene scene = painted(copies_of_a_leaf(under_sanitizer ? 2'000 : 100'000), faint_colors(100));
   const glm::vec4 middle = pixel_of(flat_picture(Surfaces(scene), front_view(4, 4), {4}), 2, 2);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The A-buffer by brute force: every sub-sample of every pixel against every triangle; and a view that its tests share.
+// The A-buffer by brute force: every sub-sample of every pixel against every triangle. Also a view that its tests
+// share.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 namespace frontmost::test {
 
-/// Screen triangles, clipped, turned so that their area is positive, without those that are culled.
+/// Clipped triangles on the screen, turned to positive area, without culled ones.
 inline std::vector<OracleTriangle> screen_triangles(const Surfaces& surfaces, const View& view) {
   const ScreenTransform transform(view);
   std::vector<OracleTriangle> triangles;
@@ -36,11 +37,11 @@ inline std::vector<glm::ivec2> oracle_samples(const View& view, int grid) {
 struct OracleFragment {
   std::uint64_t mask;
   PrimitiveId id;
-  float key;  ///< at the centre
+  float key;  ///< at the pixel's centre
   const OracleTriangle* triangle;
 };
 
-/// The list of one pixel, in the order of keys at the centre, then ids, then masks.
+/// Fragments of one pixel, in the order of keys at the centre, then ids, then masks.
 inline std::vector<OracleFragment> oracle_fragments(const std::vector<OracleTriangle>& triangles,
                                                     const std::vector<glm::ivec2>& samples, int x, int y) {
   std::vector<OracleFragment> list;
@@ -56,7 +57,7 @@ inline std::vector<OracleFragment> oracle_fragments(const std::vector<OracleTria
   return list;
 }
 
-/// Premultiplied mean over the sub-samples of what is laid over each other, in double, in the order at each sub-sample.
+/// Premultiplied mean over the sub-samples of the composited fragments, in double, in the order at each sub-sample.
 inline glm::dvec4 oracle_pixel(const std::vector<OracleFragment>& list, const std::vector<glm::ivec2>& samples, int x,
                                int y, std::span<const glm::vec4> colors, double opacity) {
   glm::dvec4 sum(0);
@@ -78,7 +79,7 @@ inline glm::dvec4 oracle_pixel(const std::vector<OracleFragment>& list, const st
   return sum / double(samples.size());
 }
 
-/// From (0, 0, 1) to the origin.
+/// A view from (0, 0, 1) to the origin.
 inline View front_view(int width, int height) {
   return make_view(0.9, width, height).looking({0, 0, 1}, {0, 0, 0}, {0, 1, 0}).between(0.5, 6);
 }

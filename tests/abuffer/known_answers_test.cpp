@@ -11,7 +11,8 @@ namespace {
 
 using testing::ElementsAre;
 
-/// One unit is one pixel: world (x, -y) is x pixels from the left and y from the top. Keys are (5 + z) / 8.
+/// A view where one unit is one pixel: world (x, -y) is x pixels from the left and y from the top. Keys are (5 + z) /
+/// 8.
 View pixel_view(int width, int height) {
   View view;
   view.width = width;
@@ -27,12 +28,12 @@ void add_plane(Mesh& mesh, float middle, float slope) {
   add_triangle(mesh, corner(-16, -48), corner(48, -48), corner(-16, 48));
 }
 
-/// Everything left of x = `edge`, in pixels, at depth z.
+/// A surface at depth z that covers everything left of x = `edge`, in pixels.
 void add_left_of(Mesh& mesh, float edge, float z) {
   add_triangle(mesh, {edge, -64, z}, {edge, 64, z}, {edge - 96, 0, z});
 }
 
-/// Pixels of triangles in these colours: of the picture, and of the fragments laid over each other, which are the same.
+/// Pixels of triangles in these colours, from the picture and from the composited fragments, which must agree.
 class Answers {
  public:
   Answers(const Mesh& mesh, std::vector<glm::vec4> colors)
@@ -85,7 +86,7 @@ TEST(KnownAnswers, MasksOfAnUprightEdge) {
     EXPECT_EQ(mask(grid, 2), grid == 8 ? ~std::uint64_t(0) : (std::uint64_t(1) << (grid * grid)) - 1);
     EXPECT_EQ(mask(grid, 4), 0u);
   }
-  // The only sample of a pixel lies on the edge, which is a right one: not covered.
+  // The pixel's only sample lies on the edge, which is a right edge: not covered.
   EXPECT_EQ(mask(0, 3), 0u);
   EXPECT_EQ(mask(0, 2), 1u);
 }
@@ -105,7 +106,8 @@ TEST(KnownAnswers, ADiagonalLeavesNoSubSampleOutAndTakesNoneTwice) {
       EXPECT_EQ(list[0].mask & list[1].mask, 0u);
       const int samples = grid * grid, upper = __builtin_popcountll(list[list[0].primitive == 1 ? 0 : 1].mask);
       EXPECT_EQ(__builtin_popcountll(list[0].mask | list[1].mask), samples);
-      // The diagonal's own sub-samples, as many as a row has, go to the side whose left edge it is: the upper right.
+      // The diagonal's own sub-samples, as many as a row has, go to the upper right triangle, as it is a left edge
+      // there.
       EXPECT_EQ(upper, (samples + grid) / 2) << "grid " << grid;
     }
   }
@@ -119,7 +121,7 @@ TEST(KnownAnswers, GlassOverGlassOverNothing) {
   for (const int grid : {0, 2, 4, 8}) {
     SCOPED_TRACE(testing::Message() << "grid " << grid);
     glass.draw(pixel_view(5, 3), {grid});
-    // Half of red, and half of blue through the half that is left.
+    // Half red, and half of blue through the remaining half.
     EXPECT_EQ(glass.at(2, 1), glm::vec4(0.5f, 0, 0.25f, 0.75f));
     glass.draw(pixel_view(5, 3), {grid, 0.5f});
     EXPECT_EQ(glass.at(2, 1), glm::vec4(0.25f, 0, 0.1875f, 0.4375f));
@@ -140,7 +142,7 @@ TEST(KnownAnswers, CrossingPlanesShareThePixelInWhichTheyCross) {
     EXPECT_EQ(solid.at(0, 2), glm::vec4(0.5f, 0, 0.5f, 1));
     EXPECT_EQ(solid.at(1, 2), glm::vec4(1, 0, 0, 1)) << "red is nearer to the right";
     glass.draw(pixel_view(4, 4), {grid});
-    // In front 1/2, behind 1/4, each for half of the pixel.
+    // Half opacity in front leaves 1/4 behind, each for half of the pixel.
     EXPECT_EQ(glass.at(0, 2), glm::vec4(0.375f, 0, 0.375f, 0.75f));
     EXPECT_EQ(glass.at(3, 2), glm::vec4(0.5f, 0, 0.25f, 0.75f));
   }
@@ -212,13 +214,13 @@ TEST(KnownAnswers, OpacitiesComeFromMaterials) {
   std::vector<float> opacities;
   const FragmentLists lists = abuffer(Surfaces(scene), pixel_view(2, 2), {4, 0.5f});
   for (const Fragment& f : lists.at(1, 1)) opacities.push_back(f.opacity);
-  // Out of range is clamped, NaN is nothing, and what has no material is as the options say.
+  // Values out of range are clamped, NaN becomes 0, and triangles without a material take the opacity of the options.
   EXPECT_THAT(opacities, ElementsAre(0.125f, 0.0f, 0.0f, 0.0f, 0.5f, 0.5f));
 }
 
 TEST(KnownAnswers, OnlyWhatCoversTheWholePixelCutsOff) {
   Mesh mesh;
-  add_left_of(mesh, 3.5f, 1);  // opaque, before half of pixel 3
+  add_left_of(mesh, 3.5f, 1);  // opaque, in front of half of pixel 3
   add_plane(mesh, 0, 0);
   const Scene scene = scene_of(std::move(mesh));
   const FragmentLists lists = abuffer(Surfaces(scene), pixel_view(6, 6), {8});
@@ -232,7 +234,8 @@ TEST(KnownAnswers, OnlyWhatCoversTheWholePixelCutsOff) {
   EXPECT_THAT(ids(4), ElementsAre(1));
 }
 
-// What is not finite, has no area, or lies behind the eye has no fragments; its neighbours in the list are not shifted.
+// Triangles that are not finite, have no area, or lie behind the eye have no fragments; the ids of other triangles
+// stay.
 TEST(KnownAnswers, TrianglesThatAreNone) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
   Mesh mesh;

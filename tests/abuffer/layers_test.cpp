@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every layer against brute force, pictures of opaque things against the z-buffer, and how lists are run and ended.
+// Every layer against brute force, pictures of opaque surfaces against the z-buffer, and how lists are run and ended.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ RandomCase small_case(Kind kind, std::uint64_t seed) {
 class EveryKindOfLayer : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(ABuffer, EveryKindOfLayer, testing::ValuesIn(all_kinds));
 
-/// What a sample sees, nearest first, whatever the pixel's own order is.
+/// Surfaces seen at one sample, nearest first, whatever the order of the whole pixel.
 std::vector<std::pair<float, PrimitiveId>> seen_at(const std::vector<OracleFragment>& list, const glm::ivec2& place,
                                                    std::size_t sample) {
   std::vector<std::pair<float, PrimitiveId>> seen;
@@ -71,13 +71,13 @@ TEST_P(EveryKindOfLayer, EqualsBruteForceToTheBit) {
   }
   if (under_sanitizer) return;  // too few seeds to be sure that they see much
   EXPECT_GT(filled[0], 50u);
-  // Grids lie flat, and what is small or thin seldom lies before something else that is.
+  // Grids lie flat, and small or thin triangles seldom overlap each other.
   if (GetParam() != Kind::shared_grid && GetParam() != Kind::tiny && GetParam() != Kind::slivers) {
     EXPECT_GT(filled[1], 20u) << "the test has become shallow";
   }
 }
 
-// With everything opaque a picture is what the z-buffer sees, averaged over the samples: two methods, one answer.
+// With opaque surfaces, a picture is the z-buffer's answer averaged over the samples: two methods, one answer.
 TEST_P(EveryKindOfLayer, PicturesOfOpaqueThingsAreTheZBuffers) {
   for (std::uint64_t seed = 0; seed < seeds(8); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
@@ -145,7 +145,7 @@ TEST_P(EveryKindOfLayer, ListsLayersAndCountsAreTheSameForThreadsAndInstructionS
   }
 }
 
-// A triangle cut at a corner that lies on the grid of 1/256 pixel covers what it did before, each sub-sample once.
+// A triangle split at a point on the grid of 1/256 pixel covers the same sub-samples, each once.
 TEST(SplitTriangles, CoverWhatTheWholeOneDid) {
   View view;
   view.width = 40;
@@ -159,7 +159,7 @@ TEST(SplitTriangles, CoverWhatTheWholeOneDid) {
       return glm::vec3(float(x) / 64, -float(y) / 64, 0);
     };
     const glm::vec3 a = corner(), b = corner(), c = corner();
-    // On the grid, and within: a quarter of the way from a to the middle of b and c, in multiples of 1/256.
+    // An inner point on the grid: a quarter of the way from a to the middle of b and c, in multiples of 1/256.
     const glm::vec3 inner = glm::floor((2.0f * a + b + c) * 64.0f) / 256.0f;
     Mesh whole, parts;
     add_triangle(whole, a, b, c);
@@ -247,7 +247,7 @@ TEST(Errors, NameOptionAndValue) {
 using abuffer_detail::TilePart;
 using abuffer_detail::TileParts;
 
-/// A part whose pixel (x, y) of the picture has as many items as `length` says, named by pixel and number.
+/// A part of the picture; its pixel (x, y) has length(x, y) items, named by pixel and number.
 template <class Length>
 TilePart<int> part_of(const abuffer_detail::Rectangle& pixels, const Length& length) {
   TilePart<int> part{pixels, {0}, {}};
@@ -264,7 +264,7 @@ TEST(TileParts, ComeTogetherInTheOrderOfPixelsHoweverTheyArrive) {
   view.width = 7;
   view.height = 5;
   const auto length = [](int x, int y) { return (x * 3 + y * 5) % 4; };
-  // Pixels 5 and 6 of the third row are in no part: nothing was seen there.
+  // Pixels 5 and 6 of the third row are in no part, as nothing was seen there.
   std::vector<TilePart<int>> parts = {part_of({4, 0, 3, 2}, length), part_of({0, 0, 4, 5}, length),
                                       part_of({4, 3, 3, 2}, length), part_of({4, 2, 1, 1}, length)};
   std::vector<int> wanted;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many layers, opaque ones among them, and values that are refused.
+// Many layers, with opaque ones among them, and values that are refused.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace frontmost::test {
 namespace {
 
-/// Sheets one behind the other, the first the nearest, each of two triangles.
+/// Sheets one behind the other, nearest first, each of two triangles.
 Scene stack_of(int count) {
   Mesh mesh;
   for (int i = 0; i < count; ++i) {
@@ -26,7 +26,7 @@ Scene stack_of(int count) {
 }
 
 TEST(ManyLayers, TilesInPartsGiveWhatEverySheetAddsUpTo) {
-  constexpr int count = 700;  // 2.8 million fragments in a tile of 64 x 64, ten times what is kept at once
+  constexpr int count = 700;  // 2.8 million fragments in a tile of 64 x 64, ten times the number kept at once
   const View view = front_view(70, 66);
   Random random(1);
   std::vector<glm::vec4> colors;
@@ -53,12 +53,12 @@ TEST(ManyLayers, APixelOfThousandsIsSortedAlone) {
   const Scene scene = stack_of(count);
   const Surfaces surfaces(scene);
   const std::vector<Visible> layers = visible_layers(surfaces, front_view(5, 3), 1024, {0, 0.5f});
-  // Sheets a twenty thousandth apart have keys of their own, and each shows one of its two triangles.
+  // Sheets a twenty-thousandth apart have distinct keys, and each shows one of its two triangles.
   for (std::size_t k = 0; k < layers.size(); ++k)
     for (std::size_t i = 0; i < 15; ++i) ASSERT_EQ(layers[k].primitives[i] / 2, k) << "pixel " << i;
 }
 
-// One more than a rank of 20 bits can name is an error before anything is sorted.
+// One fragment more than a 20-bit rank can number is an error before anything is sorted.
 TEST(ManyLayers, APixelHasOnlySoManyFragments) {
   Scene scene = stack_of(1);
   Mesh& mesh = scene.meshes[0];
@@ -92,7 +92,7 @@ TEST(Counts, AreThoseOfTheListsOfTranslucentThings) {
       EXPECT_EQ(counts.longest, longest);
     }
   }
-  // In parts as well: 700 sheets are more than a tile holds at once.
+  // The result is the same in parts: 700 sheets are more than a tile holds at once.
   const Scene many = stack_of(700);
   const FragmentCounts counts = count_fragments(Surfaces(many), front_view(70, 66), {});
   EXPECT_EQ(counts.fragments, 700u * 70 * 66);
@@ -115,7 +115,7 @@ TEST(Opaque, SheetsCutOffWhatIsBehind) {
     EXPECT_EQ(list[0].opacity, 0.25f);
     EXPECT_EQ(list[3].opacity, 1.0f);
     EXPECT_EQ(list[3].primitive / 2, 3u);
-    // With everything see-through, nothing is cut off.
+    // With everything translucent, no layer is cut off.
     EXPECT_EQ(abuffer(surfaces, front_view(40, 30), {grid, 0.5f}).at(30, 10).size(), 10u);
   }
   const std::vector<Visible> layers = visible_layers(surfaces, front_view(40, 30), 6);
@@ -168,7 +168,8 @@ TEST(Values, OutOfRangeAreRefused) {
   EXPECT_EQ(code_of([&] { (void)visible_layers(surfaces, view, 1025); }), ErrorCode::bad_argument);
 }
 
-/// One unit of x and y is one pixel, and pixel (x, y) of the crop is pixel (left + x, top + y) of the whole.
+/// A view where one unit of x and y is one pixel, and pixel (x, y) of the crop is pixel (left + x, top + y) of the
+/// whole.
 View crop(int left, int top, int width, int height) {
   View view;
   view.width = width;
@@ -179,7 +180,7 @@ View crop(int left, int top, int width, int height) {
 }
 
 TEST(LargePictures, EqualTheirParts) {
-  // Corners are on multiples of 1/4 pixel, so both round them alike.
+  // Vertices are on multiples of 1/4 pixel, so that both views round them alike.
   Random random(7);
   Mesh mesh;
   for (int i = 0; i < 500; ++i) {
@@ -194,7 +195,7 @@ TEST(LargePictures, EqualTheirParts) {
   const std::vector<glm::vec4> blue = {{0.2f, 0.4f, 0.9f, 0.3f}};
   const Scene scene = painted(scene_of(std::move(mesh)), blue);
   const Surfaces surfaces(scene);
-  // The last tile of a row has 64 pixels, 44 or 41: whole groups of pixels, and one of which there is a column alone.
+  // The last tile of a row is 64, 44 or 41 pixels wide: whole groups of pixels, and a group with a single column.
   constexpr int height = 512, step = 128;
   for (const int width : {1024, 1004, 1001})
     for (const int grid : {0, 2}) {

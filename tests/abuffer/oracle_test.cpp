@@ -10,7 +10,7 @@
 namespace frontmost::test {
 namespace {
 
-/// A sampling: the view's samples and the grid.
+/// The view's samples and the grid of sub-samples.
 struct Sampling {
   int samples, grid;
 };
@@ -78,7 +78,7 @@ TEST_P(EveryKind, PicturesEqualBruteForce) {
     const std::vector<glm::vec4> colors = random_colors(c.scene.meshes[0].triangles.size(), seed);
     c.scene = painted(std::move(c.scene), colors);
     const Surfaces surfaces(c.scene);
-    // With the opacity 1 some are opaque, and hide the rest.
+    // At opacity 1, some triangles are opaque and hide the rest.
     const float opacity = seed % 3 ? 0.8f : 1.0f;
     const Image picture = flat_picture(surfaces, c.view, {sampling.grid, opacity});
     const auto triangles = screen_triangles(surfaces, c.view);

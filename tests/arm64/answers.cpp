@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints what each method answers for the built-in scenes from five sides, as hashes: lines that are the same on every
+// Prints the answers of each method for the built-in scenes from five sides, as hashes. The lines are the same on every
 // machine.
 #include <frontmost/frontmost.h>
 
@@ -23,7 +23,7 @@ constexpr std::array<Side, 5> sides{{{NamedView::three_quarter, "three-quarter",
                                      {NamedView::iso, "iso", 800, 450, true},
                                      {NamedView::left, "left", 97, 301}}};
 
-/// FNV-1a over numbers as they are in memory.
+/// FNV-1a over the bytes of numbers in memory.
 class Hash {
  public:
   template <class Number>
@@ -59,7 +59,7 @@ View view_of(const Surfaces& surfaces, const Side& side, int width, int height) 
   return frame(surfaces, width, height, {.direction = side.direction, .orthographic = side.orthographic});
 }
 
-/// What takes longer, in a small picture.
+/// Prints answers of the slower methods, in a small picture.
 void print_other_answers(const Surfaces& surfaces, const Side& side) {
   const View view = view_of(surfaces, side, 96, 72);
   const Visible visible = zbuffer(surfaces, view);

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# quick.sh ANSWERS : builds for arm64. What QEMU runs of it gives the answers that ANSWERS does, the same program of this
-# machine, and passes the tests of the rooms below. 77, which means skipped, where something for that is not there.
+# quick.sh ANSWERS : builds for arm64. Under QEMU the program must give the answers of ANSWERS, this machine's build of
+# it, and the tests of the rooms below must pass. The exit status is 77 (skipped) if a requirement is missing.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 skip() {
@@ -20,7 +20,8 @@ qemu-aarch64 build/arm64/tests/arm64/arm64_answers >build/arm64/told/arm64
 [ "$(wc -l <build/arm64/told/here)" -ge 30 ]
 echo "the answers, of this machine (<) and of arm64 (>)"
 diff build/arm64/told/here build/arm64/told/arm64
-# Without those of zbuffer that take a minute each, and the one that forks, which QEMU does not let a program with threads do.
+# Left out are the tests of zbuffer that take a minute each, and the one that forks: QEMU does not let a program with
+# threads fork.
 programs=(build/arm64/tests/{zbuffer/zbuffer,view/view,surfaces/surfaces,base/base}_test)
 printf '%s\n' "${programs[@]}" |
   xargs -P "$(nproc)" -I{} scripts/run_quietly.sh qemu-aarch64 {} --gtest_brief=1 --gtest_filter='-*AFlightAllocatesNothing*:*ReversedFloatIsTheDefault*:LargestImage.*:DepthBuffer/*:Repeats/*:ZBuffer/Cutouts*:Crew.AForked*'

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boxes, errors and buffers: what every room holds in its hands.
+// Boxes, errors and buffers: types that every room uses.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ TEST(Box, GrowsToHoldWhatIsIncluded) {
   EXPECT_EQ(box.high, glm::vec3(3, 4, 7));
 }
 
-// A box that is the wrong way round along one axis alone holds nothing; so does one of NaN.
+// A box that is reversed along one axis alone is empty; so is a box of NaN.
 TEST(Box, OneAxisIsEnoughToBeEmpty) {
   for (int axis = 0; axis < 3; ++axis) {
     Box box{glm::vec3(0), glm::vec3(1)};
@@ -58,7 +58,7 @@ TEST(Box, OneAxisIsEnoughToBeEmpty) {
   }
 }
 
-// The middle is taken from the difference, which does not overflow where the sum of the ends would.
+// The middle is computed from the difference, which does not overflow where the sum of the ends would.
 TEST(Box, TheCentreOfTheGreatestBoxes) {
   const float most = std::numeric_limits<float>::max();
   const Box far{glm::vec3(most / 2), glm::vec3(most)};
@@ -126,7 +126,7 @@ TEST(Buffer, NothingAndTooMuch) {
   EXPECT_EQ(none.end() - none.begin(), 0);
   const Buffer<double> copy = none;
   EXPECT_EQ(copy.size(), 0u);
-  // More than any address can name: refused, not wrapped around to something small.
+  // A request larger than the address space is refused, not wrapped around to a small size.
   EXPECT_THROW((void)detail::allocate(~std::size_t(0)), std::bad_alloc);
   EXPECT_THROW((void)detail::allocate(~std::size_t(0) - 64), std::bad_alloc);
 }

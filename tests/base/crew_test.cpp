@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads that stay: all work is done once, whoever does it, also where callers and loops share them.
+// Threads that persist: all work is done once, whoever does it, also if callers and loops share the threads.
 #include "base/crew.h"
 
 #include <gmock/gmock.h>
@@ -47,7 +47,7 @@ TEST(CrewThreads, HelpersComeAndAreTheSameNextTime) {
     std::mutex mutex;
     std::condition_variable met;
     int inside = 0;
-    // Nobody leaves before three have come: the caller and two others.
+    // No thread leaves before three have come: the caller and two others.
     crew().run(2, [&] {
       std::unique_lock lock(mutex);
       seen.insert(std::this_thread::get_id());
@@ -56,7 +56,7 @@ TEST(CrewThreads, HelpersComeAndAreTheSameNextTime) {
       met.wait(lock, [&] { return inside == 3; });
     });
   }
-  // Seven were made by the test before, at most.
+  // The test before made at most seven threads.
   EXPECT_GE(seen.size(), 3u);
   EXPECT_LE(seen.size(), 8u);
 }
@@ -90,7 +90,7 @@ TEST(CrewThreads, SeveralCallersShareThem) {
   EXPECT_EQ(done, 400);
 }
 
-// ThreadSanitizer does not let a process start threads that was forked from one with several.
+// ThreadSanitizer does not let a process start threads if it was forked from one with several threads.
 TEST(Crew, AForkedProcessHasOneOfItsOwn) {
   crew().run(3, [] {});
   const pid_t child = fork();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that are never rounded, and the signs that rest on them, against fractions.
+// Numbers that are never rounded, and signs computed with them, against fractions.
 #include "base/exact_vector.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 int sign_of(const Rational& r) { return r > 0 ? 1 : r < 0 ? -1 : 0; }
 
-/// A double of some size, often one of a few that cancel each other.
+/// A double of random size, often one of a few that cancel each other.
 double some_number(Random& random) {
   const int kind = random.below(4);
   const double unit = double(random.within(-1, 1));
@@ -35,7 +35,7 @@ TEST(Expansion, SumsAndProductsAreExact) {
       exact_sum += (i % 2 ? 1 : -1) * (exact_difference * Rational(a));
       ASSERT_EQ(sum.sign(), sign_of(exact_sum)) << seed << ", " << i;
     }
-    // Taken away again term by term: only an exact sum comes back to nothing.
+    // Terms are subtracted again one by one: only an exact sum returns to zero.
     EXPECT_EQ((sum - sum).sign(), 0);
     EXPECT_EQ((sum * sum - sum * sum).sign(), 0);
   }
@@ -53,10 +53,10 @@ TEST(Expansion, SeesWhatADoubleCannotHold) {
 }
 
 TEST(Expansion, ManyTermsGrowBeyondTheFirstFew) {
-  // 40 powers of two, 60 bits apart, can share no double; taken away from the other end they leave nothing.
+  // 40 powers of two, 60 bits apart, fit no double; subtracted from the other end, they leave zero.
   Expansion sum;
   for (int i = -20; i < 20; ++i) sum = sum + Expansion(std::ldexp(i % 2 ? 1.0 : -1.0, 25 * i));
-  EXPECT_EQ(sum.sign(), 1);  // that of 2^475
+  EXPECT_EQ(sum.sign(), 1);  // the sign of 2^475
   const Expansion copy = sum;
   for (int i = 19; i >= -20; --i) sum = sum - Expansion(std::ldexp(i % 2 ? 1.0 : -1.0, 25 * i));
   EXPECT_EQ(sum.sign(), 0);
@@ -79,7 +79,7 @@ TEST(SignOfDeterminant, EqualsFractionsHoweverFlatTheThreeAre) {
     Random random(seed);
     const glm::dvec3 o = some_point(random) * (seed % 5 == 0 ? 1e6 : 1.0);
     const glm::dvec3 a = some_point(random), b = some_point(random);
-    // In the plane of the others, but for as much as the rounding of doubles, or of twice that, or nothing.
+    // The point lies in the plane of the others, up to the rounding of doubles, or of twice that precision, or exactly.
     const double s = double(random.below(9) - 4) * 0.25, t = double(random.below(9) - 4) * 0.25;
     glm::dvec3 c = o + s * (a - o) + t * (b - o);
     if (seed % 3 == 1) c.z = std::nextafter(c.z, 2e6);
@@ -87,7 +87,7 @@ TEST(SignOfDeterminant, EqualsFractionsHoweverFlatTheThreeAre) {
     const Leg to_a{a, o}, to_b{b, o}, to_c{c, o};
     const int expected = exact_sign(to_a, to_b, to_c);
     ASSERT_EQ(sign_of_determinant(to_a, to_b, to_c), expected) << seed;
-    // Even permutations keep it, odd ones turn it over.
+    // Even permutations keep the sign, odd ones flip it.
     ASSERT_EQ(sign_of_determinant(to_b, to_c, to_a), expected) << seed;
     ASSERT_EQ(sign_of_determinant(to_b, to_a, to_c), -expected) << seed;
     const int quick = detail::sign_by_double_doubles(to_a, to_b, to_c);
@@ -98,7 +98,7 @@ TEST(SignOfDeterminant, EqualsFractionsHoweverFlatTheThreeAre) {
 }
 
 TEST(SignOfDeterminant, TwiceTheLengthSettlesWhatDoublesLeaveOpen) {
-  // 2^-51 out of the plane of the others: less than what the products of doubles may be wrong by.
+  // A point 2^-51 off the plane of the others: less than the rounding error of products in double.
   const glm::dvec3 x(1, 0, 1), y(0, 1, 1), above(1, 1, 2 + 0x1p-51), in_plane(1, 1, 2);
   EXPECT_EQ(sign_of_determinant({x}, {y}, {above}), 1);
   EXPECT_EQ(detail::sign_by_double_doubles({x}, {y}, {above}), 1);
@@ -112,7 +112,7 @@ TEST(SignOfDeterminant, TwoAlongOneLineAreFoundWithoutExpansions) {
   int found = 0;
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     Random random(seed);
-    // Corners as meshes have them, which are floats; `s` is one as well, so that the point is rounded, or not.
+    // Points are floats, as in meshes. `s` is one too, so the point may be rounded or exact.
     const glm::vec3 o(some_point(random)), way(some_point(random));
     const float s = seed % 2 ? float(random.within(-2, 2)) : 0.25f * float(random.below(16));
     const glm::vec3 a = o + way, b = o + s * way;
@@ -125,7 +125,7 @@ TEST(SignOfDeterminant, TwoAlongOneLineAreFoundWithoutExpansions) {
     found += is_parallel;
   }
   EXPECT_GT(found, 100);
-  // A difference that is no double: nothing is said, and the sign is right all the same.
+  // The difference does not fit a double: the quick test cannot tell, yet the sign is right.
   const glm::dvec3 far_away(1 + 0x1p-52, 1, 1), near(0x1p-60, 0, 0);
   EXPECT_FALSE(detail::are_parallel({far_away, near}, {far_away, near}));
   EXPECT_EQ(sign_of_determinant({far_away, near}, {far_away, near}, {glm::dvec3(0, 1, 0)}), 0);

@@ -14,7 +14,7 @@ TEST(Isa, ScalarIsAlwaysThereAndComesFirst) {
 }
 
 TEST(Isa, HighwayFindsTheSame) {
-  // Of those that this build has kernels for.
+  // Only targets that this build has kernels for count.
   const auto finds = [](std::int64_t target) { return (HWY_SUPPORTED_TARGETS & HWY_TARGETS & target) != 0; };
   const auto there = [](Isa isa) { return std::ranges::find(available_isas(), isa) != available_isas().end(); };
   EXPECT_EQ(there(Isa::sse4), finds(HWY_SSE4));
@@ -55,7 +55,7 @@ TEST(Isa, WhatIsNoIsaIsNamedInTheError) {
   }
 }
 
-// One bit each, so that a table of kernels has one entry for each; the fallback needs none.
+// Each target is one bit, so that a table of kernels has one entry for each; the fallback needs none.
 TEST(Isa, TargetsAreSingleBits) {
   std::int64_t all = 0;
   for (const Isa isa : available_isas()) {

@@ -5,7 +5,7 @@
 #define HWY_TARGET_INCLUDE "base/lanes_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After Highway: a block of its own.
+// This include comes after Highway, in a block of its own.
 #include "base/compactor-inl.h"
 #include "base/lane_types-inl.h"
 #include "base/lanes-inl.h"

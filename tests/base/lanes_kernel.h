@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What base's building blocks of kernels do, for every instruction set, in plain types.
+// Base's building blocks of kernels, callable with plain types for every instruction set.
 #pragma once
 
 #include <array>
@@ -21,10 +21,10 @@ struct PackedVector {
   std::vector<std::size_t> visited;
 };
 
-/// Packs the lanes of `set` (lane i in bit i) of `values` and of the numbers 100, 101, ... The rest keeps `rest`.
+/// Packs the lanes in `set` (lane i in bit i) of `values` and of the numbers 100, 101, ... Other entries keep `rest`.
 [[nodiscard]] PackedVector pack(std::uint32_t set, const std::array<float, most_lanes>& values, float rest, Isa isa);
 
-/// CountFrom(first), all lanes.
+/// All lanes of CountFrom(first).
 [[nodiscard]] std::vector<std::int32_t> count_from(std::int32_t first, Isa isa);
 
 }  // namespace frontmost::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packing, masks and counting of lanes: on every instruction set, every set of lanes there is.
+// Packing, masks and counting of lanes: every instruction set, and every set of lanes.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -13,14 +13,14 @@ namespace {
 std::array<float, most_lanes> odd_values() {
   std::array<float, most_lanes> values{};
   for (std::size_t i = 0; i < most_lanes; ++i) values[i] = 0.5f + float(i);
-  // Packing moves bits about and must not look at them.
+  // Packing moves bits and must not interpret them.
   values[1] = -0.0f;
   values[2] = std::numeric_limits<float>::infinity();
   values[3] = std::numeric_limits<float>::denorm_min();
   return values;
 }
 
-/// What packing means, lane by lane.
+/// Indices of the lanes in `set`: the definition of packing.
 std::vector<std::size_t> members(std::uint32_t set, std::size_t lanes) {
   std::vector<std::size_t> list;
   for (std::size_t lane = 0; lane < lanes; ++lane)
@@ -47,7 +47,7 @@ TEST(Compactor, EverySetOfLanesOnEveryInstructionSet) {
         ASSERT_EQ(0, std::memcmp(&packed.into[i], &values[expected[i]], sizeof(float))) << set << ", " << i;
         ASSERT_EQ(packed.numbers[i], 100 + expected[i]) << set << ": one selection serves vectors of other types";
       }
-      // A whole vector may be written, and not a lane more: lists are made with room for that.
+      // Packing may write one whole vector, and no lane more, as lists have room for that.
       for (std::size_t i = lanes; i < packed.floats.size(); ++i) {
         ASSERT_EQ(packed.floats[i], -7.0f) << set;
         ASSERT_EQ(packed.into[i], -7.0f) << set;
@@ -74,7 +74,7 @@ TEST(CountFrom, GoesUpByOneAndWrapsAround) {
     }
 }
 
-// Wider sets come later in the list, and none is wider than what arrays of a vector are made for.
+// Wider instruction sets come later in the list, and none exceeds the size of vector arrays.
 TEST(Lanes, GrowFromSetToSet) {
   std::size_t before = 0;
   for (const Isa isa : available_isas()) {

@@ -13,7 +13,8 @@ namespace frontmost {
 namespace {
 
 TEST(Orientation, IsExact) {
-  // Integers up to 2^24 are floats, and their orientation fits 128 bits; one point is put near the others' line.
+  // Integers up to 2^24 are exact floats, and their orientation fits 128 bits; one point lies near the line of the
+  // others.
   std::mt19937_64 random(test::noted_seed(3));
   const auto integer = [&](std::int64_t range) {
     return std::int64_t(random() % std::uint64_t(2 * range + 1)) - range;
@@ -26,7 +27,7 @@ TEST(Orientation, IsExact) {
     const __int128 exact = __int128(bx - ax) * (cy - ay) - __int128(by - ay) * (cx - ax);
     const int sign = exact > 0 ? 1 : (exact < 0 ? -1 : 0);
     zeros += sign == 0;
-    // A power of two changes nothing.
+    // Scaling by a power of two changes nothing.
     const float scale = std::ldexp(1.0f, int(random() % 80) - 40);
     ASSERT_EQ(orientation(glm::vec2(ax, ay) * scale, glm::vec2(bx, by) * scale, glm::vec2(cx, cy) * scale), sign);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops over chunks: every index once, the same chunks for all threads, errors, cancelling, the caller's rounding; and
-// threads that the system refuses, by a system that refuses them when it is told to.
+// Loops over chunks: every index once, the same chunks for all thread counts, errors, cancelling, and the caller's
+// rounding mode. Also a system that refuses threads, replaced by one that refuses on request.
 #include "base/parallel.h"
 
 #include <gtest/gtest.h>
@@ -107,8 +107,8 @@ TEST(ParallelFor, RunsInsideItselfOnAnyNumbersOfThreads) {
     }
 }
 
-// Else scratch memory of the outer chunk would be used by two at once, and chunks would lie in each other without end.
-// Who sleeps leaves the others to wait, who would then look for something to do.
+// A chunk of the outer loop must not start here: two chunks would use the same scratch memory, and chunks would nest
+// without end. A sleeping thread makes the others wait, and they would then look for work.
 TEST(ParallelFor, WhoWaitsForAnInnerLoopBeginsNoChunkOfTheOuterOne) {
   for (const int threads : {2, 5}) {
     std::atomic<int> nested{0}, calls{0};
@@ -181,7 +181,7 @@ TEST(ParallelFor, RunsOnNoMoreThreadsThanThereAreChunksOrWereAskedFor) {
 }
 
 TEST(ParallelFor, NoChunkIsBegunAfterAnError) {
-  // One thread takes chunks in order, so what was begun is known.
+  // One thread takes chunks in order, so it is known which ones have begun.
   std::size_t begun = 0;
   EXPECT_THROW(parallel_for({.threads = 1}, 100, 1,
                             [&](std::size_t, std::size_t) {
@@ -192,7 +192,7 @@ TEST(ParallelFor, NoChunkIsBegunAfterAnError) {
 }
 
 #if defined(__SSE2__)
-// A caller that plays sound or games has often told the processor to take tiny numbers for zero.
+// Callers that play sound or games often set the processor to flush tiny numbers to zero.
 TEST(ParallelFor, TinyNumbersAreNumbersWhateverTheCallerSet) {
   constexpr unsigned flush_to_zero = 0x8040;
   for (const int threads : {1, 2}) {
@@ -231,7 +231,7 @@ TEST(Watch, IsToldAndAskedOnlyIfItIsThere) {
   }
 }
 
-/// Gives `most` threads that live at once, and then `Refusal`.
+/// Allows `most` threads at once, then throws `Refusal`.
 template <class Refusal>
 int count_with(int wanted, int most, const Refusal& refusal) {
   std::atomic<int> begun{0};

@@ -79,7 +79,7 @@ TEST(Srgb, SixteenBitsEqualTheFormula) {
 int word_by_function(float linear) { return int(srgb_of_linear(double(linear)) * 65535 + 0.5); }
 
 TEST(Srgb, SixteenBitsAreTheRoundedFunctionAllOverTheRange) {
-  // Ends, middles and the doubtful neighbourhood of steps all come by: the stride is prime to the pieces' 65536 floats.
+  // The stride is prime to the pieces' 65536 floats, so ends, middles and the doubtful values next to steps all occur.
   for (std::uint32_t bits = 0x36000000u; bits <= 0x3F800000u; bits += 61) {
     float x;
     std::memcpy(&x, &bits, sizeof x);

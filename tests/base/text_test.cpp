@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names of any bytes become UTF-8, in a way that says what they were.
+// Names of any bytes become UTF-8 that shows the original bytes.
 #include <gtest/gtest.h>
 
 #include "frontmost/base.h"

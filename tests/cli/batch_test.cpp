@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batch files: what they say, and complaints that name the place.
+// Batch files: their meaning, and error messages that name the place.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost camera and info: what they print is JSON, agrees with itself, and can be fed back.
+// frontmost camera and info: the output is JSON, consistent, and accepted as input.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -204,7 +204,7 @@ TEST_F(Info, TheUnitIsTheFilesOrAGuess) {
 }
 
 TEST_F(Info, OddEdgesAreThoseOfNamedMeshes) {
-  // Three triangles at one edge in `fin`; `flap` has four edges of one triangle.
+  // In `fin`, three triangles share an edge; `flap` has four edges with one triangle.
   write("two.obj", flap_obj(10) + "o fin\nv 0 9 0\nv 0 9 5\nv 1 9 0\nv 2 8 0\nv 2 9 1\nf 5 6 7\nf 6 5 8\nf 5 6 9\n");
   const std::string text = succeed("info two.obj").out;
   EXPECT_THAT(text, HasSubstr("            10  boundary edges\n               6  in fin\n               4  in flap\n"));
@@ -237,7 +237,7 @@ TEST_F(Camera, UpIsWhereThePictureSaysUp) {
   EXPECT_LT(glm::length(glm::dvec3(axes("0,-3,0")[0]) - glm::dvec3(-1, 0, 0)), 1e-12);
   EXPECT_LT(difference(axes("x"), axes("1,0,0")), 1e-12);
   EXPECT_LT(difference(axes("-y"), axes("0,-3,0")), 1e-12);
-  // Leaning up only rolls: what of it points along the view is left out.
+  // The component of `up` along the view is dropped, so a leaning `up` only rolls the camera.
   EXPECT_LT(difference(axes("1,0,5"), axes("1,0,0")), 1e-12);
   expect_failure(looks + "--camera-view-up up", 2, "--camera-view-up: ");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost compare: what it reports, what it writes, what it refuses.
+// frontmost compare: its report, its files, its refusals.
 #include <gmock/gmock.h>
 
 #include "program.h"
@@ -41,14 +41,14 @@ TEST_F(Compare, ReportsEveryMethodAsJson) {
     EXPECT_EQ(method["samples"], 160 * 120);
     EXPECT_GT(method["covered_samples"], 1000);
     EXPECT_EQ(method["unexplained"], 0);
-    if (method["method"] == "painter-centroid") continue;  // wrong, as is known
+    if (method["method"] == "painter-centroid") continue;  // known to be wrong
     EXPECT_EQ(method["wrong_by_design"], 0);
     EXPECT_EQ(method["differing"], method["explained"]["edge"].get<int>() + method["explained"]["depth"].get<int>() +
                                        method["explained"]["translucent"].get<int>());
   }
   EXPECT_EQ(report["methods"][0]["differing"], 0);
   EXPECT_FALSE(report.contains("advice"));
-  // A pixel sees a side of the cube before another, twice where an edge passes.
+  // A pixel has the near side of the cube and the far side behind it, each twice where an edge passes.
   const json& lists = report["methods"][2];
   EXPECT_NEAR(lists["fragments"].get<double>(), 2.0 * lists["covered_samples"].get<double>(), 200);
   EXPECT_GE(lists["longest_list"], 2);

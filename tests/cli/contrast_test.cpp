@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture in whose frame nothing stands out from the background says so; others do not.
+// A picture where nothing stands out from the background gets a message; others do not.
 #include <gmock/gmock.h>
 
 #include "cli/render/blank.h"
@@ -14,7 +14,7 @@ using testing::Not;
 
 constexpr const char* says = "warning: nothing in the picture stands out from its background";
 
-/// A square before the camera in this emissive colour, unlit.
+/// A square before the camera, unlit, with this emissive colour.
 std::string square(const std::string& color) {
   return R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_materials_unlit"],
     "materials":[{"pbrMetallicRoughness":{"baseColorFactor":[)" +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models with spheres and patches: triangles as fine as is asked for, whatever meets them.
+// Models with spheres and patches: all methods see triangles as fine as requested.
 #include <frontmost/files.h>
 #include <gmock/gmock.h>
 
@@ -18,7 +18,7 @@ class Curved : public ProgramTest {
   [[nodiscard]] json report(const std::string& line) const { return succeed(line + " --json").json(); }
 };
 
-/// Of three channels.
+/// Mean difference over three channels.
 double mean_difference(const Image& a, const Image& b) {
   double sum = 0;
   for (std::size_t c = 0; c < 3; ++c)
@@ -38,7 +38,7 @@ TEST_F(Curved, TrianglesComeToTheSamePixelsAsTheyBecomeFiner) {
   EXPECT_GT(std::abs(cut("--tessellation-error 20") - fine), std::abs(cut("--tessellation-error 0.02") - fine));
 }
 
-// By rays the triangles are those of the z-buffer, and so is what is seen.
+// Rays meet the z-buffer's triangles, so both see the same.
 TEST_F(Curved, RaysMeetTheTrianglesThatAreAskedFor) {
   for (const std::string error : {"", "--tessellation-error 0.5 "}) {
     const json by_rays = report("render builtin:teapot --method raycast " + error + small)["seen"];
@@ -54,7 +54,7 @@ TEST_F(Curved, SightMeetsTriangles) {
       ::testing::ContainsRegex("blocked by object 0 \\(teapot\\), triangle [0-9]+, at 0,3.15,0, distance 5.85"));
 }
 
-// The camera goes by the model's own triangles, whichever are drawn.
+// The camera depends on the model's own triangles, whichever are drawn.
 TEST_F(Curved, TheCameraIsTheSameForBoth) {
   const json a = report("render builtin:spheres --method raycast" + small),
              b = report("render builtin:spheres --tessellation-error 1" + small),
@@ -75,7 +75,7 @@ TEST_F(Curved, CompareExplainsEveryPixelOnFineTriangles) {
   const json found = report("compare builtin:teapot --tessellation-error 0.5 --runs 1" + small);
   const json coarse = report("compare builtin:teapot --tessellation-error 5 --runs 1" + small);
   for (const json& method : found["methods"]) {
-    if (method["method"] == "painter-centroid") continue;  // wrong by its nature
+    if (method["method"] == "painter-centroid") continue;  // wrong by design
     EXPECT_EQ(method["unexplained"], 0) << method["method"];
   }
   EXPECT_GT(found["methods"][0]["primitives"], coarse["methods"][0]["primitives"]);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost report --views with --coco, --bop and --masks: all views in one set of files; objects that are left out.
+// frontmost report --views with --coco, --bop and --masks: all views in one set of files, and objects that are left
+// out.
 #include <frontmost/files.h>
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -14,17 +15,17 @@ using testing::HasSubstr;
 
 class Datasets : public ReportTest {
  protected:
-  /// The view of the squares, one from farther away, and one that sees only the near square.
+  /// Writes three views: the squares, a view from farther away, and one that sees only the near square.
   Datasets() {
     write("views.json", R"({"views": [{"name": "near"}, {"name": "far", "camera-position": [0, 0, 20]},
                                       {"camera-position": [0.5, 0.5, 3], "camera-focal-point": [0.5, 0.5, 0]}]})");
   }
 
-  /// The options of each view of the file alone, behind those of `view`.
+  /// Options of each view of the file, to follow those of `view`.
   static constexpr const char* each[] = {"", " --camera-position 0,0,20",
                                          " --camera-position 0.5,0.5,3 --camera-focal-point 0.5,0.5,0"};
 
-  /// `view` without the options that are said anew.
+  /// `view` without the options that are given again.
   static std::string view_of(std::size_t number) {
     std::string text = view;
     const auto drop = [&](const std::string& option) { text.replace(text.find(option), option.size(), ""); };
@@ -33,7 +34,7 @@ class Datasets : public ReportTest {
     return text + each[number] + " ";
   }
 
-  /// The bytes of a file that is there.
+  /// Bytes of a file, which must exist.
   std::string bytes(const std::string& name) const {
     EXPECT_TRUE(exists(name)) << name;
     return exists(name) ? read(name) : std::string();
@@ -61,7 +62,7 @@ TEST_F(Datasets, ASceneOfBopHasAnImageForEachView) {
             << i << k << folder;
   }
   EXPECT_EQ(told["files"].size(), 3 + files);
-  // A report of fewer views leaves nothing of these.
+  // A later report of fewer views leaves none of these files.
   succeed("report squares.obj --bop scene" + view_of(0));
   EXPECT_FALSE(exists("scene/depth/000001.png"));
   EXPECT_FALSE(exists("scene/mask/000001_000000.png"));
@@ -92,7 +93,7 @@ TEST_F(Datasets, AnnotationsOfCocoNameTheImageOfTheirView) {
   write("same.json", R"({"views": [{"view": "iso"}, {"view": "top"}, {"view": "iso"}]})");
   expect_failure("report squares.obj --views same.json --coco c.json", 2,
                  "same.json: views[2]: is called iso as views[0] is, and --coco needs a picture for each");
-  // On standard output there is nothing else.
+  // Standard output holds nothing else.
   EXPECT_EQ(succeed(std::string("report squares.obj --views views.json --coco -") + view).out, bytes("all.json"));
 }
 
@@ -144,7 +145,7 @@ TEST_F(Datasets, WhatIsLeftOutHidesOthersAllTheSame) {
   succeed(report);
   const json far = annotations()[0];
   ASSERT_EQ(far["visible_share"], 33 / 36.0);
-  // By the name of an object: what it hides stays hidden.
+  // An object can be left out by name; surfaces that it hides stay hidden.
   const json told = succeed(report + "--leave-out near").json();
   EXPECT_EQ(annotations(), json::array({far}));
   const json categories = json::parse(bytes("c.json"))["categories"];
@@ -154,13 +155,13 @@ TEST_F(Datasets, WhatIsLeftOutHidesOthersAllTheSame) {
   EXPECT_EQ(told["files"].size(), 1 + 6 + 2u);
   EXPECT_EQ(told["objects"].size(), 3u) << "the report has all";
   EXPECT_FALSE(exists("masks/000001_visible.png"));
-  // By a category, and several.
+  // Objects can be left out by a category, or by several.
   succeed(report + "--categories kinds.json --leave-out wall");
   EXPECT_EQ(annotations().size(), 1u);
   EXPECT_EQ(annotations()[0]["name"], "near");
   succeed(report + "--categories kinds.json --leave-out wall --leave-out near");
   EXPECT_EQ(annotations(), json::array());
-  // A stretched floor is no reason to refuse the rest.
+  // A stretched floor is no reason to refuse the other objects.
   write("stretched.json", R"({"objects": [{"model": "squares.obj", "name": "floor", "scale": [1, 2, 1]},
                                           {"model": "squares.obj", "name": "things"}]})");
   expect_failure(std::string("report stretched.json --bop scene") + view, 1, "object 0 (floor) is stretched");

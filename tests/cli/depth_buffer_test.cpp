@@ -19,7 +19,7 @@ class DepthBufferFlags : public ProgramTest {
   }
 };
 
-// The cube's near side is 10 from the eye; between planes at 5 and 20 that is (1/5 - 1/10) / (1/5 - 1/20) = 2/3.
+// The cube's near side is 10 from the eye. Between planes at 5 and 20, its depth is (1/5 - 1/10) / (1/5 - 1/20) = 2/3.
 const std::string render_between_planes = render_cube + "--near 5 --far 20 ";
 constexpr std::size_t middle_pixel = 32 * 64 + 32;
 
@@ -33,7 +33,7 @@ TEST_F(DepthBufferFlags, WindowDepthIsWhatIsStored) {
   EXPECT_FLOAT_EQ(window("w.exr")[middle_pixel], 1 / 3.0f);
   EXPECT_EQ(window("w.exr")[0], 0);
   succeed(render_between_planes + "--window-depth w.exr --depth-format F32 --depth-range 0.5,0.25 --depth-clear 0.75");
-  // Turned round, LESS sees the far side: 11 away, (1/5 - 1/11) / (1/5 - 1/20) = 8/11.
+  // With the winding reversed, LESS sees the far side: 11 away, (1/5 - 1/11) / (1/5 - 1/20) = 8/11.
   EXPECT_FLOAT_EQ(window("w.exr")[middle_pixel], 0.5f - 0.25f * 8 / 11);
   EXPECT_EQ(window("w.exr")[0], 0.75f);
   succeed(render_between_planes + "--window-depth w.exr --depth-mask off");
@@ -75,7 +75,7 @@ TEST_F(DepthBufferFlags, BatchFilesSayItToo) {
                       "outputs": {"window-depth": "{view}.exr"}})");
   succeed(render_between_planes + "--batch b.json");
   EXPECT_FLOAT_EQ(window("a.exr")[middle_pixel],
-                  213 / 255.0f);  // 0.5 + 0.5 * 2/3, 212.5 to the even neighbour or above
+                  213 / 255.0f);  // 0.5 + 0.5 * 2/3 is 212.5, which rounds to the even neighbour or up
   EXPECT_NEAR(window("b.exr")[middle_pixel], 2.0 / 3, 1e-6);
 }
 

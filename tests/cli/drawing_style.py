@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Drawings for people, measured in ink: rasterised by librsvg at 20 pixels to the millimetre.
+"""The style of drawings, measured as ink: rasterised by librsvg at 20 pixels per millimetre.
 
     drawing_style.py PROGRAM
 
-Outlines are heavier than creases by what the reference says; hatching is where the light is not, on what is seen alone;
-nothing is hatched or dotted that was not asked for.
+Outlines are heavier than creases by the ratio in the reference. Hatching is on visible surfaces away from the light.
+Nothing is hatched or dotted without being asked for.
 """
 import pathlib
 import shutil
@@ -17,7 +17,7 @@ sys.dont_write_bytecode = True
 from rasters import read_ids, read_picture  # noqa: E402
 
 WIDTH, HEIGHT = 60, 50  # millimetres
-FINE = 20  # pixels to the millimetre
+FINE = 20  # pixels per millimetre
 CUBE = """v 0 0 0
 v 1 0 0
 v 1 1 0
@@ -54,7 +54,7 @@ class Ink:
         self.rows = read_picture(picture)[:, :, 0]
 
     def runs(self, y):
-        """Widths of what is dark along a row, in millimetres, with where they are."""
+        """Widths of the dark runs along a row, in millimetres, with their places."""
         found, start = [], None
         for x, value in enumerate([*self.rows[int(y * FINE)], 255]):
             if value < 128 and start is None:
@@ -65,13 +65,13 @@ class Ink:
         return found
 
     def share(self, x, y, reach):
-        """How much of a square about a place is ink."""
+        """Share of ink in a square about a place."""
         (top, bottom), (left, right) = ([int((at - reach) * FINE), int((at + reach) * FINE)] for at in (y, x))
         return 1 - self.rows[top:bottom, left:right].mean() / 255
 
 
 def check_pens(program, folder, cube):
-    """From a corner the cube is a hexagon with upright sides; its middle edge runs down from the centre."""
+    """Seen from a corner, the cube is a hexagon with upright sides; its middle edge runs down from the centre."""
     figure = Ink(program, folder, *cube, "--style", "figure")
     technical = Ink(program, folder, *cube)
     below = HEIGHT / 2 + 6
@@ -92,7 +92,7 @@ def check_tones(program, folder, cube, plain):
         for side, light in (("left", "-1,0.2,0.3"), ("right", "1,0.2,0.3"), ("top", "0,1,0.1")):
             drawing = Ink(program, folder, *cube, "--style", "figure", *tone, "--light", light)
             shares[side] = [drawing.share(*place, 3) for place in (left, right, top)]
-            # The two sides where light does not come from, and nothing beside the cube.
+            # Ink is on the two sides away from the light, and none beside the cube.
             assert drawing.share(3, 3, 3) == 0 == drawing.share(WIDTH - 3, HEIGHT - 3, 3)
         assert shares["left"][0] + 0.05 < shares["left"][1], (tone, shares)
         assert shares["right"][1] + 0.05 < shares["right"][0], (tone, shares)
@@ -100,7 +100,7 @@ def check_tones(program, folder, cube, plain):
 
 
 def check_hatched_is_seen(program, folder):
-    """Where the z-buffer sees nothing there is no hatching; where it sees something dark there is."""
+    """Hatching is where the z-buffer sees something dark, and not where it sees nothing."""
     camera = ["builtin:gallery", "--tessellation-error", "1", "--resolution", f"{WIDTH * FINE},{HEIGHT * FINE}"]
     run(program, "render", *camera, "--ids", f"object={folder}/ids.npy")
     ids = read_ids(folder / "ids.npy")

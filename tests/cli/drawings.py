@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Drawings as other programs see them: parsed as XML, rasterised by librsvg and poppler, and held against the pictures
-of the z-buffer.
+"""Drawings as other programs see them: parsed as XML, rasterised by librsvg and poppler, and compared with the
+z-buffer's pictures.
 
     drawings.py PROGRAM
 
-With one and with three pixels to the millimetre, every border between two objects, or an object and nothing, in the id map must have ink
-beside it, and all ink must lie beside a border between two triangles. Where parts are narrower than pixels and lie
-between their samples, the triangles are those of an id map of four times the resolution. DXF is read by ezdxf, and must
-hold what the JSON holds. Views from all sides of one model are sheets' views, one by one. Programs that are not installed are skipped, and counted.
+Drawings have one or three pixels per millimetre. In the id map, every border between two objects, or between an object
+and nothing, must have ink beside it. All ink must lie beside a border between two triangles. Where parts are narrower
+than pixels and lie between their samples, the triangles are those of an id map of four times the resolution. ezdxf
+reads DXF, which must hold the content of the JSON. Views from all sides of one model are a sheet's views, one by one.
+Programs that are not installed are skipped, and counted.
 """
 import json
 import pathlib
@@ -32,7 +33,7 @@ FINE = 4
 NARROW = ["builtin:city"]  # parts that fall between samples: 15 pixels of ink without a border at plain resolution
 VIEWS = [["builtin:cubes"], ["builtin:cycle"], ["builtin:gallery", "--tessellation-error", "1"], ["builtin:teapot", "--tessellation-error", "1", "--crease-angle", "0"],
          *(["builtin:cubes", "--view", side, "--camera-orthographic"] for side in ("iso", "front", "left", "top", "bottom")), NARROW]
-SCALES = [1, 3]  # pixels to the millimetre
+SCALES = [1, 3]  # pixels per millimetre
 REACH = 2  # pixels: half a pixel of rounding, half of a line, and smoothing
 INK = 235
 SVG = "{http://www.w3.org/2000/svg}"
@@ -47,7 +48,8 @@ def run(*words):
 
 
 def borders(ids, fine=1):
-    """Pixels whose right or lower neighbour differs; of an id map that is `fine` times as fine those around them."""
+    """Pixels whose right or lower neighbour differs. For an id map `fine` times as fine, the pixels around such
+    borders."""
     beside, below = (numpy.concatenate((ids, ids.take([-1], axis)), axis) for axis in (1, 0))
     differs = (ids != beside[:, 1:]) | (ids != below[1:])
     return near(differs, fine, 0, fine).any((-2, -1))
@@ -72,7 +74,7 @@ def check_xml(path, names):
 
 
 def check_dxf(path, page):
-    """Returns whether there was something to read it with."""
+    """Returns whether a DXF reader is installed."""
     if ezdxf is None:
         return 0
     document = ezdxf.readfile(str(path))
@@ -84,7 +86,7 @@ def check_dxf(path, page):
     expected = {}
     for layer in page["layers"]:
         for group in layer["groups"]:
-            # As the page's reference has it: the class, and the object where it has a name.
+            # A DXF layer's name, as the page reference defines it: the class, and the object if it has a name.
             parts = [re.sub("[^A-Z0-9-]+", "_", name.upper()) for name in (layer["name"], group["name"]) if name]
             name = "-".join(parts)[:26]
             expected[name] = expected.get(name, 0) + len(group["paths"])
@@ -93,13 +95,13 @@ def check_dxf(path, page):
         found[re.sub("_[0-9]+$", "", entity.dxf.layer) if entity.dxf.layer not in found else entity.dxf.layer] += 1
         assert entity.dxf.layer in document.layers
         assert entity.dxf.color == ezdxf.const.BYLAYER and entity.dxf.linetype == "BYLAYER", entity
-    # A path of arcs alone is as many arcs.
+    # A path of several arcs becomes as many DXF arcs.
     assert all(found[name] >= expected[name] > 0 for name in expected), (found, expected)
     return 1
 
 
 def check_formats(program, drawing, folder):
-    """Returns whether there was something to read DXF with."""
+    """Returns whether a DXF reader is installed."""
     files = [folder / f"all.{suffix}" for suffix in ("svg", "dxf", "json")]
     outputs = [word for path in files for word in ("-o", path)]
     run(program, "lines", *drawing, "--hidden", "dashed", "--hatch", "6", *outputs)
@@ -111,7 +113,7 @@ def check_formats(program, drawing, folder):
 
 
 def check_view(program, view, folder):
-    """Returns how many programs were there to look at it."""
+    """Returns how many of the programs are installed."""
     size = ["--resolution", f"{WIDTH},{HEIGHT}"]
     page = ["--page", f"{WIDTH},{HEIGHT}", "--margin", "0"]
     readers = 0
@@ -130,7 +132,7 @@ def check_view(program, view, folder):
 
 
 def check_ink(program, drawing, folder, scale, outlines, edges):
-    """Returns how many programs were there to look at it."""
+    """Returns how many of the programs are installed."""
     page = ["--page", f"{WIDTH / scale},{HEIGHT / scale}", "--margin", "0", "--pen", str(0.5 / scale)]
     run(program, "lines", *drawing, *page, "-o", folder / "a.svg", "-o", folder / "a.pdf")
     inks = {}
@@ -153,7 +155,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for view in VIEWS:
             checked += check_view(program, view, pathlib.Path(folder))
-    # Each by two programs at each scale, and as DXF; what is narrow at one scale, and not as DXF.
+    # Every view is checked by two programs at each scale and as DXF; the narrow view at one scale only, and not as DXF.
     every = (2 * len(SCALES) + 1) * (len(VIEWS) - 1) + 2
     print(f"{len(VIEWS)} drawings, {checked} times read, {every - checked} skipped for want of a reader")
 

@@ -1,15 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Models that lie far from zero, held against the same models at home.
+"""Models that lie far from zero, compared with the same models at home.
 
     far_models.py PROGRAM          each format moved once
     far_models.py PROGRAM long     each format moved elsewhere
 
-Random models with coordinates that floats hold are written as text STL, OBJ, OFF, PLY (text, doubles of both byte
-orders) and glTF, at home and moved as surveys are, and looked at with cameras that are moved alike. Pictures, depths,
-ids, layers, polygons, lines, sight, scans and streams must be the same to the byte, and points in world coordinates
-those at home and the move. Binary STL, whose floats far away hold less, is held against a model at home that has only
-what they hold.
+Random models with coordinates that fit floats are written as text STL, OBJ, OFF, PLY (text, doubles of both byte
+orders) and glTF, at home and moved by survey-like distances. Cameras are moved alike. Pictures, depths, ids, layers,
+polygons, lines, sight, scans and streams must be the same to the byte. Points in world coordinates must differ by the
+move. Binary STL far away has coarser floats, so its model at home is rounded to what those floats hold.
 """
 import base64
 import json
@@ -22,7 +21,7 @@ import tempfile
 
 PROGRAM = sys.argv[1]
 MOVES = [(1e8, -1e8, 1e8), (500000, 5400000, 0), (0, 5.4e6, 0), (-2e9, 0, 3e5), (1e12, 1e6, -1e7)]
-GRID = 1 / 256  # of coordinates: the farthest doubles hold it too
+GRID = 1 / 256  # grid of coordinates: even the farthest doubles hold it
 SIZE = "96,72"
 
 
@@ -39,7 +38,7 @@ def check(what, home, away):
 
 
 class Model:
-    """Polygons of three to five corners, each flat, and all within 40 units of zero."""
+    """Flat polygons of three to five vertices, all within 40 units of zero."""
 
     def __init__(self, seed, grid=GRID):
         self.random = random.Random(seed)
@@ -69,7 +68,7 @@ def text(point):
 
 
 def triangles(model):
-    """As fans: the same at home and away, so that text STL is."""
+    """Triangulates by fans, alike at home and away, so that text STL is alike too."""
     return [(f[0], f[k], f[k + 1]) for f in model.faces for k in range(1, len(f) - 1)]
 
 
@@ -118,7 +117,7 @@ def write_big_ply(path, model, points):
 
 
 def write_gltf(path, model, points):
-    """The mesh as at home, below two nodes that move it; the file has doubles for these alone."""
+    """The mesh at home, below two nodes that move it; only these hold doubles."""
     move = [a - b for a, b in zip(points[0], model.points[0])]
     corners = [c for t in triangles(model) for i in t for c in model.points[i]]
     data = struct.pack(f"<{len(corners)}f", *corners)
@@ -146,7 +145,7 @@ def vector(point):
 
 
 def cameras(move):
-    """None, one that is placed, one that is placed by a pose, and one in the midst."""
+    """Cameras: the default, one placed by options, one placed by a pose, and one inside the model."""
     at = lambda *p: vector([c + m for c, m in zip(p, move)])  # noqa: E731
     pose = [1, 0, 0, 3 + move[0], 0, -1, 0, 2 + move[1], 0, 0, -1, 100.5 + move[2], 0, 0, 0, 1]
     return [[], ["--view", "iso", "--camera-orthographic"], ["--up", "+z", "--camera-zoom-factor", "8"],
@@ -156,7 +155,7 @@ def cameras(move):
 
 
 def outputs(folder, model, camera, name):
-    """What the picture programs make: bytes of files, by name."""
+    """Files of the picture commands: bytes by name."""
     made = {}
     files = {kind: folder / f"{name}.{kind}.npy" for kind in ("picture", "depth", "primitive", "object", "normals")}
     common = [model, "--resolution", SIZE, "--quiet", *camera]
@@ -188,7 +187,7 @@ def compare_pictures(folder, home, away, move):
 
 
 def compare_points(folder, home, away, move):
-    """Reports in world coordinates."""
+    """Reports in world coordinates, moved back home."""
     back = lambda p: [c - m for c, m in zip(p, move)]  # noqa: E731
     pairs = [[(-60.5, y, z), (60.25, y + 1, z - 2)] for y in range(-30, 31, 6) for z in range(-30, 31, 6)]
     answers = []
@@ -222,7 +221,7 @@ def compare_points(folder, home, away, move):
 
 
 def near(what, home, away, move, least=0):
-    """As doubles hold it where it is."""
+    """Checks coordinates up to the precision of doubles at their place."""
     for one, other, by in zip(home, away, move):
         if abs(one - other) > max(least, abs(by) * 2.0 ** -51, 1e-12):
             sys.exit(f"{what}: {away} is not {home}")
@@ -244,7 +243,7 @@ def compare_streams(folder, away):
 
 
 def check_wide(folder):
-    """One part at zero and one far away: no origin helps, and info says what is lost."""
+    """One part at zero and one far away: no origin helps, and info reports the loss."""
     wide = folder / "wide.obj"
     wide.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 100000000.5 0 0\nv 100000001 0 0\nv 1e8 1 0\nf 1 2 3\nf 4 5 6\n")
     report = json.loads(run("info", wide, "--json", "--quiet"))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost render -o FILE.svg and .pdf: polygons in the order of painting.
+// frontmost render -o FILE.svg and .pdf: polygons in painter's order.
 #include <gmock/gmock.h>
 
 #include "program.h"
@@ -25,7 +25,7 @@ class Figures : public ProgramTest {
 TEST_F(Figures, HoldVisiblePolygonsAlone) {
   EXPECT_THAT(succeed("render cube.stl -o cube.svg --resolution 320,240").err,
               HasSubstr("cube.svg: 6 shapes, about 0.0 MB"));
-  EXPECT_EQ(count("cube.svg", "<path"), 7u);  // and the background
+  EXPECT_EQ(count("cube.svg", "<path"), 7u);  // includes the background
   EXPECT_THAT(read("cube.svg"), HasSubstr("width=\"84.667mm\" height=\"63.5mm\""));
   succeed("render cube.stl -o all.svg --shading flat --visible-only no --background transparent --quiet");
   EXPECT_EQ(count("all.svg", "<path"), 12u);
@@ -39,8 +39,9 @@ TEST_F(Figures, HaveNoHash) {
 
 TEST_F(Figures, KeepWhatShowsThrough) {
   EXPECT_THAT(succeed("render cube.stl -o glass.svg --shading flat --opacity 0.5 --quiet").err, IsEmpty());
-  EXPECT_EQ(count("glass.svg", "<path"), 13u);                                            // and the background
-  EXPECT_EQ(count("glass.svg", "<g inkscape:label=\"surfaces\" opacity=\".502\">"), 2u);  // the far side and the near
+  EXPECT_EQ(count("glass.svg", "<path"), 13u);                                            // includes the background
+  EXPECT_EQ(count("glass.svg", "<g inkscape:label=\"surfaces\" opacity=\".502\">"), 2u);  // the far sides and the near
+                                                                                          // ones
   EXPECT_EQ(count("glass.svg", "fill-opacity"), 0u);
 }
 
@@ -49,7 +50,7 @@ TEST_F(Figures, StandBesidePixels) {
   EXPECT_THAT(files(), testing::ElementsAre("cube.pdf", "cube.png", "cube.stl", "cube.svg"));
   EXPECT_THAT(read("cube.pdf"), StartsWith("%PDF"));
   EXPECT_EQ(outcome.json()["files"].size(), 3u);
-  EXPECT_EQ(outcome.json()["method"], "zbuffer");  // of the pixels
+  EXPECT_EQ(outcome.json()["method"], "zbuffer");  // the method of the pixels
   EXPECT_EQ(outcome.json()["files"][2]["method"], "painter");
   EXPECT_EQ(succeed("render cube.stl -o {model}.svg --json --quiet").json()["method"], "painter");
 }

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Figures as other programs see them: parsed as XML, rasterised by librsvg and poppler, and held against the pictures
-of the z-buffer.
+"""Figures as other programs see them: parsed as XML, rasterised by librsvg and poppler, and compared with the
+z-buffer's pictures.
 
     figures.py PROGRAM          the figures that take little time
     figures.py PROGRAM long     the others
 
-A pixel of a figure is a mixture of what lies around it. So every channel of it must lie between the least and the
-greatest of the z-buffer's picture within a pixel, twice as fine so as to find what is narrower than one, give or take
-a bound. Nothing is left out: at the borders of polygons hairlines would show. Away from the borders of ids the colour
-itself must be the same within the bound. Some are looked at in half and in twice their size as well, as pages are, and by a browser.
-Rasterisers that are not installed are skipped, and counted.
+A pixel of a figure is a mixture of its surroundings. So each of its channels must lie, up to a bound, between the least
+and the greatest value of the z-buffer's picture within a pixel. That picture is twice as fine, to find parts narrower
+than a pixel. Nothing is left out: at the borders of polygons hairlines would show. Away from the borders of ids, the
+colour itself must be equal within the bound. Some figures are also checked at half and at twice their size, as pages
+are, and in a browser. Rasterisers that are not installed are skipped, and counted.
 """
 import base64
 import json
@@ -37,10 +37,10 @@ FLAT = ["--shading", "flat"]
 
 
 class Case:
-    """A view, and what is known of it: by how much its colours vary within a polygon, and which part of the pixels may
-    be beyond the bound, by how much at most: things narrower than half a pixel, rims of translucent neighbours, which
-    viewers blend both, and details of textures and shadows that are narrower than a piece. `browser`: the same part for a
-    browser, which finds how much of a pixel is covered less exactly; none: it is not asked."""
+    """A view with its tolerances: how much colours vary within a polygon, the share of pixels that may exceed the
+    bound, and by how much at most. Such pixels show things narrower than half a pixel, rims of translucent neighbours,
+    which viewers blend twice, or details of textures and shadows narrower than a piece. `browser`: the share for a
+    browser, whose coverage is less exact; None: not checked by a browser."""
 
     def __init__(self, words, varies=0, most=0.001, furthest=50, scales=(), browser=None):
         self.words, self.bound, self.most, self.furthest = words, BOUND + varies, most, furthest
@@ -64,8 +64,8 @@ CASES = {
     "leaves": Case(["leaves.gltf", *FLAT]),
 }
 LONG = {"tiles", "light and shadow", "normals", "ids, neighbours merged", "tiles, neighbours merged", "a teapot of glass"}
-LET_THROUGH = 5  # steps of 8 bits, 2 %: what viewers may show of the background within a plate
-LET_THROUGH_BETWEEN_COLOURS = 25  # 10 %: and within scenes of textures and shadows
+LET_THROUGH = 5  # steps of 8 bits, 2 %: how much of the background viewers may show within a plate
+LET_THROUGH_BETWEEN_COLOURS = 25  # 10 %: the same within scenes of textures and shadows
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -79,7 +79,7 @@ def run(*words):
 
 
 def png_of(rows):
-    """Of rows of RGBA bytes."""
+    """A PNG of rows of RGBA bytes."""
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
     header = struct.pack(">IIBBBBB", len(rows[0]) // 4, len(rows), 8, 6, 0, 0, 0)
@@ -88,7 +88,7 @@ def png_of(rows):
 
 
 def write_leaves(path):
-    """Two walls, one before the other: squares of one colour are cut out of the first, a checkerboard 6 wide."""
+    """Two walls, one behind the other: the front one is a checkerboard 6 wide with squares of one colour cut out."""
     def embedded(data, kind="application/octet-stream"):
         return f"data:{kind};base64," + base64.b64encode(data).decode()
     leaf, hole = bytes([30, 140, 60, 255]), bytes([30, 140, 60, 0])
@@ -116,7 +116,7 @@ def write_leaves(path):
 
 
 def write_plate(path, columns, rows, corners, radius=0.36):
-    """A plate drilled all over, its triangles around each hole: pixels in which many of them meet."""
+    """A plate full of holes with triangles around each: many triangles meet in a pixel."""
     places, faces, numbers = [], [], {}
 
     def number(at):
@@ -138,8 +138,8 @@ def write_plate(path, columns, rows, corners, radius=0.36):
 
 
 def check_solid(program, name, folder, words, bound, most=0):
-    """Away from rims nothing of the background is let through, or in a part of the pixels: it makes no difference
-    whether it is black or white."""
+    """Away from rims the background must not show through, except in a share of the pixels: black and white backgrounds
+    give the same picture."""
     pictures = {}
     for color in ("black", "white"):
         run(program, "render", *words, "--quiet", "--resolution", f"{WIDTH},{HEIGHT}", "--background", color, "-o",
@@ -184,7 +184,7 @@ def check_xml(path):
 
 
 def laid_over_each_other(layers):
-    """As viewers blend: in the values of the file, where the z-buffer's pictures blend light."""
+    """Blends layers as viewers do: in the file's values, whereas the z-buffer's pictures blend light."""
     picture = numpy.full((*layers[0].shape[:2], 3), 255.0)
     for layer in reversed(layers):
         opacity = layer[:, :, 3:] / 255
@@ -193,21 +193,21 @@ def laid_over_each_other(layers):
 
 
 def inner_pixels(ids):
-    """Those whose neighbours all around show the same triangle."""
+    """Pixels whose neighbours all show the same triangle."""
     inner = numpy.zeros(ids.shape, bool)
     inner[1:-1, 1:-1] = (near(ids, 1, 1, 3) == ids[:, :, None, None]).all((-2, -1))[1:-1, 1:-1]
     return inner
 
 
 def excess_of(picture, fine):
-    """By how much each pixel is outside of what the picture twice as fine has within a pixel."""
+    """How far each pixel lies outside the range of the twice as fine picture within a pixel."""
     around = near(fine[:, :, :3], 2, 2, 6)
     picture = picture[:, :, :3]
     return numpy.maximum(around.min((-2, -1)) - picture, picture - around.max((-2, -1))).max(2)
 
 
 def differing(a, b, pixels, bound):
-    """Places of those pixels whose colours differ by more than the bound."""
+    """Positions of the selected pixels whose colours differ by more than the bound."""
     return numpy.argwhere(pixels & (abs(a[:, :, :3] - b[:, :, :3]).max(2) > bound))
 
 
@@ -216,7 +216,7 @@ def browser():
 
 
 def screenshot(folder, width, height):
-    """By the only viewer that most people have. None where it does not start, as in some containers."""
+    """Rasterises by a browser, the only viewer that most people have. None if it does not start, as in some containers."""
     page, shot = folder / "page.html", folder / "page.png"
     page.write_text(f'<!doctype html><style>body{{margin:0}}img{{display:block;width:{width}px;height:{height}px}}</style>'
                     '<img src="a.svg">')
@@ -246,7 +246,7 @@ def rasters_of(folder, scale, by_browser):
 
 
 def check_scale(program, name, case, folder, scale):
-    """Returns how many rasterisers were there, and how many were not."""
+    """Returns how many rasterisers were installed, and how many were not."""
     words, width, height = case.words, int(scale * WIDTH), int(scale * HEIGHT)
 
     def picture(by, *more):
@@ -273,7 +273,7 @@ def check_scale(program, name, case, folder, scale):
                 f"{max(excess.max(), 0)}; {len(wrong)} of {inner.sum()} inner ones differ")
         print(told)
         share = case.browser if viewer == "Chromium" else case.most
-        most = share / min(scale, 1)  # of fewer pixels more are rims
+        most = share / min(scale, 1)  # a smaller picture has a larger share of rims
         assert stray <= most * width * height and len(wrong) <= most * inner.sum(), (
             told, numpy.argwhere(excess > case.bound)[:5], wrong[:5])
         assert stray == 0 or excess.max() <= case.furthest, told

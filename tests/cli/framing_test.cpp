@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What pictures are fitted to, and what is said of objects that reach out of them.
+// How views are fitted to models, and messages about objects that reach out of the picture.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-/// Squares of size 2 in z = 0 as objects of an OBJ file, around their middles.
+/// An OBJ of squares of size 2 in z = 0, each an object, at these centres.
 std::string squares(const std::vector<std::pair<std::string, double>>& objects) {
   std::string text;
   for (const auto& [name, size] : objects) {
@@ -73,7 +73,7 @@ TEST_F(Framing, NothingIsSaidWhereNothingIsFitted) {
   EXPECT_THAT(succeed("render houses.obj -o x.png --resolution 16,16").err, IsEmpty());
 }
 
-// What a drawing leaves out nobody would look for.
+// Drawings are fitted to all objects, as nobody would notice a missing one.
 TEST_F(Framing, DrawingsHoldEverything) {
   EXPECT_THAT(succeed("lines village.obj --view front -o a.svg").err, IsEmpty());
   EXPECT_NE(read("a.svg"), (succeed("lines houses.obj --view front -o b.svg"), read("b.svg")));
@@ -89,7 +89,7 @@ TEST_F(Framing, WhatContradictsItIsRefused) {
                  "views[1]: --stream fits all objects into the picture, as --frame all does");
 }
 
-/// A cone, whose base lies in the plane of two axes.
+/// A cone whose base lies in the plane of two axes.
 std::string cone(const std::string& order) {
   constexpr int sides = 16;
   std::ostringstream text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// No output takes the place of anything that the run reads, whatever it is called.
+// No output overwrites a file that the run reads, whatever the name.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -32,7 +32,7 @@ class Inputs : public ProgramTest {
     write("directions.txt", "0 0 -1\n");
   }
 
-  /// Refused with these words, with all files as they were.
+  /// Checks that the call is refused with these words, and that no file changes.
   void expect_kept(const std::string& line, const std::string& words) const {
     std::vector<std::string> before;
     for (const std::string& name : files())

@@ -66,7 +66,7 @@ TEST_F(Layers, DeepFilesAreWritten) {
   EXPECT_NE(hashes("").find("deep "), std::string::npos);
 }
 
-/// Sheets one behind the other, each of which fills the picture.
+/// An OBJ of sheets one behind the other, each filling the picture.
 std::string stack_obj(int count) {
   std::string text;
   for (int i = 0; i < count; ++i)
@@ -78,7 +78,7 @@ std::string stack_obj(int count) {
   return text;
 }
 
-// The fragments are 7 million: as lists 250 MB, and as much again while they are made.
+// The 7 million fragments would take 250 MB as lists, and as much again during their construction.
 TEST_F(Layers, FiveHundredFitIntoTheMemoryOfFew) {
   if (under_sanitizer) GTEST_SKIP() << "the sanitizer takes all addresses";
   write("stack.obj", stack_obj(500));

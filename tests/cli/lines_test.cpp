@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost lines: real millimetres, aligned views, every line once, and nothing that a plotter would not know.
+// frontmost lines: real millimetres, aligned views, every line once, and nothing that plotters do not understand.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A box of those sides with its lower corner at the origin, as OBJ with shared corners; z is up by --up.
+/// An OBJ of a box with sides x, y, z, its lower corner at the origin, with shared vertices; z is up by --up.
 std::string box_obj(double x, double y, double z, const std::string& name = "box") {
   std::string text = "o " + name + "\n";
   for (int i = 0; i < 8; ++i)
@@ -51,7 +51,7 @@ class LinesCommand : public ProgramTest {
     return json::parse(read("drawing.json"));
   }
 
-  /// What each group covers, by its name.
+  /// The box that each group covers, by the group's name.
   [[nodiscard]] static std::map<std::string, PathBox> boxes(const json& page) {
     std::map<std::string, PathBox> all;
     for (const json& layer : page["layers"])
@@ -80,7 +80,7 @@ TEST_F(LinesCommand, GltfIsInMetresHoweverItsSuffixIsWritten) {
       R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
       R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,"componentType":5126,)"
       R"("count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":)"
-      // (0, 0, 0), (1, 0, 0), (0, 1, 0)
+      // positions (0, 0, 0), (1, 0, 0), (0, 1, 0)
       R"([{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
   const std::string front = " --view front --camera-orthographic --scale 1:10 --margin 0";
   for (const std::string name : {"metre.gltf", "METRE.GLTF", "metre.dat"}) {
@@ -89,7 +89,7 @@ TEST_F(LinesCommand, GltfIsInMetresHoweverItsSuffixIsWritten) {
     EXPECT_EQ(page["width"], 100) << name;
     EXPECT_EQ(page["height"], 100) << name;
   }
-  // Standard input has no name at all.
+  // Standard input has no file name.
   const Outcome piped = run(Call{.words = {"lines", "-", "--view", "front", "--camera-orthographic", "--scale", "1:10",
                                            "--margin", "0", "--format", "json", "-o", "-"},
                                  .input = gltf});
@@ -102,7 +102,7 @@ TEST_F(LinesCommand, ABoxAtFullScaleHasItsSidesInMillimetres) {
   const json page = drawn("box.obj --up +z --view front --camera-orthographic --scale 1:1 --margin 5 --hidden dashed");
   EXPECT_EQ(page["width"], 50);
   EXPECT_EQ(page["height"], 30);
-  // Its back edges lie behind the front ones: one closed line, nothing hidden.
+  // The box's back edges lie behind its front ones: one closed line, nothing hidden.
   ASSERT_EQ(page["layers"].size(), 1u);
   EXPECT_EQ(page["layers"][0]["name"], "2 visible");
   const json& path = page["layers"][0]["groups"][0]["paths"];
@@ -127,7 +127,7 @@ TEST_F(LinesCommand, ScalesAndUnits) {
   const json fitted = drawn(front + "--page 100,50");
   EXPECT_EQ(boxes(fitted).begin()->second.bottom - boxes(fitted).begin()->second.top, 50);
   const json standard = succeed("lines cube.stl --view front --camera-orthographic --scale standard --json").json();
-  EXPECT_EQ(standard["scale"], 100);  // of 190 mm
+  EXPECT_EQ(standard["scale"], 100);  // for 190 mm
   EXPECT_EQ(standard["scale_text"], "100:1");
 }
 
@@ -195,7 +195,7 @@ TEST_F(LinesCommand, SheetsHaveDimensionsWhereTheyAreAskedFor) {
   const json* const sizes = layer_named(page, "7 dimensions");
   ASSERT_NE(sizes, nullptr);
   ASSERT_EQ((*sizes)["groups"].size(), 2u);
-  // The height and the diameter: two extension lines each, a dimension line and two arrowheads.
+  // The height and the diameter have two extension lines, a dimension line and two arrowheads each.
   EXPECT_EQ((*sizes)["groups"][0]["paths"].size(), 10u);
   for (const json& group : (*sizes)["groups"])
     for (const json& path : group["paths"])
@@ -209,7 +209,7 @@ TEST_F(LinesCommand, SheetsHaveDimensionsWhereTheyAreAskedFor) {
   succeed("lines " + sheet + "--dimensions -o peg.dxf --plot");
   EXPECT_THAT(read("peg.dxf"), HasSubstr("7_DIMENSIONS"));
   expect_failure("lines peg.obj -o a.svg --dimensions", 2, "--dimensions needs --views");
-  // A peg that is hidden by another.
+  // One peg hides another.
   write("core.obj", peg_obj(5, 20));
   write("pegs.json",
         R"({"up": "z", "objects": [{"model": "peg.obj"}, {"model": "core.obj", "translation": [0, 0, 9]}]})");
@@ -262,7 +262,7 @@ TEST_F(LinesCommand, SheetsTakeAStandardScaleAndCentreTheirViews) {
   const json report = succeed("lines box.obj --up +z --views front,top,left,iso -o sheet.json --json").json();
   EXPECT_EQ(report["scale"], 2);
   const json page = json::parse(read("sheet.json"));
-  EXPECT_EQ(page["width"], 297);  // turned, as it fits better
+  EXPECT_EQ(page["width"], 297);  // landscape, as it fits better
   const std::map<std::string, PathBox> all = boxes(page);
   PathBox whole;
   for (const auto& [name, box] : all) {
@@ -283,7 +283,7 @@ TEST_F(LinesCommand, ViewsStandApartAndTheOneAtAnAngleBeyondTheCorner) {
     const PathBox front = all["front: box"], top = all["top: box"], left = all["left: box"], back = all["back: box"];
     EXPECT_NEAR(third ? front.top - top.bottom : top.top - front.bottom, 15, 0.0011);
     EXPECT_NEAR(third ? front.left - left.right : left.left - front.right, 15, 0.0011);
-    // What is seen from behind is on the right of all.
+    // The view from behind is to the right of all others.
     EXPECT_NEAR(back.left - (third ? front.right : left.right), 15, 0.0011);
     all = sheet("front,left,iso");
     const PathBox iso = all["iso: box"];
@@ -298,7 +298,7 @@ TEST_F(LinesCommand, PapersHaveTheirSizesAndLieAsAsked) {
       {"a0", 841, 1189},       {"A1", 594, 841},         {"a2", 420, 594}, {"a3", 297, 420},
       {"a4", 210, 297},        {"a5", 148, 210},         {"a6", 105, 148}, {"letter", 215.9, 279.4},
       {"Legal", 215.9, 355.6}, {"tabloid", 279.4, 431.8}};
-  // Twice as wide as high: without a word it lies down.
+  // The drawing is twice as wide as high, so without --page it is landscape.
   const std::string front = "box.obj --up +z --view front --camera-orthographic --page ";
   for (const auto& [name, narrow, wide] : papers) {
     const json upright = drawn(front + name + "-portrait"), lying = drawn(front + name + "-landscape"),
@@ -371,7 +371,7 @@ TEST_F(LinesCommand, HatchingIsInMillimetresAndLiesBelow) {
   ASSERT_EQ(page["layers"].size(), 2u);
   EXPECT_EQ(page["layers"][0]["name"], "4 hatching");
   EXPECT_EQ(page["layers"][1]["name"], "2 visible");
-  // Brightnesses of 0.77 above, 0.61 right, 0.19 left: level lines at every second millimetre, and every one.
+  // Brightnesses are 0.77 on top, 0.61 right, 0.19 left: level lines every second millimetre, and every millimetre.
   std::map<double, int> heights;
   for (const json& path : page["layers"][0]["groups"][0]["paths"]) {
     ASSERT_EQ(path["points"].size(), 2u);
@@ -410,7 +410,7 @@ TEST_F(LinesCommand, StippledOnlyWhereAskedFor) {
   EXPECT_THAT(read("none.svg"), Not(HasSubstr("stippling")));
   expect_failure("lines cube.stl -o a.svg --stipple 20", 2, "--stipple");
   expect_failure("lines cube.stl -o a.svg --stipple 1 --resolution 20,20", 2, "take 9.5 or more");
-  // Room for 20 million dots, but not with a pixel each.
+  // 20 million dots would fit, but not one pixel for each.
   expect_failure("lines cube.stl -o a.svg --stipple 0.2 --resolution 16384,16384 --page 2000,2000", 2,
                  "--stipple: 0.2 mm would");
   expect_failure("lines cube.stl -o a.svg -o a.svg", 2, "a.svg: would be written twice; give every output a name");
@@ -424,11 +424,10 @@ TEST_F(LinesCommand, PlottersGetDashesAsLines) {
   EXPECT_EQ(page["layers"][0]["name"], "1 hidden");
   const json& group = page["layers"][0]["groups"][0];
   EXPECT_FALSE(group["pen"].contains("dashes") && !group["pen"]["dashes"].empty());
-  // Three edges of 40.82 mm from the corner that is hidden: eleven dashes each, of which those at the corner may be
-  // one.
+  // Three edges of 40.82 mm meet at the hidden vertex: eleven dashes each, where those at the vertex may be one.
   EXPECT_GE(group["paths"].size(), 31u);
   EXPECT_LE(group["paths"].size(), 33u);
-  // Programs know line types.
+  // DXF readers know line types.
   EXPECT_THAT(read("plot.dxf"), HasSubstr("\nHIDDEN\n"));
 }
 
@@ -436,7 +435,7 @@ TEST_F(LinesCommand, EachEdgeOfACubeOnce) {
   const json report =
       succeed("lines cube.stl --view iso --camera-orthographic --hidden dashed --page a4 --scale 50:1 --json").json();
   EXPECT_EQ(report["views"][0]["edges"], 12);
-  // Isometric edges are the root of two thirds of their length. Hidden ones end in the corner before them.
+  // Isometric edges have the square root of two thirds of their length. Hidden ones end at the vertex in front of them.
   const double edge = 50 * std::sqrt(2.0 / 3);
   EXPECT_NEAR(report["layers"][1]["drawn_mm"].get<double>(), 9 * edge, 0.01);
   EXPECT_NEAR(report["layers"][0]["drawn_mm"].get<double>(), 3 * edge, 0.01);
@@ -448,7 +447,7 @@ TEST_F(LinesCommand, EachEdgeOfACubeOnce) {
 
 TEST_F(LinesCommand, ThePicturesFrameIsThePageWhereTheCameraIsPlaced) {
   const json page = drawn("cube.stl --camera-position 0.5,-4,0.5 --resolution 200,100 --page 200,100 --margin 0");
-  // Straight before the camera, 30 degrees high: the near face is 1 wide at a distance of 4.
+  // The cube is straight ahead, the view 30 degrees high; the near face is 1 wide at a distance of 4.
   const double half = 50 * 0.5 / (4 * std::tan(0.26179938779914943));
   const PathBox box = boxes(page).begin()->second;
   EXPECT_NEAR(box.left, 100 - half, 0.01);
@@ -456,7 +455,7 @@ TEST_F(LinesCommand, ThePicturesFrameIsThePageWhereTheCameraIsPlaced) {
   EXPECT_NEAR(box.top, 50 - half, 0.01);
 }
 
-// Two edges of 1 m and one of the root of 2, before a camera whose picture is 3 m high.
+// Two edges of 1 m and one of the square root of 2 m, before a camera whose picture is 3 m high.
 TEST_F(LinesCommand, AModelsOwnParallelCameraHasAScale) {
   write("own.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],
     "nodes":[{"mesh":0},{"camera":0,"translation":[0.5,0.5,9]}],
@@ -466,7 +465,7 @@ TEST_F(LinesCommand, AModelsOwnParallelCameraHasAScale) {
     "bufferViews":[{"buffer":0,"byteLength":36}],
     "buffers":[{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
   const json fitted = succeed("lines own.gltf --camera-index 0 --resolution 400,300 --json -o a.svg").json();
-  // 3 m between the margins of A4 that lies.
+  // The picture of 3 m fits between the margins of a landscape A4.
   EXPECT_NEAR(fitted["scale"].get<double>(), 190.0 / 3000, 1e-9);
   const json given =
       succeed("lines own.gltf --camera-index 0 --resolution 400,300 --scale 1:50 --json -o b.svg").json();
@@ -482,7 +481,7 @@ TEST_F(LinesCommand, AModelsOwnParallelCameraHasAScale) {
 TEST_F(LinesCommand, CurvedModelsAreDrawnFromWithin) {
   const json page = drawn("builtin:teapot --camera-position 0,1.5,0 --camera-direction +x");
   EXPECT_FALSE(boxes(page).empty());
-  // What the user asks for is not made coarser.
+  // A tessellation error that the user sets is not coarsened.
   const Outcome refused = run({"lines", "builtin:teapot", "--camera-position", "0,1.5,0", "--camera-direction", "+x",
                                "--tessellation-error", "0.001", "-o", "refused.svg"});
   EXPECT_EQ(refused.status, 1);
@@ -568,7 +567,7 @@ TEST_F(LinesCommand, TooLargeADrawingSaysWhatWouldFit) {
   expect_failure("lines box.obj --camera-orthographic --view front --scale 50:1 --page a4 -o a.svg", 2,
                  "; 5:1 would fit");
   expect_failure("lines box.obj --camera-orthographic --view front --scale 1000000:1 -o a.svg", 2, "100 m a side");
-  // Tiny and huge, but possible.
+  // Tiny and huge scales are possible.
   succeed("lines box.obj --camera-orthographic --view front --scale 1:1000000 -o a.svg");
   succeed("lines box.obj --camera-orthographic --view front --scale 2000:1 -o a.pdf");
   EXPECT_THAT(read("a.pdf"), HasSubstr("/UserUnit 16"));

@@ -47,7 +47,7 @@ def pictures(folder):
 
 
 def recipe(beginning):
-    """The line of the page that begins so."""
+    """The line of the page with this beginning."""
     found = [line for line in PAGE.splitlines() if line.startswith(beginning)]
     if len(found) != 1:
         sys.exit(f"docs/many-machines.md: {len(found)} lines begin with '{beginning}'")

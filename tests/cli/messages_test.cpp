@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the program says to calls that cannot be meant, or not be done: the words, and the exit status for each.
+// Messages and exit statuses for calls that are wrong or cannot be done.
 #include <gmock/gmock.h>
 
 #include "cli/failure.h"
@@ -184,7 +184,7 @@ TEST(BatchFiles, HoldMatricesOfRowsAndNothingDeeper) {
   EXPECT_EQ(pose("[1,0,0,0, 0,1,0,0, 0,0,1,0]"), "none");
   EXPECT_EQ(pose("[[[1],0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]"), "b.json: views[0].pose: must hold numbers alone");
   EXPECT_EQ(pose(R"([["1",0,0,0]])"), "b.json: views[0].pose: must hold numbers alone");
-  // So deep that to follow it would take more stack than there is.
+  // Following nesting this deep would overflow the stack.
   for (const std::size_t depth : {std::size_t(20), std::size_t(200'000)})
     EXPECT_EQ(pose(std::string(depth, '[') + std::string(depth, ']')), "b.json: is nested deeper than 16");
   EXPECT_EQ(pose(std::string(12, '[') + std::string(12, ']')), "b.json: views[0].pose: must hold numbers alone");
@@ -218,7 +218,7 @@ TEST(Blank, CountsWhatKeepsTrianglesOut) {
   view.culling = Culling::both;
   EXPECT_EQ(clause({at(0, 0, -5), at(0, 0, -5), at(0, 0, 5)}),
             "1 of 3 triangles: is behind the camera; 2 of 3 triangles: faces the way that --cull leaves out");
-  // Some corners before and some behind the near plane: neither nearer nor outside.
+  // Some vertices lie before and some behind the near plane: neither "nearer" nor "outside" applies.
   view.culling = Culling::none;
   EXPECT_EQ(clause({{glm::vec3(0, 0, -0.5f), glm::vec3(0, 0, -2), glm::vec3(0, 0, -3)}}),
             "all of the model is smaller than a pixel or seen edge-on");

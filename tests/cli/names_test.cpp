@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names that are no UTF-8, or that terminals would obey, are written out wherever they are shown: \xE9, \x1B.
+// Names that are not UTF-8, or that terminals would obey, are shown with escapes: \xE9, \x1B.
 #include <gmock/gmock.h>
 
 #include "program.h"
@@ -10,7 +10,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// In Latin-1, with an escape sequence that would colour a terminal, and a line feed.
+/// A Latin-1 name with an escape sequence that colours a terminal, and a line feed.
 const std::string odd = "caf\xE9\x1B[31m\n";
 const char* const shown = R"(caf\xE9\x1B[31m\x0A)";
 
@@ -56,7 +56,7 @@ TEST_F(Names, InPagesAndDrawings) {
   for (const char* suffix : {"svg", "pdf", "dxf", "json"}) {
     const std::string file = std::string("a.") + suffix;
     ASSERT_EQ(run({"lines", odd + ".obj", "-o", file}).status, 0) << suffix;
-    if (std::string(suffix) != "pdf") expect_harmless(read(file));  // the streams of a PDF are any bytes
+    if (std::string(suffix) != "pdf") expect_harmless(read(file));  // streams of a PDF hold arbitrary bytes
   }
   EXPECT_THAT(read("a.svg"), HasSubstr(R"(tr\xE9s\x1B[1m)"));
   ASSERT_EQ(run({"render", odd + ".obj", "-o", "b.svg", "-q"}).status, 0);

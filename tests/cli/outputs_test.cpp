@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// File names: templates, formats, and what may not share a name.
+// File names: templates, formats, and outputs that may not share a name.
 #include "cli/outputs.h"
 
 #include <gmock/gmock.h>
@@ -29,7 +29,7 @@ TEST(Outputs, TemplatesAreFilledIn) {
   EXPECT_EQ(fill_template("{model}_{view}.png", "cube", "front"), "cube_front.png");
   EXPECT_EQ(fill_template("a{{b}}.png", "cube", "front"), "a{b}.png");
   EXPECT_EQ(fill_template("plain", "cube", "front"), "plain");
-  // What is filled in is not read again.
+  // Inserted text is not expanded again.
   EXPECT_EQ(fill_template("{model}", "{view}", "front"), "{view}");
   for (const char* text : {"{models}", "{", "}", "{model", "{}"}) {
     EXPECT_THROW((void)fill_template(text, "cube", "front"), UsageError) << text;

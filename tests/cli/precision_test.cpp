@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost precision: tables, reports, plots, and what it finds on models.
+// frontmost precision: tables, reports, plots, and faces that fight on models.
 #include <frontmost/files.h>
 #include <gmock/gmock.h>
 
@@ -54,7 +54,7 @@ TEST_F(Precision, TheReportHasTheSameNumbers) {
   EXPECT_NEAR(buffer["distances"][3]["positions_gap"].get<double>(), 40 * std::ldexp(10, -24), 1e-9);
   EXPECT_NEAR(buffer["distances"][3]["gap"].get<double>(), 0.40392 + 40 * std::ldexp(10, -24), 1e-5);
   EXPECT_EQ(buffer["distances"].size(), 7u);
-  // 1/n = 0.5 / (10 * 10.5) * 255 + 1/100, and a little more for what positions add.
+  // 1/n = 0.5 / (10 * 10.5) * 255 + 1/100, and a little more for the error of positions.
   const double near = 1 / (0.5 / 105 * 255 + 0.01);
   EXPECT_GE(buffer["near_for_gap"], near);
   EXPECT_LE(buffer["near_for_gap"], near * 1.0001);
@@ -128,7 +128,7 @@ TEST_F(Precision, SquaresThatFightAreFoundOnTheModel) {
   EXPECT_EQ(all[3]["fights"]["wrong_pixels"], 0);
 }
 
-// What is at risk comes with what ends it; both squares fill the picture of 40 x 30.
+// Areas at risk are listed with their remedies; both squares fill the picture of 40 x 30.
 TEST_F(Precision, AreasAtRiskAreListedWithTheirRemedies) {
   write("fight.obj", two_squares("-0.01", "0"));
   const std::string camera =
@@ -165,7 +165,7 @@ TEST_F(Precision, AreasAtRiskAreListedWithTheirRemedies) {
 }
 
 TEST_F(Precision, MoreAreasAtRiskThanCanBeListedLeaveTheRestOfTheReport) {
-  // With so near a plane every face of the city fights with every other behind it.
+  // With a near plane this close, every face of the city fights with every face behind it.
   const std::string line = "precision builtin:city --near 1e-5 --format D16 --resolution 320,200";
   const json buffer = succeed(line + " --json").json()["buffers"][0];
   EXPECT_THAT(buffer["at_risk"]["refused"].get<std::string>(), HasSubstr("fighting faces: "));

@@ -76,7 +76,7 @@ int wait_for(pid_t child) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// Whether the program has a handler for a signal, by the mask in its status file; none before it has started.
+/// Whether the program has a handler for a signal, by the mask in its status file; false before it has started.
 bool catches(pid_t child, int signal) {
   std::ifstream status("/proc/" + std::to_string(child) + "/status");
   for (std::string word; status >> word;) {
@@ -86,7 +86,7 @@ bool catches(pid_t child, int signal) {
   return false;
 }
 
-/// Sends the signal that a call asks for, so long after the program is ready for it; a busy machine takes a while.
+/// Sends the call's signal, `signal_after` seconds after the program is ready for it; a busy machine takes a while.
 void interrupt(pid_t child, const Call& call) {
   using std::chrono::steady_clock;
   constexpr std::chrono::seconds kMostWait(900);
@@ -220,7 +220,7 @@ std::vector<std::string> ProgramTest::files() const {
 }
 
 std::string cube_stl(float low) {
-  // Corners by bits x, y, z; each side as four corners, counter-clockwise from outside.
+  // Vertices by bits x, y, z; each side as four vertices, counter-clockwise from outside.
   constexpr int sides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
   const auto corner = [&](int bits) {
     return std::array<float, 3>{low + float(bits & 1), low + float(bits >> 1 & 1), low + float(bits >> 2 & 1)};

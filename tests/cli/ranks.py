@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""frontmost render --mpi on 1, 2, 3 and 8 ranks of this machine: the bytes of one process, and how runs end that fail.
+"""frontmost render --mpi on 1, 2, 3 and 8 ranks of this machine must give the bytes of one process. Also how failing
+runs end.
 
-    ranks.py PROGRAM          all but the bytes of 2 and 8 ranks
-    ranks.py PROGRAM long     these
+    ranks.py PROGRAM          all checks except the bytes of 2 and 8 ranks
+    ranks.py PROGRAM long     the bytes of 2 and 8 ranks
 
-Without mpirun, or without the program's module for MPI, all but what is said then is skipped, and counted.
+Without mpirun, or without the program's MPI module, all checks but that of the message are skipped, and counted.
 """
 import contextlib
 import json
@@ -33,7 +34,7 @@ def fail(what):
 
 
 def triangles(seed, count):
-    """Strips of neighbours, whose normals are smooth, and lie in one plane in part, so that depths are equal."""
+    """Strips of neighbouring triangles with smooth normals. Some lie in one plane, so that depths are equal."""
     numbers = random.Random(seed)
     height = [numbers.choice([0, 0.25 * seed]) for _ in range(count + 2)]
     corners = [(0.2 * (i // 2), 0.4 * seed + (i % 2), height[i]) for i in range(count + 2)]
@@ -79,18 +80,18 @@ def files(folder):
 
 
 def words(result):
-    """What the program says, without what mpirun adds."""
+    """The program's own messages, without those of mpirun."""
     return [line for line in result.stderr.splitlines() if line.startswith("frontmost: ")]
 
 
 def facts(result):
-    """Of a JSON report all that is no time and no count of passes."""
+    """A JSON report without times and numbers of passes."""
     report = json.loads(result.stdout)
     return {key: report[key] for key in report if key not in ("stream_passes", "timings_ms")}
 
 
 def expect_same(scratch, count, mine, whole, *more):
-    """`mine` on so many ranks, and `whole` by one process, make the same files and say the same."""
+    """`mine` on `count` ranks and `whole` in one process make the same files and print the same."""
     made = []
     for name, command in (("whole", [PROGRAM, "render", *whole]),
                           ("ranks", [*MPIRUN, "-n", str(count), PROGRAM, "render", *mine, "--mpi"])):
@@ -115,13 +116,13 @@ def try_bytes(scratch, counts):
 
 
 def try_mixtures(scratch):
-    # Some of one rank, some of all.
+    # Some models belong to one rank, some to all.
     mixed = ["../one.stl", "../part-{rank}.ply", "../part-0.stl"]
     expect_same(scratch, 3, mixed, ["../one.stl", *(f"../part-{part}.ply" for part in range(3)), "../part-0.stl"])
-    # The camera is told, so that there is one pass; without shadows, unlit, of one sample.
+    # The camera is given, so that there is one pass; without shadows, unlit, with one sample.
     told = ["--camera-position", "3,1,9", "--camera-focal-point", "3,1,0", "--near", "1", "--far", "90", "--shading", "flat"]
     expect_same(scratch, 3, ["../part-{rank}.ply"], [f"../part-{part}.ply" for part in range(3)], *told, "--samples", "1")
-    # Nothing is seen, and why is counted by all.
+    # Nothing is seen; all ranks together count the reasons.
     away = ["--camera-position", "3,1,9", "--camera-focal-point", "3,1,20", "--near", "1", "--far", "90"]
     expect_same(scratch, 3, ["../part-{rank}.ply"], [f"../part-{part}.ply" for part in range(3)], *away)
 
@@ -141,7 +142,7 @@ def try_batch(scratch):
 
 
 def try_recipe(scratch):
-    """The line of docs/many-machines.md."""
+    """The matching line of docs/many-machines.md."""
     page = (pathlib.Path(__file__).resolve().parents[2] / "docs" / "many-machines.md").read_text()
     lines = [line for line in page.splitlines() if line.startswith("mpirun -n 8 frontmost render")]
     if len(lines) != 1:
@@ -153,7 +154,7 @@ def try_recipe(scratch):
 
 
 def expect_failure(result, folder, status, *parts):
-    """Said once, by rank 0, and nothing is left behind."""
+    """Checks that rank 0 alone prints the error, and that no file is left behind."""
     said = words(result)
     if result.returncode != status or len(said) != 1 or not all(part in said[0] for part in parts):
         fail(f"status {result.returncode}, not {status}, or not {parts}:\n{result.stderr}")
@@ -169,10 +170,10 @@ def try_failures(scratch):
     (scratch / "cut-1.ply").write_bytes(whole)
     (scratch / "cut-2.ply").write_bytes(whole[:-20])
     command = [PROGRAM, "render", "--mpi", *OUTPUTS]
-    # Found by rank 2 alone, after a part was read.
+    # Rank 2 alone finds the error, after a part was read.
     expect_failure(run([*MPIRUN, "-n", "3", *command, "../cut-{rank}.ply"], folder), folder, 1, "cut-2.ply: face 29:",
                    "the file ends within the row", "(rank 2)")
-    # A file that only some machines see.
+    # Only some machines see the file.
     (scratch / "elsewhere").mkdir()
     shutil.copy(scratch / "one.stl", scratch / "elsewhere")
     result = run([*MPIRUN, "-n", "1", "--wdir", scratch / "elsewhere", *command, "one.stl", ":", "-n", "2", "--wdir", folder,
@@ -190,7 +191,7 @@ def try_failures(scratch):
 
 
 def ranks_of(mpirun, count):
-    """Process numbers by rank, once all of them run."""
+    """Process ids by rank, once all ranks run."""
     end = time.monotonic() + 300
     while time.monotonic() < end:
         found = {}
@@ -210,7 +211,7 @@ def ranks_of(mpirun, count):
 
 
 def with_a_stopped_rank(folder, stopped, act, *more):
-    """Rank `stopped` is held as soon as it runs, so that the others wait for it; `act` gets the ranks."""
+    """Stops rank `stopped` as soon as it runs, so that the others wait for it; `act` gets the ranks."""
     command = [*MPIRUN, "-n", "2", PROGRAM, "render", "--mpi", "../one.stl", *OUTPUTS, *more]
     with subprocess.Popen(command, cwd=folder, env=ENVIRONMENT, text=True, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE) as process:
@@ -251,7 +252,7 @@ def try_timeout(scratch):
 
 
 def try_without_module(scratch):
-    """What the program says that was installed without the module."""
+    """Checks the message of a program that was installed without the module."""
     alone = scratch / "alone"
     alone.mkdir()
     shutil.copy(PROGRAM, alone / "frontmost")

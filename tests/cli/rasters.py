@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures as other programs write them, as arrays of whole numbers: rows, columns and, but for grey ones, channels.
+"""Images of other programs as integer arrays: rows, columns and, unless grey, channels.
 
-Without NumPy and Pillow the test that imports this is skipped. Where python3 is not the system's, Debian's packages are
-for another one, which the test then goes on in.
+Without NumPy and Pillow the importing test is skipped. If python3 is not the system's, Debian's packages belong to
+another interpreter, and the test restarts in that one.
 """
 import os
 import sys
@@ -20,18 +20,18 @@ except ImportError as missing:
 
 
 def read_picture(path):
-    """PNG, PGM or PPM."""
+    """Reads a PNG, PGM or PPM."""
     with Image.open(path) as picture:
         return numpy.asarray(picture).astype(int)
 
 
 def read_ids(path):
-    """An id map that frontmost wrote as .npy."""
+    """Reads an id map that frontmost wrote as .npy."""
     return numpy.load(path)
 
 
 def near(fine, step, before, size):
-    """Squares of `size` pixels of a picture, `before` pixels before each pixel of one that is `step` times as coarse."""
+    """Squares of `size` pixels, beginning `before` pixels before each pixel of a picture `step` times as coarse."""
     after = size - before - step
     padded = numpy.pad(fine, ((before, after), (before, after)) + ((0, 0),) * (fine.ndim - 2), "edge")
     return numpy.lib.stride_tricks.sliding_window_view(padded, (size, size), (0, 1))[::step, ::step]

@@ -52,7 +52,7 @@ TEST_F(RayCameras, AFisheyesMiddleSeesWhatThePinholesDoes) {
   EXPECT_NEAR(load_image(path("flat.npy")).channels[0].floats()[middle], 3, 1e-6);
   EXPECT_EQ(load_image(path("round.exr")).find("primitive")->integers()[middle],
             load_image(path("flat.exr")).find("primitive")->integers()[middle]);
-  // Beyond the circle there is nothing.
+  // Pixels beyond the circle show nothing.
   EXPECT_EQ(load_image(path("round.npy")).channels[0].floats()[0], std::numeric_limits<float>::infinity());
 }
 
@@ -121,7 +121,7 @@ TEST_F(RayCameras, ALidarInsideACubeMeetsItWithEveryRay) {
   EXPECT_THAT(ply, HasSubstr("element vertex 12\n"));
   const std::size_t first = ply.find("end_header\n") + 11;
   ASSERT_EQ(ply.size(), first + 12 * 36);
-  // The middle ring: ahead (+y for z-up models), right (+x), behind, left.
+  // The middle ring looks ahead (+y for z-up models), right (+x), behind and left.
   const glm::vec3 expected[] = {{0.5f, 1, 0.25f}, {1, 0.5f, 0.25f}, {0.5f, 0, 0.25f}, {0, 0.5f, 0.25f}};
   for (std::size_t step = 0; step < 4; ++step) {
     const std::size_t at = first + (4 + step) * 36;
@@ -142,7 +142,7 @@ TEST_F(RayCameras, ALidarWritesRangeImagesAndTakesDirections) {
   EXPECT_EQ(ranges.height, 8);
   EXPECT_NE(all.find("object"), nullptr);
   EXPECT_NE(all.find("primitive"), nullptr);
-  // Ahead is +y: the cube's near side, four away at the horizon.
+  // Ahead is +y: the cube's near side is four away at the horizon.
   write("ahead.txt", "# two rays\n0 0 -1\n0, 0, 5  # behind\n");
   const json report = succeed("lidar cube.stl --from 0.5,-4,0.5 --directions ahead.txt --json").json();
   EXPECT_EQ(report["rays"], 2);
@@ -152,7 +152,8 @@ TEST_F(RayCameras, ALidarWritesRangeImagesAndTakesDirections) {
   EXPECT_EQ(behind["points"], 1);
 }
 
-// A quarter above the floor of a cube, half from its walls: left, ahead and right, level and 45 degrees down.
+// The scanner stands a quarter above the floor of a cube, half from its walls. It looks left, ahead and right, level
+// and 45 degrees down.
 TEST_F(RayCameras, ALidarHasAPartOfATurnAListOfRingsAndRobotsAxes) {
   succeed(
       "lidar cube.stl --from 0.5,0.5,0.25 --ring-elevations 0,-45 --azimuths -90,90 --steps 3 --robot-axes "
@@ -171,7 +172,7 @@ TEST_F(RayCameras, ALidarHasAPartOfATurnAListOfRingsAndRobotsAxes) {
     EXPECT_NEAR(image.find("distance")->floats()[i], expected[i][3], 1e-6) << i;
     EXPECT_NEAR(image.find("incidence")->floats()[i], expected[i][4], 1e-4) << i;
   }
-  // The floor is nearer than half a unit: its rays return nothing.
+  // The floor is nearer than half a unit, so its rays return nothing.
   EXPECT_EQ(succeed("lidar cube.stl --from 0.5,0.5,0.25 --ring-elevations 0,-45 --azimuths -90,90 --steps 3 "
                     "--range 0.5,2 --json")
                 .json()["points"],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// --reference: passes, fails with its own exit status, and shows where.
+// --reference: the comparison passes, or fails with its own exit status and a picture of the differences.
 #include <gmock/gmock.h>
 
 #include "program.h"
@@ -62,7 +62,7 @@ TEST_F(Reference, WrongReferencesAreNamed) {
   expect_failure("render cube.stl --reference old.png --reference-threshold 2", 2, "--reference-threshold");
 }
 
-// All files that a run reads are read before any is written, those of the last view too.
+// A run reads all input files, those of the last view too, before it writes any.
 TEST_F(Reference, OfALaterViewIsReadBeforeAnythingIsWritten) {
   write("views.json", R"({"views": [{"name": "old"}, {"name": "late"}]})");
   const std::string line = "render cube.stl --batch views.json --resolution 48,32 -o new_{view}.png --reference ";

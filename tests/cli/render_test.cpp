@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost render: every output, every report, and the same bytes whatever it runs on.
+// frontmost render: every output, every report, and the same bytes on every machine.
 #include <frontmost/base.h>
 #include <frontmost/files.h>
 #include <gmock/gmock.h>
@@ -31,7 +31,7 @@ TEST_F(Render, DepthIsPlanarAndInSceneUnits) {
   EXPECT_FLOAT_EQ(z[32 * 64 + 32], 10);
   EXPECT_FLOAT_EQ(z[28 * 64 + 28], 10);
   EXPECT_TRUE(std::isinf(z[0]));
-  // Along the ray the distance grows with the slope: pixel (28.5 - 32) / 100.
+  // The distance along the ray grows with the slope: pixel (28.5 - 32) / 100.
   const Image ray = image("r.npy");
   EXPECT_FLOAT_EQ(ray.channels[0].floats()[28 * 64 + 28], 10 * std::sqrt(1 + 2 * 0.035 * 0.035));
   // The near side is 10 pixels wide.
@@ -237,7 +237,7 @@ TEST_F(Render, BatchComplaintsComeBeforeAnyWork) {
 }
 
 TEST_F(Render, OutputsAreCheckedBeforeAnyWork) {
-  // The model does not exist: were it read first, the complaint would be about it.
+  // The model does not exist: if it were read first, the message would be about it.
   expect_failure("render none.stl -o missing/a.png", 1, "the folder missing does not exist");
   expect_failure("render none.stl -o a.tif", 2, "a.tif: the suffix names no format");
   expect_failure("render none.stl --depth a.jpg", 2, "a.jpg: JPEG and WebP hold pictures alone");
@@ -356,7 +356,7 @@ TEST_F(Render, TheEnvironmentTheKeyLightAndHowLightIsShownCanBeChosen) {
     succeed(render + "other.png " + options);
     EXPECT_NE(read("default.png"), read("other.png")) << options;
   }
-  // Nothing shines: only what the materials send out by themselves is left.
+  // Without any light, only the emission of materials is left.
   succeed(render + "dark.png --environment none --light-intensity 0 --background black");
   const std::string dark = read("dark.png");
   succeed(render + "darker.png --environment none --light-intensity 0 --background black --exposure -20");

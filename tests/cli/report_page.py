@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The page of frontmost report under a hand: clicks, sorting and widths, in a browser without a window.
+"""The page of frontmost report in use: clicks, sorting and widths, in a headless browser.
 
     report_page.py PROGRAM
 
-A script is put into a copy of the page. It clicks, notes what the page then shows, and writes the notes into the page,
-which the browser prints. Skipped where there is no chromium.
+A script is added to a copy of the page. The script clicks and writes what the page then shows into the page, which the
+browser prints. Skipped if chromium is missing.
 """
 import json
 import pathlib
@@ -15,8 +15,8 @@ import subprocess
 import sys
 import tempfile
 
-# In a picture of 10 x 10 pixels, one to a unit at depth 10: 6 x 6 pixels from (2, 2); 4 x 4 before it from (7, 1), of
-# which a column is beyond the frame; and one far outside.
+# A picture of 10 x 10 pixels, one unit a pixel at depth 10: 6 x 6 pixels from (2, 2); 4 x 4 before them from (7, 1),
+# with one column beyond the frame; and one far outside.
 SQUARES = [("far", -3, -3, 6, 10), ("near", 2, 0, 4, 9), ("away", 40, 0, 2, 10)]
 VIEW = ("--camera-position 0,0,10 --camera-focal-point 0,0,0 --camera-view-up +y --intrinsics 100,100,5,5 "
         "--pixel-center half --resolution 10,10 --near 1 --far 200").split()

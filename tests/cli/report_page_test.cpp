@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of frontmost report: what it holds. report_page.py clicks on it.
+// Content of the page of frontmost report. report_page.py clicks on it.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -15,7 +15,7 @@ using testing::Not;
 
 using ReportPage = ReportTest;
 
-/// What stands between two texts; empty where either is missing.
+/// Text between `before` and `behind`; empty if either is missing.
 std::string between(const std::string& text, const std::string& before, const std::string& behind) {
   const std::size_t begin = text.find(before);
   if (begin == std::string::npos) return "";
@@ -23,8 +23,8 @@ std::string between(const std::string& text, const std::string& before, const st
   return end == std::string::npos ? "" : text.substr(from, end - from);
 }
 
-/// The first element that is not closed, or closed in the wrong place, or an attribute without quotes; empty where all
-/// is well. What is in scripts and styles is not looked at.
+/// The first element that is unclosed or closed in the wrong place, or an attribute without quotes; empty if all is
+/// well. Scripts and styles are skipped.
 std::string fault_of(const std::string& page) {
   std::vector<std::string> open;
   for (std::size_t at = page.find('<'); at != std::string::npos; at = page.find('<', at)) {
@@ -46,7 +46,7 @@ std::string fault_of(const std::string& page) {
   return open.empty() ? "" : "open: " + open.back();
 }
 
-/// The page's own numbers.
+/// The numbers that the page embeds.
 json data_of(const std::string& page) { return json::parse(between(page, "id=\"data\">", "</script>")); }
 
 TEST_F(ReportPage, ThePageHasThePictureTheNumbersAndTheMasks) {
@@ -61,7 +61,7 @@ TEST_F(ReportPage, ThePageHasThePictureTheNumbersAndTheMasks) {
   EXPECT_FALSE(data["objects"][2].contains("mask")) << "it is far away";
   EXPECT_EQ(data["objects"][0]["hidden_by"], json({{1, 3}}));
   EXPECT_EQ(data["objects"][0]["alone"], told["objects"][0]["alone"]);
-  // 6 x 6 pixels, of which the last in the first, second and third row are hidden.
+  // A mask of 6 x 6 pixels; the last pixels of the first, second and third row are hidden.
   EXPECT_EQ(data["objects"][0]["mask"], json({0, 0, 5, 0, 1, 5, 0, 1, 5, 0, 1, 18}));
   std::map<int, int> shown;
   for (std::size_t i = 0; i < data["map"].size(); i += 2) shown[data["map"][i]] += int(data["map"][i + 1]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene of three squares, of which every number of a report can be worked out.
+// A scene of three squares whose report can be computed by hand.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -10,11 +10,11 @@ namespace frontmost::test {
 
 class ReportTest : public ProgramTest {
  protected:
-  /// Three squares over a picture of ten by ten pixels, one to a unit: the far one covers 6 x 6 of them, the near one 4
-  /// x 4, three of them before the far one and a column of four beyond the frame; the last one is far away.
+  /// Three squares over a picture of ten by ten pixels, one unit a pixel. The far one covers 6 x 6 pixels. The near one
+  /// covers 4 x 4: three of these hide the far one, and one column is beyond the frame. The last one is far away.
   ReportTest() { write("squares.obj", squares(0)); }
 
-  /// Moved along every axis.
+  /// The squares, moved by `by` along every axis.
   static std::string squares(double by) {
     return square("far", {-3, -3}, 3, 0, by) + square("near", {2, 0}, 2, 1, by) + square("away", {40, 0}, 1, 0, by);
   }
@@ -25,7 +25,7 @@ class ReportTest : public ProgramTest {
 
  private:
   static std::string square(const std::string& name, const glm::dvec2& low, double half, double z, double by) {
-    // So far away that what is nearer is no larger.
+    // Scaled by depth, so that nearer squares look no larger.
     const double scale = (10 - z) / 100;
     std::string text = "o " + name + "\n";
     for (const glm::dvec2& corner : {glm::dvec2(0, 0), {1, 0}, {1, 1}, {0, 1}}) {

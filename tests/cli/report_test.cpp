@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost report: the table, the report, and the files that it writes.
+// frontmost report: its table, its report and its files.
 #include <frontmost/files.h>
 #include <gmock/gmock.h>
 
@@ -135,7 +135,7 @@ TEST_F(Report, CocosAnnotationsHaveWhatIsSeenAndWhatIsHidden) {
   EXPECT_EQ(far["area"], 33);
   EXPECT_EQ(far["bbox"], json({2, 2, 6, 6}));
   EXPECT_EQ(far["iscrowd"], 0);
-  // Columns of ten: two and two pixels of nothing, six of the object, and so on; the last column has three.
+  // Runs down columns of ten: two and two pixels of nothing, six of the object, and so on; the last column has three.
   EXPECT_EQ(far["segmentation"], (json{{"size", {10, 10}}, {"counts", "f06400000003M?"}}));
   EXPECT_EQ(far["amodal_area"], 36);
   EXPECT_EQ(near["bbox"], json({7, 1, 3, 4}));
@@ -194,7 +194,7 @@ TEST_F(Report, ABopSceneHasPosesMasksAndDepth) {
   EXPECT_NEAR(depth.find("Z")->floats()[5 * 10 + 5], 10, 1e-4);
 }
 
-/// What takes a point of the file to the camera of a BOP scene: the numbers of `of`, such as "cam_R_m2c".
+/// Transforms a point to the camera of a BOP scene, by the pose `of`: "cam_R_m2c" for m2c.
 glm::dvec3 in_camera(const json& pose, const std::string& of, const glm::dvec3& point) {
   const json &turn = pose["cam_R_" + of], &move = pose["cam_t_" + of];
   glm::dvec3 result;
@@ -209,8 +209,8 @@ TEST_F(Report, BopsPosesOfModelsFarFromZeroAreForTheCoordinatesOfTheirFiles) {
   constexpr double far = 1e6;
   const glm::dvec3 away(far);
   write("cube.stl", cube_stl(0));
-  write("moved.obj", squares(far));          // text: an origin is taken off its coordinates
-  write("moved.stl", cube_stl(float(far)));  // floats: an origin is taken off its place
+  write("moved.obj", squares(far));          // text: an origin is subtracted from its coordinates
+  write("moved.stl", cube_stl(float(far)));  // floats: an origin is subtracted from its place
   write("home.json", R"({"objects": [{"model": "moved.obj", "parts": "apart", "translation": [-1e6, -1e6, -1e6]}]})");
   const std::string eye = " --bop scene --resolution 40,30 --camera-position ";
   const std::string near_eye = eye + "8,3,4 --camera-focal-point 0,0,0";
@@ -318,7 +318,7 @@ TEST_F(Report, CategoriesOfAFileCountInCocoAndBop) {
 }
 
 TEST_F(Report, BopsOwnDefinitionOfVisibleHasATolerance) {
-  // The near square is a millimetre before the far one: less than the tolerance, so that all of both is visible.
+  // The near square is a millimetre before the far one. That is less than the tolerance, so both are wholly visible.
   succeed(std::string("report squares.obj --bop scene --bop-visible bop19") + view);
   const json infos = json::parse(read("scene/scene_gt_info.json"))["0"];
   EXPECT_EQ(infos[0]["px_count_visib"], 36);
@@ -328,7 +328,7 @@ TEST_F(Report, BopsOwnDefinitionOfVisibleHasATolerance) {
 }
 
 TEST_F(Report, WhatTheFileHidesIsSaid) {
-  // Two triangles, of which one is below a node that is hidden.
+  // One of the two triangles is below a hidden node.
   write("two.gltf", R"({"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_node_visibility"],
       "nodes": [{"name": "seen", "mesh": 0}, {"children": [2], "extensions": {"KHR_node_visibility": {"visible": false}}},
                 {"name": "a < lid", "mesh": 0, "translation": [3, 0, 0]}], "scenes": [{"nodes": [0, 1]}], "scene": 0,
@@ -349,7 +349,7 @@ TEST_F(Report, WhatTheFileHidesIsSaid) {
   expect_failure(command + " --why lid", 2, "two.gltf has no object lid");
   succeed(command + " -o page.html");
   EXPECT_THAT(read("page.html"), HasSubstr("Hidden by the file, and not drawn: a &lt; lid</p>"));
-  // A scene file tells of which of its objects it is.
+  // For a scene file, the message names the object.
   write("placed.json", R"({"objects": [{"model": "two.gltf", "name": "box"}]})");
   EXPECT_EQ(succeed("report placed.json --quiet --resolution 20,20 --json").json()["hidden_by_file"],
             json({"box/a < lid"}));

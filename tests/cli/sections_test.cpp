@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A box of 40 x 30 x 20 with its lower corner at (x, 0, 0).
+/// An OBJ of a box of 40 x 30 x 20 with its lower corner at (x, 0, 0).
 std::string box_obj(const std::string& name, double x, int first) {
   std::string text = "o " + name + "\n";
   for (int i = 0; i < 8; ++i)
@@ -40,7 +40,7 @@ class SectionsCommand : public ProgramTest {
   struct Sheet {
     json page, report;
 
-    /// Of all that a group of a layer has; of the layer where no name is given.
+    /// Bounds of a group's paths; of the whole layer if `group` is empty.
     [[nodiscard]] Bounds bounds(const std::string& layer, const std::string& group = "") const {
       Bounds box;
       for (const json& l : page["layers"])
@@ -78,26 +78,26 @@ class SectionsCommand : public ProgramTest {
 TEST_F(SectionsCommand, ASectionStandsWhereItsViewWouldAndIsHatched) {
   const Sheet sheet = drawn("box.obj --up +z --scale 1:1 --views front --sections left");
   const Bounds front = sheet.bounds("2 visible", "front: box"), section = sheet.bounds("2 visible", "A-A: box");
-  // First-angle: what is seen from the left stands to the right of the front view, in line.
+  // First-angle: the view from the left stands to the right of the front view, in line with it.
   EXPECT_GT(section.low.x, front.high.x + 15 - 1e-6);
   EXPECT_NEAR(section.low.y, front.low.y, 1e-3);
   EXPECT_NEAR(section.high.x - section.low.x, 30, 1e-3);
   EXPECT_NEAR(section.high.y - section.low.y, 20, 1e-3);
-  // The cut face and no other is hatched: lines lie in it and have its area.
+  // Only the cut face is hatched: the lines lie in it and cover its area.
   const Bounds hatched = sheet.bounds("4 hatching");
   EXPECT_GE(hatched.low.x, section.low.x - 1e-3);
   EXPECT_LE(hatched.high.y, section.high.y + 1e-3);
   const double spacing = std::max(1.2, 0.03 * std::hypot(30, 20));
   EXPECT_NEAR(sheet.drawn("4 hatching", "A-A: box") * spacing, 600, 30);
   EXPECT_EQ(sheet.report["views"][1]["name"], "A-A");
-  // The cutting line runs upright through the middle of the front view, beyond both of its ends.
+  // The cutting line runs upright through the middle of the front view, beyond both ends.
   const Bounds marks = sheet.bounds("9 sections");
   EXPECT_LT(marks.low.y, front.low.y - 8);
   EXPECT_GT(marks.high.y, front.high.y + 8);
 }
 
 TEST_F(SectionsCommand, PlanesStandAtCoordinatesOfTheFile) {
-  // In the coordinates of a model that lies far away, too.
+  // Coordinates are those of the model, even if the model lies far away.
   write("far.obj", box_obj("box", 1e6, 1));
   for (const auto& [file, at] : {std::pair("box.obj", 10.0), std::pair("far.obj", 1e6 + 10)}) {
     const Sheet sheet =
@@ -140,7 +140,7 @@ TEST_F(SectionsCommand, NamesAreWrittenAboveAndLettersAtBothEnds) {
         for (const json& path : group["paths"])
           for (const json& p : path["points"]) points.emplace_back(p[0].get<double>(), p[1].get<double>());
   for (const char* const name : {"A-A", "B-B"}) EXPECT_EQ(count_texts(points, name, 5), 1) << name;
-  // Two in the name, and one at each end.
+  // Each letter appears twice in the name and once at each end.
   for (const char* const letter : {"A", "B"}) EXPECT_EQ(count_texts(points, letter, 5), 4) << letter;
 }
 
@@ -190,7 +190,7 @@ TEST_F(SectionsCommand, WhatCannotBeMeantIsRefused) {
   expect_failure("lines box.obj --sections front --style figure -o a.svg", 2, "figures");
   EXPECT_THAT(succeed("lines open.obj --sections front=1,left=1 --up +y -o a.svg").err,
               testing::HasSubstr("do not close"));
-  // Curved models are cut as they are drawn.
+  // Curved models are cut as tessellated for drawing.
   succeed("lines builtin:spheres --views front --sections top --page a2 -o spheres.svg");
 }
 

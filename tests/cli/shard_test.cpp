@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shards of a batch: together they are the batch, what is finished is not done again, and what is not is.
+// Shards of a batch: together they make the batch; finished views are not drawn again, and unfinished ones are.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -31,14 +31,14 @@ class Shards : public ProgramTest {
           "{\"views\": [" + views + "], \"outputs\": {\"output\": \"{model}_{view}.pfm\", \"depth\": \"{view}.npy\"}}");
   }
 
-  /// Numbers of the views that a run draws, besides those that were finished before.
+  /// Numbers of the views that a run draws, without those that were finished before.
   std::vector<std::string> drawn(const std::string& options) const {
     std::vector<std::string> names;
     const nlohmann::json report = succeed(shard_line + options + " --json").json();
     for (const auto& view : report["views"]) names.push_back(view["name"]);
     return names;
   }
-  /// All that was made, but for manifests.
+  /// All files that were made, except manifests.
   [[nodiscard]] std::map<std::string, std::string> made() const {
     std::map<std::string, std::string> result;
     for (const std::string& name : files())
@@ -87,7 +87,7 @@ TEST_F(Shards, WhatIsChangedIsMadeAgain) {
   std::filesystem::remove(path("3.npy"));
   EXPECT_EQ(drawn("--shard 1/3"), (std::vector<std::string>{"3"}));
   std::string depths = read("6.npy");
-  depths.back() ^= 1;  // of the same length
+  depths.back() ^= 1;  // of the same length as before
   write("6.npy", depths);
   EXPECT_EQ(drawn("--shard 1/3"), (std::vector<std::string>{"6"}));
   write_views(10, ", \"cull\": \"back\"");
@@ -95,12 +95,12 @@ TEST_F(Shards, WhatIsChangedIsMadeAgain) {
   EXPECT_EQ(drawn("--shard 1/3 --shading flat"), first_third);
   EXPECT_THAT(drawn("--shard 1/3 --shading flat"), IsEmpty());
   EXPECT_EQ(drawn("--shard 1/3"), first_third);
-  write("cube.stl", cube_stl(0.25f));  // of the same length
+  write("cube.stl", cube_stl(0.25f));  // of the same length as before
   EXPECT_EQ(drawn("--shard 1/3"), first_third);
   EXPECT_THAT(drawn("--shard 1/3"), IsEmpty());
 }
 
-// The file's name says nothing of what is in it.
+// A changed file counts, although its name is the same.
 TEST_F(Shards, PosesAndEnvironmentsInFilesCount) {
   const auto pose = [&](const char* x) { write("pose.txt", "1 0 0 " + std::string(x) + " 0 1 0 0 0 0 1 5 0 0 0 1\n"); };
   const std::string posed =
@@ -122,7 +122,7 @@ TEST_F(Shards, PosesAndEnvironmentsInFilesCount) {
   EXPECT_TRUE(is_drawn(lit));
 }
 
-// A line is finished with its last byte, wherever a run was ended.
+// A line counts only with its last byte, wherever a run ended.
 TEST_F(Shards, ManifestsThatAreCutShortLoseTheirLastView) {
   succeed(shard_line + "--shard 1/5");
   const auto whole = made();
@@ -200,11 +200,11 @@ TEST_F(Merging, GathersTheFilesOfAllFolders) {
   for (const auto& [name, content] : made()) EXPECT_EQ(read("all/of/them/" + name), content) << name;
   EXPECT_FALSE(exists("all/of/them/cube.v.1-of-3.jsonl"));
   const std::string before = read("all/of/them/cube.v.1-of-1.jsonl");
-  // All of it is finished, from wherever its batch file and its model are named.
+  // All views count as finished, from whatever folder the batch file and the model are named.
   for (const char* name : {"cube.stl", "v.json"}) std::filesystem::copy_file(path(name), path("all/of/") + name);
   draw("all/of/them", "1/1");
   EXPECT_EQ(read("all/of/them/cube.v.1-of-1.jsonl"), before);
-  // Single manifests; onto what is there; into one of the folders themselves.
+  // Manifests are copied singly; over existing ones; and into one of the source folders.
   for (const char* to : {"all/of/them", "a"})
     EXPECT_THAT(succeed("batch-merge a/cube.v.1-of-3.jsonl b a/cube.v.3-of-3.jsonl -o " + std::string(to)).out,
                 HasSubstr("10 views, 20 files"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sheets of frontmost lines: frame, title block and views keep clear of each other on every paper.
+// Sheets of frontmost lines: on every paper, frame, title block and views do not overlap.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -15,7 +15,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A box with a pit in its top: hidden edges in every view but from above.
+/// A box with a pit in its top: it has hidden edges in every view except from above.
 std::string pitted_box_obj(double size = 1) {
   std::string text = "o box\n";
   const auto corners = [&](double low_x, double low_y, double low_z, double high_x, double high_y, double high_z) {
@@ -26,8 +26,8 @@ std::string pitted_box_obj(double size = 1) {
   };
   corners(0, 0, 0, 40, 30, 20);
   corners(10, 10, 5, 30, 20, 20);
-  text += "f 1 3 4 2\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";  // without its top
-  text += "f 5 6 14 13\nf 6 8 16 14\nf 8 7 15 16\nf 7 5 13 15\n";     // which is a ring
+  text += "f 1 3 4 2\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";  // the top is left out
+  text += "f 5 6 14 13\nf 6 8 16 14\nf 8 7 15 16\nf 7 5 13 15\n";     // the top is a ring around the pit
   return text + "f 9 10 12 11\nf 9 13 14 10\nf 11 12 16 15\nf 9 11 15 13\nf 10 14 16 12\n";
 }
 
@@ -58,7 +58,7 @@ class SheetsCommand : public ProgramTest {
     return holds_text(points_of(page, "8 frame"), text, height);
   }
 
-  /// What each view covers, of all layers but the frame's.
+  /// The box that each view covers, over all layers but the frame's.
   [[nodiscard]] static std::map<std::string, ViewBox> views_of(const json& page) {
     std::map<std::string, ViewBox> views;
     for (const json& layer : page["layers"])
@@ -76,7 +76,7 @@ class SheetsCommand : public ProgramTest {
     return views;
   }
 
-  /// The groups of hidden lines.
+  /// Names of the groups of hidden lines.
   [[nodiscard]] static std::vector<std::string> hidden_in(const json& page) {
     std::vector<std::string> names;
     for (const json& layer : page["layers"])
@@ -91,7 +91,7 @@ TEST_F(SheetsCommand, TheViewAtAnAngleHasHiddenLinesOnlyWhereAskedFor) {
   EXPECT_THAT(hidden_in(drawn(sheet)), testing::ElementsAre("front: box"));
   EXPECT_THAT(hidden_in(drawn(sheet + " --hidden-views iso")), testing::ElementsAre("iso: box"));
   EXPECT_THAT(hidden_in(drawn(sheet + " --hidden-views front,iso")), testing::ElementsAre("front: box", "iso: box"));
-  // Not of a sheet: the only view shows what it is told to.
+  // A drawing that is no sheet shows hidden lines as requested.
   EXPECT_FALSE(hidden_in(drawn("box.obj --up +z --view iso --camera-orthographic --hidden dashed")).empty());
   expect_failure("lines box.obj --views front --hidden-views front -o a.svg", 2, "--hidden-views: needs hidden lines");
   expect_failure("lines box.obj --hidden dashed --hidden-views front -o a.svg", 2, "needs --views");
@@ -148,19 +148,19 @@ TEST_F(SheetsCommand, TheTitleBlockSaysWhatItIsTold) {
     EXPECT_TRUE(says(page, text, 2.5)) << text;
   EXPECT_TRUE(says(drawn(sheet), "box", 5));  // the model's name
   EXPECT_TRUE(says(drawn(sheet + " --unit in --scale 1:20"), "in", 2.5));
-  // No clock, no place: the same bytes every time.
+  // Files hold no time and no path: the same bytes every time.
   succeed("lines " + sheet + " -o first.pdf -o first.svg -o first.dxf");
   succeed("lines " + sheet + " -o second.pdf -o second.svg -o second.dxf --threads 3");
   for (const std::string suffix : {".pdf", ".svg", ".dxf"}) EXPECT_EQ(read("first" + suffix), read("second" + suffix));
   EXPECT_THAT(read("first.dxf"), HasSubstr("\n8_FRAME-TITLE_BLOCK\n"));
   EXPECT_EQ(points_of(drawn("box.obj --up +z --views front,top"), "8 frame").size(), 0u);
-  EXPECT_TRUE(says(drawn("box.obj --frame"), "\xE2\x80\x93", 2.5));  // in perspective there is no scale
+  EXPECT_TRUE(says(drawn("box.obj --frame"), "\xE2\x80\x93", 2.5));  // a perspective view has no scale
 }
 
 TEST_F(SheetsCommand, AFrameAsksForAPageWithRoom) {
   expect_failure("lines box.obj --frame --views front --page a5-portrait -o a.svg", 2,
                  "--page: 148 x 210 mm have no room for a frame and its title block, which need 210 x 100");
-  succeed("lines box.obj --frame --views front --page a5 -o a.svg");  // lies down
+  succeed("lines box.obj --frame --views front --page a5 -o a.svg");  // landscape
   expect_failure("lines box.obj --frame --views front --page fit --scale 1:1 -o a.svg", 2, "--page: a frame needs");
   expect_failure("lines box.obj --frame --views front --margin 90 -o a.svg", 2, "--margin: 90 mm at each side leave");
   expect_failure("lines box.obj --views front --title " + std::string(81, 'x') + " -o a.svg", 2,
@@ -211,13 +211,13 @@ TEST_F(SheetsCommand, SeveralModelsArePagesOfOnePdf) {
   EXPECT_EQ(report["sheets"][1]["outputs"], json({"second.pdf"}));
   const std::string pdf = read("sheets.pdf");
   EXPECT_THAT(pdf, HasSubstr("/Count 2 >>"));
-  // A page is what the file of its model is: the same bytes, but for the numbers of its objects.
+  // In a joint PDF, a page has the bytes of its model's own file, except for object numbers.
   for (const std::string model : {"box", "second"}) {
     const std::string alone = read(model + ".pdf");
     const std::size_t begin = alone.find("stream\n"), end = alone.find("\nendstream");
     EXPECT_THAT(pdf, HasSubstr(alone.substr(begin, end - begin))) << model;
   }
-  // Without {model} in the name there is no other file; to standard output as well.
+  // Several models share a file if the name has no {model}; likewise on standard output.
   EXPECT_THAT(succeed("lines box.obj second.obj -o - --format pdf").out, HasSubstr("/Count 2 >>"));
   expect_failure("lines box.obj second.obj -o - --format svg", 2, "make it a .pdf");
   expect_failure("lines box.obj second.obj -o box.pdf -o {model}.pdf", 2, "would be written twice");
@@ -243,7 +243,7 @@ TEST_F(SheetsCommand, WhatTheFilesNumbersAreIsNotWhatTheSheetStates) {
   write("metres.json", placed("1"));
   write("inches.json", placed("0.0254"));
   struct Case {
-    const char *options, *unit, *width;  // of a box that is 40 wide
+    const char *options, *unit, *width;  // for a box that is 40 wide
     bool overrules = false;
   };
   const Case cases[] = {{"box.obj", "mm", "40"},
@@ -283,13 +283,13 @@ TEST_F(SheetsCommand, AnAbsurdScaleNamesTheUnitsThatWouldMakeSense) {
   EXPECT_THAT(
       succeed("lines inches.obj --up +z --frame --view front --camera-orthographic --scale standard -o a.svg").err,
       HasSubstr("--unit cm (10:1) or --unit m (1:10) or --unit in (2:1) would make sense"));
-  // As `info` guesses: what is nearly a unit is in metres.
+  // A model of nearly one unit is taken for metres, as `info` does.
   write("guess.obj", pitted_box_obj(0.0155));
   EXPECT_EQ(succeed("info guess.obj --json").json()["unit"]["name"], "metre");
   const std::string hint = succeed("lines guess.obj --up +z --views front,top,left -o a.svg").err;
   EXPECT_THAT(hint, testing::AllOf(HasSubstr("--unit m (1:5) would make sense"), Not(HasSubstr("--unit in"))));
   EXPECT_EQ(succeed("lines box.obj --up +z --views front,top,left -o a.svg").err, "");
-  // A single drawing is as large as its page, at any scale.
+  // A single drawing is as large as its page, at any scale, and gets no hint.
   EXPECT_EQ(succeed("lines metres.obj --view top --camera-orthographic -o a.svg").err, "");
 }
 

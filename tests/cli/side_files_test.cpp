@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that a run needs beside its model: however long or odd, they end in a result or in a line that names file and
+// Files that a run needs beside its model. However long or odd, they lead to a result or to a message with file and
 // place.
 #include <gmock/gmock.h>
 #include <sys/stat.h>
@@ -17,7 +17,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Every option that names one, but for the file's own name.
+/// Every option that names a side file, before the file's name.
 const char* const side_files[] = {"render cube.stl -o a.png --resolution 8,8 --batch",
                                   "render cube.stl -o a.png --resolution 8,8 --reference",
                                   "camera cube.stl --pose-convention opencv-world-to-camera --pose",
@@ -106,7 +106,7 @@ TEST_F(SideFiles, NumbersThatNoDoubleHoldsAreNamedWithTheirPlace) {
                  "long.txt: line 5: more than 16 numbers");
   write("batch.json", "{\"views\": [{},\n {\"near\": 1e400}]}");
   expect_failure("render cube.stl --hash --batch batch.json", 2, "batch.json: line 2: 1e400 is not a usable number");
-  // Too small for a double is as good as nothing.
+  // A number too small for a double counts as zero.
   write("tiny.txt", "0 0 0 1 1 1e-400\n");
   EXPECT_EQ(succeed("sight cube.stl --pairs tiny.txt").out, "clear\n");
 }
@@ -138,7 +138,7 @@ std::string repeated(const std::string& part, std::size_t count) {
   return text;
 }
 
-/// Of the processor, so that others on the machine do not count.
+/// Processor time, so that other programs on the machine do not count.
 template <class Work>
 double seconds_of(const Work& work) {
   const std::clock_t start = std::clock();
@@ -148,7 +148,7 @@ double seconds_of(const Work& work) {
 
 TEST(BatchLimits, ViewsAreCountedBeforeTheyAreKept) {
   const std::string many = R"({"views":[)" + repeated("{}", 200'000) + "]}";
-  // Every view went through all before it: 17 s.
+  // Comparing every view with all before it would take 17 s.
   EXPECT_LT(seconds_of([&] { EXPECT_EQ(batch_complaint(many), "b.json: views: more than 100000"); }), 2);
   EXPECT_EQ(batch_complaint(R"({"views":[)" + repeated("[]", 100'001) + "]}"), "b.json: views: more than 100000");
   EXPECT_EQ(batch_complaint(R"({"views":[)" + repeated("0", 100'001) + "]}"), "b.json: views: more than 100000");

@@ -62,7 +62,7 @@ TEST_F(LineOfSight, JsonIsWrittenAsItIsMade) {
     EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), count);
   }
   if (under_sanitizer) GTEST_SKIP() << "there is nothing to limit";
-  // The report of 70,000 pairs took 170 MB.
+  // A report of 70,000 pairs must not be held in memory, where it takes 170 MB.
   const Outcome outcome = run(Call{.words = {"sight", "cube.stl", "--pairs", "pairs.txt", "--json", "--threads", "1"},
                                    .address_space = std::size_t(120) << 20});
   EXPECT_EQ(outcome.status, 0) << outcome.err;

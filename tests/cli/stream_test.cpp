@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// --stream: the same files, to the byte, as without it.
+// --stream gives the same files as without it, to the byte.
 #include <gmock/gmock.h>
 
 #include <array>
@@ -103,7 +103,7 @@ TEST_F(StreamedProgram, WarningsNameTheModelThatTheyAreAbout) {
   }
 }
 
-/// A flat sheet of two triangles for every square, bent a little, from its near end to its far end.
+/// An STL of a slightly bent sheet, two triangles for every square, from its near end to its far end.
 std::string sheet_stl(std::uint32_t columns, std::uint32_t rows) {
   std::string stl(80, ' ');
   const std::uint32_t count = 2 * columns * rows;
@@ -128,7 +128,7 @@ std::string sheet_stl(std::uint32_t columns, std::uint32_t rows) {
   return stl;
 }
 
-// 150 MB of triangles, of which the model in memory takes 150 MB and the mapped file its own size.
+// The triangles take 150 MB on disk; the model would take 150 MB in memory, and the mapped file its own size.
 TEST_F(StreamedProgram, DrawsInMemoryThatTheModelDoesNotFitInto) {
   if (under_sanitizer) GTEST_SKIP() << "the sanitizer takes all addresses";
   write("sheet.stl", sheet_stl(1500, 1000));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a system may refuse: threads, memory, room for files. The program does with what there is, or says what it
-// lacks.
+// Threads, memory and file sizes that a system may refuse: the program manages with less, or names what is missing.
 #include <gmock/gmock.h>
 #include <signal.h>
 
@@ -90,7 +89,7 @@ TEST_F(SystemLimits, APageIsWrittenWholeOrNotAtAll) {
   const std::string line = "compare cube.stl --runs 1 --resolution 160,120 -o ";
   succeed(line + "whole");
   const auto size = [&](const char* name) { return std::filesystem::file_size(path(std::string("whole/") + name)); };
-  // Room for every picture, but not for the page, which holds them all.
+  // Every picture fits the limit, but not the page, which holds them all.
   const std::size_t most = 2 * std::max(size("zbuffer.png"), size("painter-centroid-differences.png"));
   ASSERT_LT(most, size("index.html"));
   const Outcome outcome = run(Call{.words = words(line + "new/page"), .file_size = most});

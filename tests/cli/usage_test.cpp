@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Help, wrong usage, and what is written about the options elsewhere.
+// Help, wrong usage, and texts about the options elsewhere.
 #include <gmock/gmock.h>
 
 #include "cli/command.h"
@@ -51,14 +51,14 @@ TEST_F(Usage, LinesOfUsageAreSetWellAndSaySeveralModels) {
   EXPECT_THAT(succeed("--help").out, HasSubstr("usage: frontmost COMMAND [MODEL...] [options]"));
   const std::string manual = succeed("man").out;
   EXPECT_THAT(manual, HasSubstr(".B frontmost render\n\\fIMODEL...\\fR [options]\n.br\n"));
-  // A line that begins with a blank breaks the page there.
+  // In the manual page, a line that begins with a blank breaks the line.
   EXPECT_THAT(manual, HasSubstr(".B frontmost precision\n\\fI[MODEL]\\fR [options]\n.br\n"));
   EXPECT_THAT(manual, testing::Not(HasSubstr("\n [options]")));
   EXPECT_THAT(manual, testing::Not(HasSubstr("\\fI\\fR")));
   expect_failure("render", 2, "no MODEL given; see frontmost render --help");
 }
 
-// A name may mean one thing to one command and another to the next, as --format does.
+// A name may have different meanings in different commands, as --format does.
 TEST_F(Usage, OptionNamesAreUniqueInEveryCommand) {
   std::size_t all = 0;
   for (const cli::Command& command : cli::commands()) {

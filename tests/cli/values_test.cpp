@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values as users write them: what is taken, and what is refused with which words.
+// Values as users write them: accepted ones, and the messages for refused ones.
 #include "cli/values.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From camera options to views: what they mean, checked against each other and against points of known place.
+// From camera options to views, checked against each other and against points whose image is known.
 #include "cli/view/view_options.h"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The eight corners of the box from (0, 0, 0) to (2, 4, 6), z up.
+/// The eight vertices of the box from (0, 0, 0) to (2, 4, 6), z up.
 Scene box_scene() {
   Scene scene;
   scene.up = Axis::z;
@@ -56,7 +56,7 @@ class ViewOptions : public testing::Test {
   static glm::dvec3 eye_space(const View& view, const glm::dvec3& point) {
     return glm::dvec3(glm::inverse(view.world_from_eye) * glm::dvec4(point, 1));
   }
-  /// Screen position in pixels and depth.
+  /// Position in pixels and depth.
   static glm::dvec3 project(const View& view, const glm::dvec3& point) {
     const glm::dvec3 p = eye_space(view, point);
     const double reach = view.projection.orthographic ? 1 : -p.z;
@@ -64,7 +64,7 @@ class ViewOptions : public testing::Test {
     return {(p.x / reach - sides.left) / (sides.right - sides.left) * view.width,
             (sides.top - p.y / reach) / (sides.top - sides.bottom) * view.height, -p.z};
   }
-  /// How far the corners of the box reach into the picture, as fractions of its sides.
+  /// Bounds of the box's vertices in the picture, as fractions of the picture's size.
   static std::pair<glm::dvec2, glm::dvec2> reach(const View& view) {
     glm::dvec2 low(1e9), high(-1e9);
     for (int i = 0; i < 8; ++i) {
@@ -129,7 +129,7 @@ TEST_F(ViewOptions, PositionFocalPointAndUpMakeTheCamera) {
   EXPECT_EQ(v.eye(), glm::dvec3(1, -10, 3));
   EXPECT_NEAR(v.forward().y, 1, 1e-12);
   EXPECT_NEAR(v.up().z, 1, 1e-12);
-  // 12 ahead, with 45 degrees upwards: the top of the picture is 12 higher.
+  // At 12 ahead and 45 degrees upwards, the top of the picture is 12 higher.
   EXPECT_NEAR(project(v, {1, 2, 15}).y, 0, 1e-9);
   EXPECT_NEAR(project(v, {1, 2, 3}).x, 100, 1e-9);
   EXPECT_NEAR(project(v, {25, 2, 3}).x, 200, 1e-9);
@@ -161,7 +161,7 @@ TEST_F(ViewOptions, EverythingFitsFromAnyDirection) {
       SCOPED_TRACE(testing::Message() << (pairs.empty() ? "default" : pairs[0].first) << " at " << size);
       EXPECT_GE(std::min(low.x, low.y), 0.049);
       EXPECT_LE(std::max(high.x, high.y), 0.951);
-      // And no farther away than needed: it reaches a margin somewhere.
+      // The camera is no farther than needed: the box reaches a margin somewhere.
       EXPECT_LT(std::min({low.x, low.y, 1 - high.x, 1 - high.y}), 0.051);
     }
   }
@@ -198,13 +198,13 @@ TEST_F(ViewOptions, ZoomDividesTheAngleOrTheHeight) {
 }
 
 TEST_F(ViewOptions, IntrinsicsAndPoseAreTheVisionCamera) {
-  // x right, y down, z forward; the world 10 before the camera, turned half about x.
+  // x right, y down, z forward; the world lies 10 before the camera, turned by a half turn about x.
   const Pairs pairs = {{"intrinsics", "100,200,31.5,23.5"},
                        {"resolution", "64,48"},
                        {"pose", "1,0,0,0, 0,-1,0,0, 0,0,-1,10, 0,0,0,1"},
                        {"pose-convention", "opencv-world-to-camera"}};
   const View v = view(pairs);
-  // A point at camera (1, 2, 8): u = 100 * 1 / 8 + 31.5, centres of pixels at whole numbers.
+  // A point at camera (1, 2, 8): u = 100 * 1 / 8 + 31.5, with pixel centres at whole numbers.
   const glm::dvec3 screen = project(v, {1, -2, 2});
   EXPECT_NEAR(screen.x, 100.0 / 8 + 31.5 + 0.5, 1e-9);
   EXPECT_NEAR(screen.y, 200.0 * 2 / 8 + 23.5 + 0.5, 1e-9);
@@ -249,7 +249,7 @@ TEST_F(ViewOptions, PlanesAreFittedUnlessGiven) {
   const View given = view({{"camera-position", "1,-10,3"}, {"near", "0.5"}, {"far", "inf"}});
   EXPECT_EQ(given.projection.clip.near, 0.5);
   EXPECT_TRUE(std::isinf(given.projection.clip.far));
-  // A near plane beyond the model is what was asked for; the far one gives way.
+  // A requested near plane beyond the model is kept; the far plane moves.
   EXPECT_EQ(view({{"camera-position", "1,-10,3"}, {"near", "100"}}).projection.clip.near, 100);
   EXPECT_EQ(view({{"camera-position", "1,-10,3"}, {"far", "1"}}).projection.clip.far, 1);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// frontmost visible: the lists of faces that are seen, from one place and from many.
+// frontmost visible: lists of visible faces, from one place and from many.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 class VisibleCommand : public ProgramTest {
  protected:
-  /// A square of two triangles, 8 x 8 pixels of the view, and a triangle that lies behind it.
+  /// A square of two triangles, 8 x 8 pixels of the view, and a triangle behind it.
   VisibleCommand() {
     write("plate.obj",
           "o square\nv -4 -4 0\nv 4 -4 0\nv 4 4 0\nv -4 4 0\nf 1 2 3\nf 1 3 4\n"
@@ -31,7 +31,7 @@ class VisibleCommand : public ProgramTest {
     return result;
   }
 
-  /// The numbers of a row.
+  /// The numbers in a row.
   static std::vector<double> numbers(const std::string& row) {
     std::vector<double> result;
     std::istringstream text(row);
@@ -57,7 +57,7 @@ TEST_F(VisibleCommand, OfOneViewListsTheAreasOfFaces) {
   const std::vector<std::string> rows = lines("faces.csv");
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0], "primitive,object,triangle,pixels,area,solid_angle");
-  // Half of what a rectangle has: 4 atan(a b / (d sqrt(a^2 + b^2 + d^2))), a and b being half its sides.
+  // Half of a rectangle's solid angle: 4 atan(a b / (d sqrt(a^2 + b^2 + d^2))), where a and b are half its sides.
   const double half_square = 2 * std::atan(16 / (10 * std::sqrt(132.0)));
   EXPECT_THAT(numbers(rows[1]), are({0, 0, 0, 32, 32, half_square}));
   EXPECT_THAT(numbers(rows[2]), are({1, 0, 1, 32, 32, half_square}));
@@ -86,7 +86,7 @@ TEST_F(VisibleCommand, FromAllAroundEverySideOfACubeIsSeenByHalfOfTheViews) {
   for (std::size_t i = 1; i < rows.size(); ++i) {
     int primitive = 0, object = 0, triangle = 0, views = 0;
     ASSERT_EQ(std::sscanf(rows[i].c_str(), "%d,%d,%d,%d", &primitive, &object, &triangle, &views), 4);
-    // An eye at a finite distance sees a side from less than a half of all places.
+    // An eye at a finite distance sees a side from less than half of all places.
     EXPECT_GT(views, 25) << rows[i];
     EXPECT_LE(views, 50) << rows[i];
   }
@@ -125,8 +125,8 @@ TEST_F(VisibleCommand, TheModelItselfIsColouredByWhatIsSeen) {
   constexpr std::size_t row = 1 + 3 * 4 + 2 * 4 + 3 * 8 + 3;
   ASSERT_EQ(model.size(), end + 7 * 3 * 4 + 3 * row);
   const auto color = [&](std::size_t face) { return model.substr(model.size() - (2 - face) * row - 3, 3); };
-  EXPECT_EQ(color(0), "\xFD\xE7\x25");  // all of it is seen: yellow
-  EXPECT_EQ(color(2), "\x80\x80\x80");  // nothing
+  EXPECT_EQ(color(0), "\xFD\xE7\x25");  // wholly visible: yellow
+  EXPECT_EQ(color(2), "\x80\x80\x80");  // not visible
   succeed("visible plate.obj --views views.json -o ever.ply" + std::string(lens));
   EXPECT_THAT(read("ever.ply"), HasSubstr("property double largest_share\n"));
   EXPECT_THAT(succeed("info seen.ply").out, HasSubstr("3 triangles"));

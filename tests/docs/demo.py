@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the demo's page, and looks at it as a browser would.
+"""Makes the demo's page, and checks it as a browser would read it.
 
     demo.py DEMO PROGRAM FOLDER
 
-Every command of the page has run, its pictures are in the page itself and its files beside it, and lines of commands can
-be broken between words alone, so that no option is torn at its hyphens.
+Every command of the page has run, its pictures are embedded in the page and its files lie beside it. Command lines
+break only between words, so that no option is split at its hyphens.
 """
 import html.parser
 import pathlib
@@ -14,7 +14,7 @@ import sys
 
 
 class Page(html.parser.HTMLParser):
-    """What the tests ask of a page: images, links, and the words of commands."""
+    """Parts of a page that the tests check: images, links, and the words of commands."""
 
     def __init__(self, text):
         super().__init__()
@@ -56,7 +56,7 @@ def main():
     assert all((folder / link).is_file() for link in page.links)
     files = [name for words in page.commands for option, name in zip(words, words[1:]) if option == "-o"]
     assert files and all((folder / name).is_file() for name in files)
-    # A drawing sheet, a plotter's drawing and a figure for a paper are among them.
+    # The drawings include a sheet, a plotter's drawing and a figure for a paper.
     drawn = [" ".join(c) for c in page.commands if c[1] == "lines"]
     for sign in ("--views", "--plot", "--style figure"):
         assert any(sign in command for command in drawn), sign

@@ -23,7 +23,7 @@ std::vector<double> numbers(const glm::vec<size, T>& vector) {
   return result;
 }
 
-/// The numbers of a text, each with half a unit of its last written digit.
+/// A number of a text, with half a unit of its last digit as tolerance.
 struct Written {
   double value, tolerance;
 };

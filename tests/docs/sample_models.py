@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The files that the documentation's examples name, as small as they can be: a block of 2 x 1 x 1 units."""
+"""The files that the documentation's examples name, as small as possible: a block of 2 x 1 x 1 units."""
 import json
 import struct
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places, edges, sets and buckets against what is obviously right: all pairs.
+// Equal positions, edges, sets and buckets against brute force over all pairs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kInfinite = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// Positions of which many are equal; zeros of both signs and numbers that are not finite among them.
+/// Positions with many duplicates, zeros of both signs, and values that are not finite.
 std::vector<glm::vec3> some_positions(std::uint64_t seed, int count) {
   Random random(seed);
   std::vector<glm::vec3> positions;
@@ -46,7 +46,7 @@ TEST(Places, TheFirstOfEqualOnesIsFoundAsByAllPairs) {
 }
 
 TEST(Places, ThreadsFindTheSameAndManyThatAreNotFiniteTakeNoTime) {
-  std::vector<glm::vec3> positions(400000, glm::vec3(kNan));  // each of which would be compared with all others
+  std::vector<glm::vec3> positions(400000, glm::vec3(kNan));  // comparing each NaN with all others would take too long
   for (std::size_t i = 0; i < positions.size(); i += 2)
     positions[i] = {float(i % 977), float(i % 613), -float(i % 2003)};
   const Buffer<std::uint32_t> one = first_at_place(positions, {.threads = 1});
@@ -55,7 +55,7 @@ TEST(Places, ThreadsFindTheSameAndManyThatAreNotFiniteTakeNoTime) {
   EXPECT_EQ(one[399999], 399999u);
 }
 
-/// Beyond each side, by all pairs of sides.
+/// The triangle beyond an edge, by comparison of all pairs of edges.
 std::uint32_t beyond_by_all_pairs(const std::vector<glm::uvec3>& triangles, std::size_t t, int k, bool& is_alike) {
   const auto is_whole = [](const glm::uvec3& c) { return c.x != c.y && c.y != c.z && c.z != c.x; };
   if (!is_whole(triangles[t])) return no_index;
@@ -79,7 +79,7 @@ TEST(EdgeNeighbours, AreThoseFoundByAllPairs) {
   int alike = 0, turned = 0, none = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Random random(seed);
-    const int vertices = seed % 3 == 0 ? 5 : 40;  // of which one has many triangles
+    const int vertices = seed % 3 == 0 ? 5 : 40;  // with few vertices, one has many triangles
     std::vector<glm::uvec3> triangles;
     for (int i = 0; i < 60; ++i) {
       const auto a = std::uint32_t(random.below(vertices)), b = std::uint32_t(random.below(vertices)),

@@ -1,15 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Golden pictures: few, small, and only of what a person has looked at.
+"""Golden pictures: few, small, and each inspected by a person.
 
     golden.py check PROGRAM FOLDER     renders every case into FOLDER and compares
     golden.py update PROGRAM FOLDER    renders, and stores the result as the new truth
 
-Figures are promised to the byte, too, where no function of the C library has a part in their colours, and drawings in all
-their formats, PDF before it is compressed.
-What is visible (ids and depths) and each map are promised to the byte, so their content hashes must be equal. Colours
-go through functions of the C library and may differ by a rounding: each channel within COLOUR_TOLERANCE. On failure
-the picture and its difference lie in FOLDER, the reference beside this script.
+Visible surfaces (ids and depths) and maps are promised to the byte, so their content hashes must be equal. Figures are
+promised to the byte if no C library function affects their colours; drawings are in all formats, PDF before
+compression. Colours depend on C library functions and may differ by a rounding: each channel within COLOUR_TOLERANCE.
+On failure the picture and its difference are in FOLDER, and the reference is beside this script.
 """
 import hashlib
 import json
@@ -48,7 +47,8 @@ DRAWINGS = {
 
 
 def hashes_of(text):
-    """{"visible": ..., "depth": ...} from the lines "WHAT HASH [FILE]" of --hash; colours are compared otherwise."""
+    """{"visible": ..., "depth": ...} from the lines "WHAT HASH [FILE]" of --hash, without colours, which are compared
+    otherwise."""
     words = [line.split() for line in text.splitlines()]
     return {line[0]: line[1] for line in words if line and line[0] != "picture"}
 
@@ -62,13 +62,13 @@ def render(program, folder, name, compare):
 
 
 def inflated(data):
-    """A PDF whose streams are as before compression, without their lengths and places."""
+    """A PDF with its streams decompressed, without their lengths and offsets."""
     data = re.sub(rb"stream\n(.*?)\nendstream", lambda found: zlib.decompress(found.group(1)), data, flags=re.S)
     return re.sub(rb"/Length \d+|^\d{10} .*$|startxref\n\d+", b"", data, flags=re.M)
 
 
 def draw(program, folder, name):
-    """The hashes of a figure's or a drawing's bytes, by format."""
+    """Hashes of the bytes of a figure or a drawing, by format."""
     words, formats = (["render", *FIGURES[name]], ["svg"]) if name in FIGURES else (["lines", *DRAWINGS[name]], ["svg", "pdf", "dxf", "json"])
     outputs = [word for suffix in formats for word in ("-o", f"{name}.{suffix}")]
     subprocess.run([str(word) for word in [program, *words, *outputs, "--quiet"]], cwd=folder, check=True)

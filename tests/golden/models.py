@@ -23,7 +23,7 @@ from golden import inflated
 MODEL_SUFFIXES = {".stl", ".ply", ".obj", ".off", ".glb", ".gltf", ".3mf"}
 SMALL = ["--resolution", "160,120"]
 TINY = ["--resolution", "96,72"]
-# Kinds of outputs: the command's words, with the names of its files, which are what is hashed beside standard output.
+# Kinds of outputs: the words of a command with its file names. The files and standard output are hashed.
 KINDS = {
     "info": ["info", "MODEL"],
     "camera": ["camera", "MODEL", "--view", "iso"],
@@ -49,7 +49,7 @@ KINDS = {
     "sight": ["sight", "MODEL", "--from", "0,2,0", "--to", "3,1,-5"],
     "lidar": ["lidar", "MODEL", "--from", "0.1,0.2,0.3", "--steps", "256", "-o", "points.ply", "-o", "range.exr"],
 }
-# What takes minutes for the largest, and says nothing that the others do not.
+# Models above this size only get LARGE_KINDS: other kinds would take minutes and test nothing new.
 MOST_BYTES = 3_000_000
 LARGE_KINDS = ["info", "picture", "maps", "rays"]
 
@@ -59,12 +59,12 @@ def hash_of(name, data):
 
 
 def text_of(data, model):
-    """What is printed, without the time that it took."""
+    """Printed text without the times in it."""
     return re.sub(rb"[0-9.]+ m?s\b", b"", data.replace(os.fsencode(model), b"MODEL"))
 
 
 def outputs(program, model, kind):
-    """{"WORDS": hash} of one command: of what it prints, and of its files."""
+    """{"WORDS": hash} of one command: its printed text and its files."""
     words = [program, *(str(model) if word == "MODEL" else word for word in KINDS[kind]), "--quiet", "--threads", "1", "--timeout", "900"]
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(words, cwd=folder, capture_output=True)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""check_house.py refuses includes that go against the arrows, and names them; exit status 0 when all is well."""
+"""Checks that check_house.py refuses includes against the arrows and names them; exit status 0 if all is well."""
 import pathlib
 import sys
 

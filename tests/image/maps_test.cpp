@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth, distance and id maps of answers made by hand.
+// Depth, distance and id maps of hand-made answers.
 #include <cmath>
 
 #include "frontmost/image.h"
@@ -11,7 +11,7 @@
 namespace frontmost::test {
 namespace {
 
-/// Four by two pixels; near 1, 90 degrees high.
+/// A picture of four by two pixels; near 1, 90 degrees high.
 Visible some_visible(int samples = 1) {
   Visible visible;
   visible.view.width = 4;
@@ -92,7 +92,7 @@ TEST(Maps, ParallelRaysAreAsLongAsDepths) {
   EXPECT_EQ(values(depth_image(visible))[4], 3.0f);  // (far - distance) / (far - near) = 1/2
 }
 
-/// Two instances of a mesh of two triangles, the second of which has a material.
+/// Two instances of a mesh of two triangles; the second triangle has a material.
 Scene two_squares() {
   Scene scene;
   Mesh mesh;

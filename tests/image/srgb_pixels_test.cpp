@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours as they go to screens and files; and what an image may not be, in full words.
+// Colours on their way to screens and files; and the error messages for invalid images.
 #include "image/srgb_pixels.h"
 
 #include <cmath>
@@ -27,7 +27,7 @@ TEST(ColorPlanes, NeedAllThreeColoursInFloats) {
 
 TEST(ColorPlanes, AreOpaqueWhenEveryAlphaRoundsToOne) {
   const float infinity = std::numeric_limits<float>::infinity(), last = 254.5f / 255;
-  // Around the borders of the blocks in which alphas are looked at.
+  // Places around the borders of the blocks in which alphas are examined.
   for (const std::size_t place : {std::size_t(0), std::size_t(4095), std::size_t(4096), std::size_t(9999)}) {
     Image image = random_floats(100, 100, {"R", "G", "B", "A"});
     Buffer<float>& alpha = image.channels[3].floats();
@@ -62,7 +62,7 @@ TEST(StoreSrgb, DividesByAlpha) {
   EXPECT_EQ(out[0], 188);
   EXPECT_EQ(out[1], 137);
   EXPECT_EQ(out[2], 0);
-  store_srgb(half, 1.0f, out);  // as it is
+  store_srgb(half, 1.0f, out);  // premultiplied
   EXPECT_EQ(out[0], 137);
   store_srgb(half, 2.0f, out);
   EXPECT_EQ(out[0], 137) << "more than opaque is opaque";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texture images in every flavour, and what is said of broken ones.
+// Texture images in every flavour, and error messages for broken ones.
 #include "io/images/decode.h"
 
 #include <gmock/gmock.h>
@@ -45,7 +45,7 @@ void set_big_endian(std::vector<std::byte>& bytes, std::size_t at, std::uint32_t
   for (int i = 0; i < 4; ++i) bytes[at + std::size_t(i)] = std::byte(value >> (24 - 8 * i));
 }
 
-/// The header's check sum, so that a changed size is not caught by it.
+/// Recomputes the header's checksum, so that a changed size is not caught by it.
 void repair_header(std::vector<std::byte>& png) {
   std::uint32_t crc = ~0u;
   for (std::size_t i = 12; i < 29; ++i) {
@@ -76,7 +76,7 @@ TEST(DecodePng, FewBitsSpanTheWholeRange) {
 }
 
 TEST(DecodePng, SixteenBitsAreRoundedToEight) {
-  // 0x80FF / 257 = 128.49..., 0x8081 / 257 = 128.004; cutting off the low byte would miss 0x01FF -> 2.
+  // 0x80FF / 257 = 128.49..., 0x8081 / 257 = 128.004; dropping the low byte would miss 0x01FF -> 2.
   EXPECT_THAT(decode_png_of({.width = 3, .color_type = 0, .bits = 16}, {0x80, 0xFF, 0x01, 0xFF, 0xFF, 0xFF}).pixels,
               ElementsAre(Pixel(128, 128, 128, 255), Pixel(2, 2, 2, 255), Pixel(255)));
 }
@@ -142,7 +142,7 @@ TEST(DecodeJpeg, ColourGreyAndInks) {
     expect_flat({.width = 20, .height = 9, .components = 3, .progressive = progressive}, {200, 100, 50},
                 {200, 100, 50, 255});
     expect_flat({.width = 20, .height = 9, .components = 1, .progressive = progressive}, {99}, {99, 99, 99, 255});
-    // libjpeg writes an Adobe marker with CMYK, whose inks are then inverted: 255 is no ink.
+    // libjpeg writes an Adobe marker with CMYK, which inverts the inks: 255 is no ink.
     expect_flat({.width = 8, .height = 8, .components = 4, .progressive = progressive}, {255, 128, 0, 255},
                 {255, 128, 0, 255});
   }
@@ -184,7 +184,7 @@ TEST(Decode, JpegScansWithoutEndAreRefused) {
   EXPECT_THAT(error_of(many), HasSubstr("more scans than an image of its size has"));
 }
 
-// Red, green, blue and white, four by four pixels each, without loss.
+// Red, green, blue and white squares, four by four pixels each, lossless.
 constexpr std::string_view quarters(
     "RIFF\x36\0\0\0WEBPVP8L\x2a\0\0\0\x2f\x0f\xc0\x03\0\x1f \x10H\xde\x1f:\x8d\xf9\x17\x10\x14\xfc\x1f\xdd\xfc"
     "Gd\x0f\x80"

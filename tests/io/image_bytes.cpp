@@ -43,7 +43,7 @@ std::vector<std::byte> encode_png(const PngFlavour& flavour, std::span<const std
     png_set_PLTE(png, info, reinterpret_cast<png_const_colorp>(flavour.palette.data()),
                  int(flavour.palette.size() / 3));
   write_transparency(png, info, flavour);
-  png_set_gAMA(png, info, 1.0);  // must not be applied
+  png_set_gAMA(png, info, 1.0);  // readers must not apply this gamma
   png_write_info(png, info);
   const std::size_t row_bytes =
       (std::size_t(flavour.width) * std::size_t(channels_of(flavour.color_type) * flavour.bits) + 7) / 8;

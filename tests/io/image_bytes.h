@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Encoded images for tests, in every flavour that the two formats have.
+// Encoded images for tests, in every flavour of PNG and JPEG.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ struct PngFlavour {
   std::vector<std::uint8_t> transparency{};  ///< alphas of palette entries
   int transparent_grey = -1;                 ///< the grey that is transparent
 };
-/// `rows`: packed as PNG packs them, big-endian for 16 bits.
+/// Encodes `rows`, which are packed as PNG packs them, big-endian for 16 bits.
 std::vector<std::byte> encode_png(const PngFlavour& flavour, std::span<const std::uint8_t> rows);
 
 struct JpegFlavour {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models out, and in again: the same triangles at the same places, what each format holds beside them, and what none
-// takes.
+// Models are saved and loaded again: the same triangles at the same places, what each format holds besides, and what
+// every format refuses.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -30,7 +30,7 @@ class ModelFiles : public testing::Test {
     scene_.instances[1].world_from_mesh[3] = {5, 6, 7, 1};
   }
   [[nodiscard]] std::string path(const std::string& suffix) const { return folder_.file("model" + suffix); }
-  /// Of all triangles in order; of mirrored objects wound as they face.
+  /// Vertices of all triangles in order; triangles of mirrored objects are wound as they face.
   static std::vector<std::array<glm::vec3, 3>> triangles_of(const Scene& scene) {
     const Surfaces surfaces(scene);
     std::vector<std::array<glm::vec3, 3>> all;
@@ -128,7 +128,7 @@ TEST_F(ModelFiles, LieWhereTheModelLayAndStandUprightInGlb) {
   EXPECT_EQ(cloud.origin + glm::dvec3(cloud.meshes[0].positions[1]), glm::dvec3(4e6 + 1, 5e5, 0));
   save(scene_, path(".glb"));
   const Scene turned = load(path(".glb"));
-  // What was at (x, y, z) with z up is at (x, z, -y) with y up.
+  // A point (x, y, z) with z up becomes (x, z, -y) with y up.
   const glm::dvec4 corner(scene_.meshes[0].positions[3], 1);
   const glm::dvec3 before = scene_.origin + glm::dvec3(scene_.instances[1].world_from_mesh * corner);
   const glm::dvec4 same(turned.meshes[turned.instances[1].mesh].positions.back(), 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables as files: the text of CSV, the bytes of NPY, and what neither takes.
+// Tables as files: the text of CSV, the bytes of NPY, and tables that neither accepts.
 #include <gmock/gmock.h>
 
 #include <algorithm>

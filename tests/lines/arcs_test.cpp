@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arcs in place of chords: where the chords are those of a circle, and beside what is evenly stepped alone farther away
-// than the tolerance.
+// Arcs replace chords only if the chords lie on a circle. Only evenly stepped chords may leave the arc by more than the
+// tolerance.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ std::size_t arcs_of(const Chain& chain) {
   return std::size_t(std::count_if(chain.bulges.begin(), chain.bulges.end(), [](double b) { return b != 0; }));
 }
 
-/// The point of an arc, or of a line, at `part` from a to b: the bulge is the tangent of a quarter of the turn.
+/// The point at `part` of the way along an arc or line from a to b; the bulge is the tangent of a quarter of the turn.
 glm::dvec2 on_join(const glm::dvec2& a, const glm::dvec2& b, double bulge, double part) {
   if (bulge == 0) return a + part * (b - a);
   const glm::dvec2 along = b - a, side(along.y, -along.x);
@@ -44,7 +44,7 @@ double distance_to_line(const glm::dvec2& p, const glm::dvec2& a, const glm::dve
   return glm::distance(p, a + std::clamp(part, 0.0, 1.0) * (b - a));
 }
 
-/// How far the drawn line leaves the open row of corners that it stands for.
+/// Greatest distance between the drawn line and the open polyline that it replaces.
 double deviation(const Chain& drawn, const std::vector<glm::dvec2>& points) {
   double most = 0;
   for (std::size_t i = 0; i + 1 < drawn.points.size(); ++i)
@@ -58,7 +58,7 @@ double deviation(const Chain& drawn, const std::vector<glm::dvec2>& points) {
   return most;
 }
 
-/// Corners on a circle, so many degrees from one to the next.
+/// Points on a circle, with the steps between them in degrees.
 std::vector<glm::dvec2> on_circle(double radius, const std::vector<double>& steps) {
   std::vector<glm::dvec2> points;
   double angle = 0.3;
@@ -73,7 +73,7 @@ std::vector<glm::dvec2> on_circle(double radius, const std::vector<double>& step
 TEST(Arcs, LeaveALongLineBesideTinyOnesAlone) {
   Random random(7);
   for (int i = 0; i < 2000; ++i) {
-    // One or two long chords anywhere among tiny ones, which lie about one circle or bend at random one way.
+    // One or two long chords anywhere among tiny ones; these lie about one circle, or bend by random angles one way.
     const bool is_round = random.below(2) == 0;
     std::vector<double> steps;
     const int count = 4 + random.below(6), at = random.below(count), second = random.below(count);
@@ -100,7 +100,7 @@ TEST(Arcs, OfCoarselyCutCirclesAreOne) {
       EXPECT_EQ(arcs_of(with_arcs(on_circle(400, std::vector<double>(std::size_t(count), step)))),
                 count * step <= 180 ? 1u : 2u)
           << step << " " << count;
-  // Corners of something else stand on every second chord.
+  // Vertices of another line stand on every second chord.
   std::vector<double> split;
   for (int i = 0; i < 8; ++i) split.insert(split.end(), {15.0, 3.0 + i, 12.0 - i});
   EXPECT_EQ(arcs_of(with_arcs(on_circle(400, split))), 2u);
@@ -108,7 +108,7 @@ TEST(Arcs, OfCoarselyCutCirclesAreOne) {
 
 TEST(Arcs, OfClosedRingsAreCirclesUnlessTheyHaveAFlat) {
   const auto ring = [](int flats) {
-    // A shaft of 40 mm with flats, 19 degrees wide, cut into steps of 4 degrees elsewhere.
+    // A shaft of 40 mm with flats 19 degrees wide, and steps of 4 degrees elsewhere.
     std::vector<double> steps;
     for (int i = 0; i < 2; ++i) {
       double left = 180;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grids and their divided cells: a segment visits the cells that it passes, and hardly any others.
+// Grids and their divided cells: a segment visits the cells on its way, and hardly any others.
 #include "lines/cell_tree.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace lines_detail;
 
-/// How far apart a segment and a square are, along the axis on which that is more: 0 if they meet.
+/// Distance between a segment and a square, along the axis where it is greater; 0 if they meet.
 double apart(const glm::dvec2& a, const glm::dvec2& b, const Square& square) {
   double least = 1e300;
   for (int i = 0; i <= 1000; ++i) {
@@ -30,7 +30,7 @@ glm::dvec2 random_point(Random& random) {
   return {x, random.within(-3, 9)};
 }
 
-/// Divides a cell in the middle of others, and a part of it, and a part of that.
+/// Divides a cell among others, then a part of the cell, and a part of that part.
 CellTree divided_tree() {
   CellTree tree({{1, 2}, 2, 5, 2});
   std::uint32_t cell = 7;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is round in a model is round on paper: circles of known radii, and rings that lie on each other but for their
-// triangles.
+// Round shapes of a model are round on paper: circles of known radii, and rings that coincide except for their
+// tessellation.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// How many times around, by radius in hundredths of the model's unit.
+/// Number of full turns, by radius in hundredths of the model's unit.
 using TurnsByRadius = std::map<int, double>;
 
 TurnsByRadius turns_of(const Strokes& all, double units_per_pixel) {
@@ -34,7 +34,7 @@ TurnsByRadius turns_of(const Strokes& all, double units_per_pixel) {
   return rounds;
 }
 
-/// A model in parallel projection, as a drawing at full scale has it.
+/// Draws a model in parallel projection, at full scale.
 TurnsByRadius turns_of(const Scene& scene, NamedView direction) {
   const Surfaces surfaces(scene);
   FrameOptions options;
@@ -50,7 +50,7 @@ TurnsByRadius turns_of(const Scene& scene, NamedView direction) {
 TEST(Circles, OfModelsHaveTheirRadii) {
   FRONTMOST_NEEDS_MODELS();
   const Scene as1 = load(model("cad/as1.stl"));
-  // Six bolts of 10 mm, whose heads of 15 lie free but for two below the rod.
+  // The six bolts have 10 mm, and heads of 15 mm that lie free except for two below the rod.
   const TurnsByRadius bolts = turns_of(as1, NamedView::top);
   EXPECT_NEAR(bolts.at(500), 6, 1e-3);
   EXPECT_NEAR(bolts.at(750), 4, 1e-3);
@@ -66,14 +66,14 @@ TEST(Circles, OfModelsHaveTheirRadii) {
 
 TEST(Circles, TheRodOfAnAssemblyIsStraight) {
   FRONTMOST_NEEDS_MODELS();
-  // Nothing in it is rounder than a plate is thick, and its rod is straight, though it ends in tiny chords.
+  // Nothing in the model is rounder than a plate is thick, and its rod is straight, though it ends in tiny chords.
   for (const auto& [radius, turns] : turns_of(load(model("cad/as1.stl")), NamedView::iso))
     if (turns > 0) {
       EXPECT_LT(radius, 5000);
     }
 }
 
-/// A flat ring of so many corners at its outer side, at height z.
+/// A flat ring with `corners` vertices on its outer side, at height z.
 void add_disc(Mesh& mesh, int corners, float z) {
   for (int i = 0; i < corners; ++i) {
     const auto corner = [&](int k) {
@@ -94,7 +94,7 @@ TEST(Circles, RingsThatDifferByTheirTrianglesAreOne) {
   view.world_from_eye = look_at({0, 0, 10}, {0, 0, 0}, {0, 1, 0});
   view.projection = make_orthographic(-2, 2, -2, 2, {0.5, 50});
   const Drawing drawing = draw_lines(surfaces, view);
-  // The finer one stands over the middles of the coarser one's sides, by up to a seventh of a pixel.
+  // Vertices of the finer ring stand over the middles of the coarser one's edges, off by up to a seventh of a pixel.
   StrokeOptions options{.with_hidden = false, .arc_tolerance = 0.2};
   EXPECT_GT(chain_strokes(surfaces, drawing, options).strokes.size(), 20u);
   options.apart = 0.2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Creases of shapes whose creases are known, however they are cut into triangles.
+// Creases of shapes with known creases, whatever their tessellation.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ TEST(Creases, AChamferOf30DegreesIsDrawnAllAround) {
     EXPECT_EQ(count_at_height(edges, 8), std::size_t(sides));
     EXPECT_EQ(count_at_height(edges, 0), std::size_t(sides));
     EXPECT_EQ(edges.size(), std::size_t(3 * sides + 6));
-    // An angle that is given rules.
+    // A given angle takes precedence.
     EXPECT_LT(count_at_height(creases_of(nut(sides, 30), 31 * kDegree), 8), 1u);
   }
 }
@@ -71,7 +71,7 @@ TEST(Creases, FlatConesHaveARim) {
       add_sides(mesh, {at(6, -4), at(6, 0), at(0, 6 * std::tan(slope * kDegree))}, even_angles(sides));
       add_lid(mesh, at(6, -4), even_angles(sides), false);
       const std::vector<DrawnEdge> edges = creases_of(mesh);
-      // At a slope of 60 degrees the rim is one of 30.
+      // At a slope of 60 degrees the rim has a fold of 30 degrees.
       EXPECT_EQ(count_at_height(edges, 0), std::size_t(sides));
       EXPECT_EQ(edges.size(), std::size_t(2 * sides));
     }
@@ -110,7 +110,7 @@ TEST(Creases, UnevenSegmentsAreRound) {
 }
 
 TEST(Creases, FilletsRunIntoPlanesWithoutALine) {
-  // A disc whose rim is rounded in `steps`, up to 28 degrees each, as coarse as CAD programs cut.
+  // A disc whose rim is rounded in `steps` of up to 28 degrees, as coarse as CAD programs tessellate.
   for (int steps = 4; steps < 20; ++steps) {
     SCOPED_TRACE(steps);
     std::vector<ProfilePoint> rings = {at(12, 0)};
@@ -125,8 +125,8 @@ TEST(Creases, FilletsRunIntoPlanesWithoutALine) {
   }
 }
 
-/// A wall on a line of two arcs, the first to the right and the second to the left, in steps of `step`; where they meet
-/// it turns by `fold`.
+/// A wall on two arcs, the first to the right and the second to the left, in steps of `step`. Where they meet, the wall
+/// turns by `fold`.
 Mesh two_arcs(double step, double fold) {
   constexpr int steps = 6;
   std::vector<glm::vec2> line = {{0, 0}};
@@ -151,7 +151,7 @@ TEST(Creases, ACylinderAndAFilletThatMeetAtAFewDegreesHaveALine) {
       SCOPED_TRACE(step);
       EXPECT_EQ(creases_of(two_arcs(step * kDegree, fold * kDegree)).size(), 27u) << fold;
     }
-  // An arc that goes over into its like without a fold has none.
+  // Two arcs of the same kind that join without a fold have no crease.
   for (const double step : {6.0, 10.0, 16.0})
     EXPECT_EQ(creases_of(two_arcs(step * kDegree, -step * kDegree)).size(), 26u) << step;
 }
@@ -169,14 +169,15 @@ TEST(Creases, SpheresAreRound) {
   }
 }
 
-/// A cylinder of `sides` whose lid has a corner more between every two, on the circle: slivers in the plane of the lid
-/// fill what is between that and the side. With `is_fine`, two more corners, and slivers on slivers.
+/// A cylinder whose lid has an additional vertex on the circle between every two of the side's `sides` vertices.
+/// Slivers in the plane of the lid fill the gap to the side. With `is_fine`, there are three vertices, and slivers on
+/// slivers.
 Mesh cylinder_with_slivers(int sides, bool is_fine) {
   const int parts = is_fine ? 4 : 2;
   const std::vector<double> fine = even_angles(sides * parts), coarse = even_angles(sides);
   Mesh mesh;
   add_sides(mesh, {at(5, 0), at(5, 20)}, coarse);
-  // The lid ends at the coarse corners, a little further down the slivers go out to the circle.
+  // The lower lid ends at the coarse vertices; at the top, slivers fill the gap to the circle.
   add_lid(mesh, at(5, 0), coarse, false);
   for (int i = 0; i < sides * parts; i += parts)
     for (int k = 0; k + 1 < parts; ++k) {
@@ -197,8 +198,8 @@ TEST(Creases, SliversDoNotDoubleARim) {
     }
 }
 
-/// A smooth wall of a bottle: a corner in the middle of some sides of triangles, out on the true surface by a tenth of
-/// the sagitta, so that a sliver stands on each.
+/// A smooth wall like a bottle's. Some triangle edges have a vertex in the middle, moved out onto the true surface by a
+/// tenth of the sagitta, so that a sliver stands on each.
 Mesh wall_with_slivers(int sides) {
   const std::vector<double> angles = even_angles(sides);
   Mesh mesh;
@@ -214,7 +215,7 @@ Mesh wall_with_slivers(int sides) {
         add_triangle(mesh, a, b, c);
         continue;
       }
-      // Below is a whole side, above it has a corner more: in between there is a sliver with any normal.
+      // The lower triangle has a whole edge, the upper one a vertex on it: the sliver between them may have any normal.
       const double middle = from + std::fmod(to - from + 2 * std::numbers::pi, 2 * std::numbers::pi) / 2;
       const glm::vec3 m = turned_about_z(at(5, low + 0.002), middle);
       add_triangle(mesh, a, b, m);
@@ -232,7 +233,8 @@ TEST(Creases, SliversDrawNoTicksOnSmoothWalls) {
   }
 }
 
-/// A grid from 0 to 1 in x and y of n x n squares, bent by `height`; corners move by up to `noise` times a side.
+/// A grid from 0 to 1 in x and y of n x n squares, bent by `height`; vertices move by up to `noise` times a square's
+/// edge.
 Mesh bent(int n, float noise, const std::function<float(float)>& height) {
   Random random(11);
   std::vector<glm::vec3> places;
@@ -261,7 +263,7 @@ std::size_t count_along_ridge(const std::vector<DrawnEdge>& edges, double reach)
 }
 
 TEST(Creases, OfARoughCastingAreUnbroken) {
-  // A roof of 60 degrees whose faces are as rough as a cast: no angle alone tells its ridge from them.
+  // A roof of 60 degrees whose faces are as rough as a cast: no angle alone distinguishes its ridge.
   const auto roof = [](float x) { return 0.577f * (0.5f - std::abs(x - 0.5f)); };
   const int n = 40;
   const Mesh mesh = bent(n, 0.09f, roof);
@@ -278,7 +280,7 @@ TEST(Creases, OfARoughPlateThereAreNone) {
   }
 }
 
-/// A cube of n x n squares a face, its corners moved by rounding or a little more.
+/// A cube of n x n squares a face, its vertices moved by rounding or a little more.
 Mesh noisy_cube(int n, float noise) {
   Mesh mesh;
   const auto moved = [&](const glm::ivec3& corner) {
@@ -328,7 +330,7 @@ TEST(Creases, HardlyDependOnTheView) {
   Random random(5);
   for (int i = 0; i < 20; ++i) {
     const Drawing drawing = draw_lines(surfaces, random_view(random, 100, 100));
-    // The nut's own edges, and besides them silhouettes alone.
+    // The drawing has the nut's own edges, and beyond these only silhouettes.
     std::size_t creases = 0;
     for (const DrawnEdge& edge : drawing.edges) creases += edge.kind == EdgeKind::crease;
     EXPECT_LE(creases, 3u * 48u + 6u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where triangles pass through each other, held against all pairs.
+// Intersections of triangles, compared with a test of all pairs.
 #include "lines/crossings/crossings.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using namespace lines_detail;
 
 using Triangle = std::array<glm::dvec3, 3>;
 
-/// Where the triangle's outline passes through the plane of another: along `direction`; none where it does not.
+/// Interval along `direction` where the triangle's outline passes through the plane of another; empty if it does not.
 std::optional<std::pair<double, double>> chord(const Triangle& t, const Triangle& other, const glm::dvec3& direction) {
   const glm::dvec3 n = glm::cross(other[1] - other[0], other[2] - other[0]);
   std::vector<double> met;
@@ -32,7 +32,7 @@ std::optional<std::pair<double, double>> chord(const Triangle& t, const Triangle
   return std::minmax(met[0], met[1]);
 }
 
-/// The length of what two triangles have in common, in doubles.
+/// Length of the common segment of two triangles, in doubles.
 double common_length(const Triangle& a, const Triangle& b) {
   const glm::dvec3 along = glm::cross(glm::cross(a[1] - a[0], a[2] - a[0]), glm::cross(b[1] - b[0], b[2] - b[0]));
   if (glm::length(along) == 0) return 0;
@@ -67,7 +67,7 @@ TEST(Crossings, EqualThoseOfAllPairs) {
   EXPECT_GT(found, 40u);
 }
 
-/// A sphere with no corner at a special place.
+/// A sphere without vertices at special places.
 Mesh ball(const glm::vec3& centre, float radius, int rings) {
   Mesh mesh;
   const auto at = [&](int i, int j) {
@@ -102,8 +102,8 @@ TEST(Crossings, OfTwoBallsAreOneClosedLine) {
 TEST(Crossings, NeighboursTouchesAndTwinsGiveNone) {
   Mesh mesh;
   add_triangle(mesh, {0, 0, 0}, {2, 0, 0}, {0, 2, 0});
-  add_triangle(mesh, {0, 0, 0}, {2, 0, 0}, {0, 2, 1});                  // an edge in common
-  add_triangle(mesh, {0, 0, 0}, {-2, 0, 1}, {0, -2, -1});               // a corner, on the other side
+  add_triangle(mesh, {0, 0, 0}, {2, 0, 0}, {0, 2, 1});                  // shares an edge
+  add_triangle(mesh, {0, 0, 0}, {-2, 0, 1}, {0, -2, -1});               // shares a vertex, on the other side
   add_triangle(mesh, {0.5f, 0.5f, 0}, {1, 0.5f, 0}, {0.5f, 0.5f, -1});  // stands on it with an edge
   add_triangle(mesh, {3, 3, -1}, {3, 3, 1}, {4, 3, 0});
   const Scene scene = scene_of(mesh);
@@ -133,8 +133,8 @@ TEST(Crossings, FromASharedCornerOn) {
   EXPECT_EQ(crossings[0].to.place, glm::dvec3(1, 1, 0));
 }
 
-/// Scaled so that the many small ones are of size 1, the large one has no end: boxes that fill up a group of the tree
-/// must not touch that.
+/// Relative to the many small triangles, the large one is endless. Boxes that fill up a group of the tree must not
+/// touch it.
 TEST(Crossings, OfATriangleWithoutEndAndManySmallOnes) {
   for (const int count : {15, 16, 17, 40, 300}) {
     Mesh mesh;

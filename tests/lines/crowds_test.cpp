@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many triangles at one place: one behind the other, around one edge, the same again and again.
+// Many triangles at one place: one behind the other, around one edge, or identical copies.
 #include <gtest/gtest.h>
 
 #include "frontmost/lines.h"
@@ -10,7 +10,7 @@
 namespace frontmost::test {
 namespace {
 
-/// The parts with what follows each other equally hidden as one.
+/// The parts, with consecutive equally hidden parts joined.
 std::vector<DrawnPart> without_counts(const Drawing& drawing) {
   std::vector<DrawnPart> parts;
   for (DrawnPart part : drawing.parts) {
@@ -23,7 +23,8 @@ std::vector<DrawnPart> without_counts(const Drawing& drawing) {
   return parts;
 }
 
-/// What is counted holds everything against everything; what is not leaves out what is hidden behind whole cells.
+/// Compares drawings with and without counts. Counting tests everything against everything; without it, whole hidden
+/// cells are skipped.
 void expect_as_counted(const Scene& scene, const View& view) {
   const Surfaces surfaces(scene);
   LineOptions options;
@@ -67,7 +68,7 @@ TEST(Crowds, CopiesChangeNothing) {
       Mesh mesh = random_mesh(kind, 100, seed);
       const View view = random_view(random, 160, 120);
       const Scene once = scene_of(mesh);
-      // Some in another order of corners, and wound the other way round.
+      // Copies have other vertex orders, and some have the reverse winding.
       const std::vector<glm::uvec3> triangles = mesh.triangles;
       for (int copy = 0; copy < 3; ++copy)
         for (const glm::uvec3& t : triangles) {
@@ -103,7 +104,7 @@ TEST(Crowds, OfTheSameTriangleAreOne) {
   for (const DrawnPart& part : drawing.parts) EXPECT_EQ(part.hidden_by, 0u);
 }
 
-/// How often drawing a mesh asks whether to stop; it is stopped at the question of number `last`.
+/// Number of times that drawing a mesh asks whether to stop; question number `last` is answered with yes.
 std::size_t questions_of(const Mesh& mesh, std::size_t last, std::size_t& edges) {
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
@@ -119,7 +120,7 @@ std::size_t questions_of(const Mesh& mesh, std::size_t last, std::size_t& edges)
   return watch.asked();
 }
 
-/// Between two questions no more than sixteen edges are cut, and no more than some thousand triangles are looked at.
+/// Between two questions, at most sixteen edges are cut, and at most some thousand triangles are examined.
 TEST(Crowds, AskOftenWhetherToStop) {
   Mesh crossing;
   Random random(9);
@@ -140,7 +141,7 @@ TEST(Crowds, AskOftenWhetherToStop) {
   }
 }
 
-/// What drawing a mesh from above says where it is refused.
+/// Error message of drawing a mesh from above.
 std::string refusal_from_above(const Mesh& mesh, int threads) {
   const Scene scene = scene_of(mesh);
   View view;
@@ -151,7 +152,7 @@ std::string refusal_from_above(const Mesh& mesh, int threads) {
                     [&] { (void)draw_lines(Surfaces(scene), view, {}, {.threads = threads}); });
 }
 
-/// Needles that all pass through each other have more segments than are kept; the error says where.
+/// Needles that all pass through each other have more segments than the limit; the error names the place.
 TEST(Crowds, OfMoreSegmentsThanAreKeptAreRefused) {
   const Mesh mesh = slivers_through_point(1600);
   const std::string refusal = refusal_from_above(mesh, 1);

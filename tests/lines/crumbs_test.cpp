@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strokes that are shorter than is worth the pen's way: what is left out, what is joined, and what must stay.
+// Strokes too short for the pen to travel to: some are left out, some joined, and some must stay.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -60,7 +60,7 @@ TEST(Crumbs, InTheAirAreLeftOut) {
 }
 
 TEST(Crumbs, ThatEndInTheAirTogetherAreLeftOutTogether) {
-  // Three from a junction, one of them on to a second junction, and none held by anything.
+  // Three strokes from a junction, one of them to a second junction, and none attached to a longer line.
   Sketch sketch;
   sketch.add(EdgeKind::silhouette, {{10, 10}, {12, 10}})
       .add(EdgeKind::silhouette, {{12, 10}, {13, 12}})
@@ -70,13 +70,13 @@ TEST(Crumbs, ThatEndInTheAirTogetherAreLeftOutTogether) {
   EXPECT_TRUE(sketch.strokes().strokes.empty());
 }
 
-/// An outline in four pieces, one of them a crumb between two T-junctions with longer lines.
+/// An outline in pieces, one of them a short stroke between two T-junctions with longer lines.
 TEST(Crumbs, OfOutlinesStay) {
   for (const EdgeKind kind : {EdgeKind::silhouette, EdgeKind::boundary}) {
     Sketch sketch;
     sketch.add(kind, {{0, 0}, {100, 0}}).add(kind, {{0, 3}, {100, 3}}).add(kind, {{50, 0}, {50, 3}});
     EXPECT_NEAR(length_of(sketch.strokes()), 203, 1e-9);
-    // A crease there goes: both lines go on without it.
+    // A crease in its place is dropped: both lines go on without it.
     Sketch other;
     other.add(kind, {{0, 0}, {100, 0}}).add(kind, {{0, 3}, {100, 3}}).add(EdgeKind::crease, {{50, 0}, {50, 3}});
     EXPECT_NEAR(length_of(other.strokes()), 200, 1e-9);
@@ -90,7 +90,7 @@ TEST(Crumbs, ClosedOutlinesStayAndOtherLoopsGo) {
 }
 
 TEST(Crumbs, ThatLinkLinesAreJoined) {
-  // A plate seen almost from its edge: two long lines, and at each end a short one with a third line to the corner.
+  // A plate seen almost edge-on: two long lines, and at each end a short one with a third line to its vertex.
   Sketch sketch;
   sketch.add(EdgeKind::crease, {{0, 0}, {100, 0}})
       .add(EdgeKind::crease, {{100, 0}, {100, 3}})
@@ -139,7 +139,7 @@ TEST(Crumbs, AreNotHeldByWhatIsHidden) {
   EXPECT_TRUE(all.strokes[0].is_hidden && all.strokes[1].is_hidden);
 }
 
-/// The outlines of a scene of blocks: everything that is closed stays so, whatever counts as short.
+/// Outlines of a scene of blocks: closed ones stay closed, whatever length counts as short.
 TEST(Crumbs, NeverOpenAnOutline) {
   const Scene scene = builtin("gallery");
   const Surfaces surfaces(scene);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cells that are divided because much meets in them: how much lines then ask, and that they get the same answers.
+// Cells divided for holding much: how many triangles lines then examine, and that the answers stay the same.
 #include <gtest/gtest.h>
 
 #include "lines/hiding/grid_plan.h"
@@ -12,7 +12,7 @@ namespace {
 
 using namespace lines_detail;
 
-/// A scene's edges, all of them, and what hides them.
+/// All edges of a scene, and the triangles that may hide them.
 class Crowded {
  public:
   Crowded(const Scene& scene, const View& view, bool counts, bool divides)
@@ -37,7 +37,7 @@ class Crowded {
     EdgeCutter cutter(occlusion());
     return parts(cutter);
   }
-  /// How many occluders there are in the cells that the edges pass, all in all.
+  /// Total number of occluders in the cells that the edges pass.
   [[nodiscard]] double asked() const {
     double sum = 0;
     for (const FeatureEdge& edge : edges_) {
@@ -77,7 +77,9 @@ TEST(DividedCells, AnswerAsTheWholeCellsDo) {
     for (std::uint64_t seed = 0; seed < seeds(3); ++seed) {
       SCOPED_TRACE(int(kind) * 10 + int(seed));
       const bool counts = seed == 1;
-      if (counts && kind != Crowd::cone && kind != Crowd::dense) continue;  // of others each hides all
+      if (counts && kind != Crowd::cone && kind != Crowd::dense)
+        continue;  // In the other crowds each triangle hides
+                   // all others.
       const Scene scene = scene_of(crowd(kind, kind == Crowd::fan ? 300 : 600));
       Random random(seed);
       const View view = seed < 2 ? frame(Surfaces(scene), 200, 150) : random_view(random, 200, 150);
@@ -107,12 +109,12 @@ TEST(DividedCells, AreAskedNearLinearly) {
       EXPECT_LT(divided.asked(), 0.3 * Crowded(scene, view, false, false).asked());
     }
   }
-  // Four times as many triangles: without dividing each edge asks four times as many.
+  // The second model has four times as many triangles: without dividing, each edge would examine four times as many.
   EXPECT_LT(per_edge[1], 2 * per_edge[0]) << per_edge[0];
 }
 
-/// Where all lie upon each other every edge is held against every triangle of its cells, divided or not: that is the
-/// cost that the header states. Dividing in vain may not add much to it.
+/// If all triangles coincide, every edge is tested against every triangle of its cells, divided or not, at the cost
+/// that the header states. Dividing in vain may not add much to that cost.
 TEST(DividedCells, CostLittleWhereTheyCannotHelp) {
   for (const Crowd kind : {Crowd::stack, Crowd::leaning_stack, Crowd::book, Crowd::fan, Crowd::cone}) {
     SCOPED_TRACE(int(kind));
@@ -126,7 +128,7 @@ TEST(DividedCells, CostLittleWhereTheyCannotHelp) {
   }
 }
 
-/// Where dividing does not pay, all of the cell's triangles are looked at once.
+/// If dividing does not pay, all of the cell's triangles are examined at once.
 TEST(DividedCells, AskOftenWhetherToStop) {
   const Scene scene = scene_of(crowd(Crowd::stack, 20000));
   const Surfaces surfaces(scene);
@@ -149,8 +151,8 @@ TEST(DividedCells, AskOftenWhetherToStop) {
   EXPECT_GT(watch.asked(), count / 10000);
 }
 
-/// A triangle of the plane in which nearness or distance grows by `slope` from `value` at the apex, whose places are
-/// off by what rounding leaves of them on a large picture.
+/// A triangle in the plane where nearness or distance grows by `slope` from `value` at the apex. Its vertices carry the
+/// rounding error of a large picture.
 CellDepth around_apex(Random& random, const glm::dvec2& apex, double value, const glm::dvec2& slope, bool is_parallel) {
   glm::dvec3 corners[3];
   const double angle = random.within(0, 6.28f), width = std::pow(10.0, random.within(-3, 0.4f));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces that pass through each other exactly along edges and diagonals: a line, once.
+// Surfaces that intersect exactly along edges and diagonals: the line is drawn once.
 #include <gtest/gtest.h>
 
 #include "lines/crossings/crossings.h"
@@ -10,7 +10,7 @@ namespace {
 
 using namespace lines_detail;
 
-/// Every face with one diagonal or the other.
+/// A box whose faces have one diagonal or, if `turned`, the other.
 Mesh box(const glm::vec3& low, const glm::vec3& high, bool turned) {
   Mesh mesh;
   for (int axis = 0; axis < 3; ++axis)
@@ -38,7 +38,7 @@ Mesh joined_meshes(Mesh a, const Mesh& b) {
   return a;
 }
 
-/// The length of all segments; none of them overlap.
+/// Total length of all intersection segments; no two of them overlap.
 double crossing_length(const Mesh& mesh) {
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
@@ -46,7 +46,7 @@ double crossing_length(const Mesh& mesh) {
   const Drawing drawing = draw_lines(surfaces, frame(surfaces, 100, 100), {.crease_angle = 0.1});
   for (const DrawnEdge& edge : drawing.edges) {
     const glm::dvec3 along = edge.to - edge.from;
-    // Nor does any lie along an edge that is drawn.
+    // No segment lies along a drawn edge either.
     for (const DrawnEdge& other : drawing.edges) {
       if (&other == &edge || edge.kind != EdgeKind::intersection) continue;
       const auto place = [&](const glm::dvec3& p) { return glm::dot(p - edge.from, along) / glm::dot(along, along); };
@@ -82,7 +82,7 @@ TEST(EdgeContacts, ASheetAlongADiagonal) {
 TEST(EdgeContacts, EdgesAlongEachOther) {
   Mesh mesh;
   add_quad(mesh, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0});
-  Mesh through = mesh;  // two quads of which one stands on the diagonal and one hangs from it
+  Mesh through = mesh;  // two quads: one stands on the diagonal, the other hangs from it
   add_quad(through, {-2, -2, 0}, {2, 2, 0}, {2, 2, 1}, {-2, -2, 1});
   add_quad(through, {-2, -2, 0}, {2, 2, 0}, {2, 2, -1}, {-2, -2, -1});
   EXPECT_NEAR(crossing_length(through), 2 * root_2, 1e-12);
@@ -98,7 +98,7 @@ TEST(EdgeContacts, APlaneThroughTheCornersOfACube) {
       Mesh mesh = box(glm::vec3(-1), glm::vec3(1), turned);
       const float s = flipped ? -1.0f : 1.0f;
       add_quad(mesh, {-2 * s, -2, -2}, {2 * s, 2, -2}, {2 * s, 2, 2}, {-2 * s, -2, 2});
-      // Its diagonals above and below; the upright edges are drawn anyway.
+      // The diagonals above and below are lines; the upright edges are drawn anyway.
       EXPECT_NEAR(crossing_length(mesh), 4 * root_2, 1e-12) << turned << flipped;
     }
 }
@@ -106,25 +106,25 @@ TEST(EdgeContacts, APlaneThroughTheCornersOfACube) {
 TEST(EdgeContacts, BeamsThroughEachOther) {
   for (const bool turned : {false, true}) {
     const Mesh beam = box({-3, -1, -1}, {3, 1, 1}, turned);
-    // Level above and below: they cross in the four upright lines.
+    // A beam level above and below: they intersect in the four upright lines.
     EXPECT_NEAR(crossing_length(joined_meshes(beam, box({-1, -3, -1}, {1, 3, 1}, !turned))), 8, 1e-12);
     EXPECT_NEAR(crossing_length(joined_meshes(beam, box({-1, -3, -1}, {1, 3, 1}, turned))), 8, 1e-12);
-    // Through its side and out at the other: two squares.
+    // A beam through one side and out at the other: two squares.
     EXPECT_NEAR(crossing_length(joined_meshes(beam, box({-0.5f, -3, -0.5f}, {0.5f, 3, 0.5f}, turned))), 8, 1e-12);
-    // A beam whose edges lie in the middle of the other's sides, half a turn of 45 degrees: each side's middle line.
+    // The edges of the diamond, turned by 45 degrees, lie in the middle of the beam's sides: each side's middle line.
     Mesh diamond;
     const glm::vec2 corners[4] = {{2, 0}, {0, 2}, {-2, 0}, {0, -2}};
     for (int k = 0; k < 4; ++k) {
       const glm::vec2 p = corners[k], q = corners[(k + 1) % 4];
       add_quad(diamond, {-4, p.x, p.y}, {4, p.x, p.y}, {4, q.x, q.y}, {-4, q.x, q.y});
     }
-    // Inscribed: its edges touch the diamond's sides from within.
+    // The inscribed beam's edges touch the diamond's sides from within.
     EXPECT_EQ(crossing_length(joined_meshes(beam, diamond)), 0);
   }
 }
 
-/// Two pairs of triangles on an edge each: one of either lies on the ground, the other stands on it. What they have in
-/// common on the ground lies along both edges, or it were no line at all.
+/// Two pairs of triangles, each on an edge: one triangle of a pair lies on the ground, the other stands on it. A common
+/// line on the ground must lie along both edges.
 TEST(EdgeContacts, OnOnePlaneLieAlongBothEdges) {
   Random random(9);
   const auto on_ground = [&] {
@@ -170,7 +170,7 @@ TEST(EdgeContacts, OrderOfTrianglesAndCornersDoesNotMatter) {
 }
 
 TEST(EdgeContacts, StretchesOfAFoldAreNone) {
-  // A fold's stretches lie in the planes of triangles further along it, to which one of their own two belongs.
+  // Segments of a fold lie in the planes of triangles further along it; one of the fold's own triangles is among these.
   const glm::vec3 top(-1, 1, 0), bottom(-2, 0.25f, 1.5f), ends[2] = {{-2, 0.5f, 1}, {-1, 1, 1}};
   const std::vector<glm::vec3> fold = {
       ends[0], {-1.375f, 0.8125f, 1}, {-1.25f, 0.875f, 1}, {-1.125f, 0.9375f, 1}, ends[1]};

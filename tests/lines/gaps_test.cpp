@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes whose faces were cut into triangles one by one: rims that lie on each other but for rounding.
+// Shapes whose faces were tessellated one by one: their rims coincide up to rounding.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ std::vector<DrawnEdge> edges_of(const Scene& scene, std::optional<double> angle 
   return draw_lines(Surfaces(scene), frame(Surfaces(scene), 100, 100), options).edges;
 }
 
-/// Moves every corner by up to `by`, equal ones alike.
+/// Moves every vertex by up to `by`; equal positions move alike.
 Mesh moved(Mesh mesh, float by, std::uint64_t seed) {
   for (glm::vec3& place : mesh.positions) {
     Random random(seed ^ std::uint64_t(std::lround(place.x * 4096)) * 73856093 ^
@@ -49,7 +49,7 @@ TEST(Gaps, OfRoundingDrawNothing) {
     SCOPED_TRACE(sides);
     const Mesh below = moved(wall(sides, 0, 4), 2e-5f, 1), above = moved(wall(sides, 4, 9), 2e-5f, 2);
     const std::vector<DrawnEdge> edges = edges_of(scene_of(joined(below, above)));
-    // What is left are the ends, and seams where one wall is seen from within and the other not.
+    // Only the ends remain, and seams where one wall is seen from within and the other is not.
     EXPECT_NEAR(double(count_of(edges, EdgeKind::boundary)), 2.0 * sides, 8);
     EXPECT_EQ(count_of(edges, EdgeKind::intersection), 0u);
     EXPECT_EQ(count_of(edges, EdgeKind::crease), 0u);
@@ -72,7 +72,7 @@ TEST(Gaps, WhereTheSurfaceFoldsAreDrawn) {
   const Mesh below = moved(wall(40, 0, 4), 2e-5f, 1), above = moved(wall(40, 4, 9, 0.3), 2e-5f, 2);
   const Scene scene = scene_of(joined(below, above));
   EXPECT_EQ(count_of(edges_of(scene), EdgeKind::boundary), 160u);
-  // An angle that is given rules: the fold is one of 17 degrees.
+  // A given angle takes precedence: the fold has 17 degrees.
   EXPECT_LT(count_of(edges_of(scene, 20 * kDegree), EdgeKind::boundary), 110u);
 }
 
@@ -91,7 +91,7 @@ TEST(Gaps, RimsThatLieOnEachOtherAreDrawn) {
     add_triangle(mesh, {0, 0, z}, {4, 0, z}, {4, 3, z});
     add_triangle(mesh, {0, 0, z}, {4, 3, z}, {0, 3, z});
   }
-  // And what has more beside it than its own length.
+  // The gap has more triangles beside it than its own length allows.
   add_triangle(mesh, {0, 0, 1e-5f}, {1, 0, 1e-5f}, {0, -1, 1e-5f});
   EXPECT_GE(count_of(edges_of(scene_of(mesh)), EdgeKind::boundary), 8u);
 }

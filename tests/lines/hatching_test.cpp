@@ -21,7 +21,7 @@ View view_with_z_up(const glm::dvec3& eye, bool is_parallel) {
   return view;
 }
 
-/// Counter-clockwise seen from its front, cut into `n` by `n` pieces.
+/// Adds a quad, counter-clockwise seen from its front, cut into `n` by `n` pieces.
 void add_cut_quad(Mesh& mesh, const glm::vec3& corner, const glm::vec3& along, const glm::vec3& up, int n = 1) {
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x) {
@@ -58,16 +58,16 @@ HatchOptions options_of(std::vector<HatchSet> sets, const glm::dvec3& to_light, 
 TEST(Hatch, TheFacesOfACubeHaveTheirTones) {
   const Scene scene = three_faces();
   const Surfaces surfaces(scene);
-  // Along the diagonal: each face is a rhombus of 4 / sqrt(3) units of area, 2500 pixels each.
+  // Seen along the diagonal, each face is a rhombus of 4 / sqrt(3) square units, of 2500 pixels each.
   const View view = view_with_z_up({5, 5, 5}, true);
   const double face = 4 / std::sqrt(3.0) * 2500;
-  // Of length 1: brightnesses of 1/3, 2/3 and 2/3; then 2/3, 1/3 and 2/3.
+  // The light (1, 2, 2), scaled to length 1, gives brightnesses of 1/3, 2/3 and 2/3.
   const std::vector<HatchSet> sets = {{0.3, 1, 0.25, 0.7}, {0.3, 1, 0.75, 0.5}, {1.2, 1, 0.5, 0.3}};
   const std::vector<HatchLine> lines = hatch(surfaces, view, options_of(sets, {1, 2, 2}));
   EXPECT_NEAR(length_of(lines, 0), 3 * face, 0.001 * face);
   EXPECT_NEAR(length_of(lines, 1), face, 0.001 * face);
   EXPECT_EQ(length_of(lines, 2), 0);
-  // That face is x = 1, on the left of the middle.
+  // Set 1 hatches only the face x = 1, which is left of the middle.
   for (const HatchLine& line : lines)
     if (line.set == 1) {
       EXPECT_LE(std::max(line.from.x, line.to.x), 100 + 1e-9);
@@ -120,7 +120,7 @@ TEST(Hatch, CopiesOfTrianglesChangeNothingAndCostNothing) {
   const Scene once = three_faces();
   Mesh mesh = once.meshes[0];
   const std::vector<glm::uvec3> triangles = mesh.triangles;
-  // In all orders of their corners, and so wound either way.
+  // The copies have all vertex orders, and so both windings.
   for (int copy = 0; copy < (under_sanitizer ? 12 : 300); ++copy)
     for (const glm::uvec3& t : triangles)
       mesh.triangles.push_back(copy % 3 == 0   ? t
@@ -129,7 +129,7 @@ TEST(Hatch, CopiesOfTrianglesChangeNothingAndCostNothing) {
   const Scene often = scene_of(std::move(mesh));
   const View view = view_with_z_up({5, 4, 3}, false);
   const HatchOptions options = options_of({{0.3, 1, 0.25, 0.7}, {1.2, 1, 0.5, 0.5}}, {1, 2, 2});
-  // While it hatches it asks whether to stop after so many triangles, and after so many lines of them.
+  // Hatching asks whether to stop after a number of triangles, and after a number of their lines.
   CountingWatch watch;
   const std::vector<HatchLine> lines = hatch(Surfaces(once), view, options, watch.execution());
   const std::size_t asked_once = watch.asked();
@@ -139,7 +139,7 @@ TEST(Hatch, CopiesOfTrianglesChangeNothingAndCostNothing) {
   const std::size_t most = asked_once + 2 * copies.primitive_count() / triangles_per_question;
   EXPECT_LT(watch.asked(), most);
   if (!under_sanitizer) {
-    // Were the copies hatched, too, it would ask more often.
+    // If the copies were hatched too, hatching would ask more often.
     EXPECT_GT(copies.primitive_count() / triangles.size() * lines.size() / lines_per_question, most);
   }
   ASSERT_EQ(same.size(), lines.size());
@@ -153,12 +153,12 @@ TEST(Hatch, CopiesOfTrianglesChangeNothingAndCostNothing) {
 TEST(Hatch, ShadowsHaveTheirExactPlaces) {
   const Scene scene = plate_over_floor(0.25f);
   const Surfaces surfaces(scene);
-  // From below, so that only the floor is seen, and from its dark side; then from above.
+  // The first view is from below, where only the floor's dark side is seen; the next ones are from above.
   View view;
   view.width = view.height = 200;
   view.world_from_eye = look_at({0, 0, 10}, glm::dvec3(0), glm::dvec3(0, 1, 0));
   view.projection = make_orthographic(-2, 2, -2, 2, {0.5, 50});
-  // Light along (1, 0, -1): the plate's shadow lies 0.25 further to +x; the plate itself covers all but that much.
+  // Light along (1, 0, -1): the plate's shadow is shifted 0.25 to +x, and the plate covers the rest of it.
   const std::vector<HatchLine> lines = hatch(surfaces, view, options_of({{0, 2, 0.5, 0.1}}, {-1, 0, 1}));
   ASSERT_EQ(lines.size(), 25u);
   for (const HatchLine& line : lines) {
@@ -167,7 +167,7 @@ TEST(Hatch, ShadowsHaveTheirExactPlaces) {
     EXPECT_EQ(line.instance, 0u);
   }
   EXPECT_TRUE(hatch(surfaces, view, options_of({{0, 2, 0.5, 0.1}}, {-1, 0, 1}, false)).empty());
-  // The other side of both is dark all over, and the floor alone is seen.
+  // The other sides of both are all dark, and only the floor is seen.
   view.world_from_eye = look_at({0, 0, -10}, glm::dvec3(0), glm::dvec3(0, 1, 0));
   EXPECT_NEAR(length_of(hatch(surfaces, view, options_of({{0, 2, 0.5, 0.1}}, {-1, 0, 1})), 0), 50 * 100, 1e-6);
 }
@@ -210,7 +210,7 @@ TEST(Hatch, EndsOnASphereWhereItIsAsBrightAsThat) {
 
 class EveryKindHatched : public testing::TestWithParam<Kind> {};
 
-/// Random points of random hatch lines: hatched where, and only where, what is seen there is dark.
+/// Random points of random hatch lines are hatched exactly where the visible surface is dark.
 TEST_P(EveryKindHatched, WhereItIsSeenAndDark) {
   std::size_t asked = 0, certain = 0, dark = 0;
   for (std::uint64_t seed = 0; seed < seeds(8); ++seed) {

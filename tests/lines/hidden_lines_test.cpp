@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts against every triangle of the scene, point by point.
+// Visible and hidden parts against every triangle of the scene, point by point.
 #include <gtest/gtest.h>
 
 #include "frontmost/lines.h"
@@ -50,14 +50,14 @@ TEST_P(EveryKind, IsHiddenWhereATriangleIsBefore) {
   for (std::uint64_t seed = 0; seed < (under_sanitizer ? 2u : 8u); ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed + 100);
-    // Sheets all pass through each other: hundreds of thousands of segments.
+    // All sheets pass through each other: hundreds of thousands of segments.
     const Scene scene = scene_of(random_mesh(GetParam(), GetParam() == Kind::sheets ? 30 : 150, seed));
     View view = random_view(random, 160, 120);
     const Checked checked = check(scene, view, seed % 2 == 0, seed);
     all.asked += checked.asked;
     all.certain += checked.certain;
   }
-  // Triangles in one plane are all in doubt.
+  // Coplanar triangles are all in doubt.
   EXPECT_GT(double(all.certain), GetParam() == Kind::coplanar ? 0 : 0.99 * double(all.asked));
   EXPECT_GT(all.asked, 30u);
 }
@@ -100,7 +100,7 @@ TEST(Lines, ThreadsChangeNothing) {
   expect_same(one, three);
 }
 
-/// Enough for several parts of every step, and among them some that cover many cells: these lie in every part.
+/// Enough triangles for several parts of every step; some cover many cells and lie in every part.
 TEST(Lines, PartsOfManyTrianglesAreOneGrid) {
   Random random(7);
   Mesh mesh;

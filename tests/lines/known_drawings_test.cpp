@@ -19,7 +19,7 @@ View view_from(const glm::dvec3& eye, bool is_parallel) {
   return view;
 }
 
-/// Outside out, without shared vertices.
+/// A box with outward faces, without shared vertices.
 Mesh box(const glm::vec3& low, const glm::vec3& high) {
   const auto corner = [&](int x, int y, int z) {
     return glm::vec3(x ? high.x : low.x, y ? high.y : low.y, z ? high.z : low.z);
@@ -66,13 +66,13 @@ TEST(KnownDrawings, ACubeFromTheFrontHidesItsBackEdgesBehindItsFrontOnes) {
   const Drawing drawing = draw_lines(Surfaces(scene), view_from({0, 0, 10}, true));
   for (const DrawnPart& part : drawing.parts) {
     const DrawnEdge& edge = drawing.edges[part.edge];
-    // Exactly behind the front face's outline counts as hidden, and so do the edges that are seen as points.
+    // Parts exactly behind the front face's outline count as hidden, and so do edges that are seen as points.
     const bool is_front = edge.from.z > 0 && edge.to.z > 0;
     EXPECT_EQ(part.hidden_by == 0, is_front) << edge.from.z << " " << edge.to.z;
   }
 }
 
-/// A profile in x and z that its first corner sees all of, from y = 0 to 1.
+/// A prism from y = 0 to 1 over a profile in x and z, all of which is seen from its first vertex.
 Mesh prism(const std::vector<glm::vec2>& profile) {
   Mesh mesh;
   const auto at = [&](std::size_t i, float y) {
@@ -101,7 +101,7 @@ TEST(KnownDrawings, StairsAndABracketHideThreeEdges) {
       ASSERT_EQ(drawing.parts.size(), drawing.edges.size());
       std::size_t hidden = 0;
       for (const DrawnPart& part : drawing.parts) {
-        // Steps rise away from the eye: hidden is what bottom, back and the far side have among themselves.
+        // The steps rise away from the eye: hidden are the common edges of bottom, back and far side.
         const DrawnEdge& edge = drawing.edges[part.edge];
         const auto both = [&](int axis) { return edge.from[axis] == 0 && edge.to[axis] == 0; };
         const bool is_behind = int(both(0)) + int(both(1)) + int(both(2)) == 2;
@@ -113,7 +113,7 @@ TEST(KnownDrawings, StairsAndABracketHideThreeEdges) {
 }
 
 TEST(KnownDrawings, APlateCutsTheEdgesBehindItWhereItEnds) {
-  // The square from -0.5 to 0.5 at z = 1 before that from -1 to 1 at z = 0, one shifted so that sides are cut in parts.
+  // The square from -0.5 to 0.5 at z = 1 in front of that from -1 to 1 at z = 0; one is shifted so that edges are cut.
   Mesh mesh;
   add_quad(mesh, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0});
   add_quad(mesh, {0.5, -0.5, 1}, {1.5, -0.5, 1}, {1.5, 0.25, 1}, {0.5, 0.25, 1});
@@ -128,7 +128,7 @@ TEST(KnownDrawings, APlateCutsTheEdgesBehindItWhereItEnds) {
       EXPECT_EQ(part.hidden_by, 0u);
       continue;
     }
-    // The right side of the square behind, from y = -1 to 1.
+    // The right edge of the square behind runs from y = -1 to 1.
     EXPECT_EQ(edge.from.y, -1);
     const double y0 = -1 + 2 * part.begin, y1 = -1 + 2 * part.end;
     EXPECT_EQ(part.hidden_by, y0 < -0.5 || y1 > 0.25 ? 0u : 1u);
@@ -156,7 +156,7 @@ TEST(KnownDrawings, FlatNeighboursAndTwinsDrawNothingBetween) {
   Mesh mesh;
   add_quad(mesh, {-1, -1, 0}, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0});
   add_quad(mesh, {0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0});
-  add_quad(mesh, {0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0});  // once more
+  add_quad(mesh, {0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0});  // a copy
   const Scene scene = scene_of(mesh);
   const Drawing drawing = draw_lines(Surfaces(scene), view_from({1, 2, 8}, false), {.crease_angle = 0});
   EXPECT_EQ(drawing.edges.size(), 6u);
@@ -184,7 +184,7 @@ TEST(KnownDrawings, BordersBetweenMaterialsAndInstances) {
   EXPECT_EQ(count(draw_lines(Surfaces(scene), view), EdgeKind::border), 1u);
   scene.instances.push_back({"above", 0, glm::dmat4({1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 2, 0, 1})});
   const Surfaces both(scene);
-  // One each, and two where the instances touch.
+  // Each instance has one border, and two where the instances touch.
   EXPECT_EQ(count(draw_lines(both, view), EdgeKind::border), 4u);
 }
 
@@ -208,7 +208,7 @@ TEST(KnownDrawings, TwoBoxesThroughEachOtherMeetInTwoSquares) {
         EXPECT_EQ(std::abs(p.z), 1);
         EXPECT_EQ(std::max(std::abs(p.x), std::abs(p.y)), 0.5);
       }
-      // Seen are the upper square's two sides before the inner box.
+      // The upper square's two edges in front of the inner box are visible.
       const glm::dvec3 middle = (edge.from + edge.to) * 0.5;
       EXPECT_EQ(part.hidden_by == 0, middle.z == 1 && (middle.x == 0.5 || middle.y == 0.5));
       (part.hidden_by == 0 ? seen : hidden) += length_of(drawing, part);
@@ -222,7 +222,7 @@ TEST(KnownDrawings, TwoBoxesThroughEachOtherMeetInTwoSquares) {
 }
 
 TEST(KnownDrawings, OutlinesHaveNothingBeside) {
-  // A box before a plate that it hides in part: on the plate the box has contours, beyond it an outline.
+  // A box in front of a plate: its silhouettes are contours where the plate is behind, and outlines beyond the plate.
   Mesh mesh = box({-0.5f, -0.5f, 0}, {0.5f, 0.5f, 1});
   add_quad(mesh, {0, -2, -1}, {2, -2, -1}, {2, 2, -1}, {0, 2, -1});
   const Scene scene = scene_of(mesh);
@@ -240,7 +240,7 @@ TEST(KnownDrawings, OutlinesHaveNothingBeside) {
     }
     (part.is_outline ? outline : contour) += length_of(drawing, part);
   }
-  // The box's left half, and the plate but for what the box hides of it.
+  // The outline is the box's left half, and the plate except its hidden part.
   EXPECT_NEAR(outline, 2 + (12 - 1), 1e-12);
   EXPECT_NEAR(contour, 2, 1e-12);
   for (const DrawnPart& part : draw_lines(Surfaces(scene), view_from({0, 0, 10}, true)).parts)

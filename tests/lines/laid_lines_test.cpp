@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines that are drawn so far: whoever may lie on a line is found, and far fewer are looked at than there are.
+// Lines drawn so far: every line that may lie on a given one is found, and far fewer are examined than exist.
 #include "lines/strokes/laid_lines.h"
 
 #include <gtest/gtest.h>
@@ -20,46 +20,46 @@ LineSegment towards(const glm::dvec2& begin, double angle, double length) {
   return {begin, begin + length * glm::dvec2(std::cos(angle), std::sin(angle)), 0};
 }
 
-/// Through the sheet, within a pixel's width.
+/// A segment across the sheet, within a pixel's width.
 LineSegment long_in_a_pixel(Random& random) {
   return {
       {random.within(0, 10), 1000 + random.within(0, 1)}, {3830 + random.within(0, 10), 1000 + random.within(0, 1)}, 0};
 }
 
-/// Of all lengths, some turned around.
+/// A short segment of random length, at times reversed.
 LineSegment short_in_a_pixel(Random& random) {
   const glm::dvec2 begin{random.within(0, 3000), 1000 + random.within(0, 1)};
   const glm::dvec2 end{begin.x + random.within(1, 500), 1000 + random.within(0, 1)};
   return random.below(2) == 0 ? LineSegment{begin, end, 0} : LineSegment{end, begin, 0};
 }
 
-/// From one point everywhere.
+/// A segment from one common point in a random direction.
 LineSegment from_a_point(Random& random) {
   const double angle = random.within(0, 6.3f);
   return towards({500, 500}, angle, random.within(1, 16));
 }
 
-/// Tiny ones, of every direction.
+/// A tiny segment in any direction.
 LineSegment in_a_heap(Random& random) {
   const glm::dvec2 begin{100 + random.within(0, 4), 200 + random.within(0, 4)};
   const double angle = random.within(0, 6.3f);
   return towards(begin, angle, random.within(0.01f, 0.2f));
 }
 
-/// On a few lines, again and again; level and upright ones among them.
+/// A segment on one of a few lines; level and upright lines are among them.
 LineSegment on_few_lines(Random& random) {
   const double angle = double(random.below(8)) * 0.39269908169872414, at = random.within(0, 20);
   return towards(towards({800, 600}, angle, at).to, angle, random.within(1, 40));
 }
 
-/// Anywhere in the picture, of all lengths.
+/// A segment anywhere in the picture, of any length.
 LineSegment anywhere(Random& random) {
   const glm::dvec2 begin{random.within(0, 3000), random.within(0, 2000)};
   const double angle = random.within(0, 6.3f);
   return towards(begin, angle, std::pow(10.0, random.within(-1, 3)));
 }
 
-/// In a three-hundredth of a picture that is as large as one far line makes it.
+/// A segment within a three-hundredth of the picture, whose size one far line determines.
 LineSegment in_a_far_heap(Random& random) {
   if (random.below(100) == 0) return {{3000, 3000}, {3000, 3000.1}, 0};
   const glm::dvec2 begin{random.within(0, 10), random.within(0, 10)};
@@ -67,13 +67,13 @@ LineSegment in_a_far_heap(Random& random) {
   return towards(begin, angle, 0.1);
 }
 
-/// Side by side, two thirds of a pixel apart, all through the sheet.
+/// Parallel segments two thirds of a pixel apart, all across the sheet.
 LineSegment side_by_side(Random& random) {
   const double y = 2.0 / 3.0 * double(random.below(3000));
   return {{0, y}, {3000, y + 300}, 0};
 }
 
-/// Through the sheet, everywhere.
+/// A segment across the sheet, anywhere.
 LineSegment across(Random& random) {
   const glm::dvec2 begin{random.within(0, 3000), random.within(0, 2000)};
   const double angle = random.within(0, 6.3f);
@@ -85,7 +85,7 @@ LineSegment in_a_star(Random& random) {
   return towards({1500, 1000}, angle, 800);
 }
 
-/// Of two long lines those are sought whose lines turn by no more than counts as one, and pass the middle near.
+/// Whether `other` must be found: long lines only if they turn by no more than the tolerance and pass near the middle.
 bool is_sought(const Line& line, const Line& other, const Nearness& nearness) {
   if (!line.is_long() || !other.is_long()) return true;
   const double turn = std::abs(cross(line.along, other.along));
@@ -93,7 +93,7 @@ bool is_sought(const Line& line, const Line& other, const Nearness& nearness) {
   return turn <= nearness.slope_within(line.length) && off <= nearness.apart();
 }
 
-/// Every line is held against all before it. \returns how many were found that lie on others.
+/// Compares every line with all earlier ones. \returns how many were found that lie on others.
 std::size_t expect_all_found(const std::vector<Line>& lines, double apart) {
   const Nearness nearness(apart);
   LaidLines laid(lines, nearness);
@@ -133,7 +133,7 @@ TEST(LaidLines, AllThatLieOnALineAreFound) {
   EXPECT_GT(found, 10000u);
 }
 
-/// A piece of a long line may be short, and then short ones may lie on it at any angle.
+/// A piece of a long line may be short, and short lines may then lie on it at any angle.
 TEST(LaidLines, PiecesOfLongLinesAreFoundAsWhatTheyAre) {
   const Line whole({{0, 0}, {1000, 0}, 0}), piece({{500, 0}, {510, 0}, 0}), other({{500, -0.3}, {510, 0.4}, 0});
   const Nearness nearness(1.0);
@@ -155,11 +155,11 @@ std::size_t looked_at(const std::vector<Line>& lines, double apart) {
   return sum;
 }
 
-/// Of 20 thousand lines each would be held against ten thousand others, if they were not told apart by their places.
+/// Without a search by place, each of 20 thousand lines would be compared with ten thousand others.
 TEST(LaidLines, LookAtFewOthers) {
   struct Case {
     MakeSegment make;
-    std::size_t most;  ///< to the line
+    std::size_t most;  ///< allowed comparisons for each line
   };
   const Case cases[] = {{anywhere, 30},      {across, 30},     {in_a_star, 30},
                         {side_by_side, 100}, {in_a_heap, 200}, {in_a_far_heap, 200}};
@@ -171,7 +171,7 @@ TEST(LaidLines, LookAtFewOthers) {
     }
 }
 
-/// As the header states: in the width of a pixel each may be looked at for each other, but no more than that.
+/// Lines within a pixel's width may all be compared with each other, as the header states, but not more often.
 TEST(LaidLines, LookAtNoMoreThanAllWithinAPixel) {
   constexpr std::size_t count = 4000;
   for (const MakeSegment& make : {MakeSegment(long_in_a_pixel), MakeSegment(short_in_a_pixel)})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Circles and cylinders of known sizes are found in their triangles, nothing else is, and their centre lines are where
+// Circles and cylinders of known sizes are found in their triangles, and nothing else is. Their centre lines are where
 // a drafter draws them.
 #include <gtest/gtest.h>
 
@@ -18,14 +18,14 @@ namespace {
 
 using std::numbers::pi;
 
-/// A tube about z, with sides of the same angle; a lid on either end where it is whole and `has_lids`.
+/// A tube about z with sides of equal angle; a full tube with `has_lids` has a lid at each end.
 struct Tube {
   double radius = 5, low = 0, high = 20;
   int sides = 24;
   double turn = 2 * pi;
-  double ratio = 1;  ///< of its y to its x: above or below 1 an ellipse
+  double ratio = 1;  ///< y extent divided by x extent; other than 1, an ellipse
   bool has_lids = true;
-  double top_radius = 0;  ///< 0: as below
+  double top_radius = 0;  ///< 0: as at the bottom
 };
 
 void add_tube(Mesh& mesh, const Tube& tube, const glm::dmat4& place = glm::dmat4(1), bool is_hollow = false) {
@@ -52,7 +52,7 @@ void add_tube(Mesh& mesh, const Tube& tube, const glm::dmat4& place = glm::dmat4
   }
 }
 
-/// A strip of rings about z through those (radius, z), from the first to the last; and back to the first if `closes`.
+/// A surface of revolution about z through the (radius, z) points, from first to last; back to the first if `closes`.
 /// Points on the axis are poles.
 void add_revolved(Mesh& mesh, const std::vector<glm::dvec2>& profile, int sides, bool closes,
                   const glm::dmat4& place = glm::dmat4(1), double ratio = 1) {
@@ -69,7 +69,7 @@ void add_revolved(Mesh& mesh, const std::vector<glm::dvec2>& profile, int sides,
     }
 }
 
-/// Of a circle: from one angle to another.
+/// Points on a circle, from one angle to another.
 std::vector<glm::dvec2> bow(double middle, double radius, double from, double to, int sides) {
   std::vector<glm::dvec2> points;
   for (int i = 0; i <= sides; ++i) {
@@ -102,7 +102,7 @@ std::vector<Round> of_kind(const Rounds& all, RoundKind kind) {
   return found;
 }
 
-/// Turned and moved to no place in particular.
+/// An arbitrary rotation and translation.
 glm::dmat4 anywhere() {
   const glm::dvec3 x = glm::normalize(glm::dvec3(3, 1, -2)), z = glm::normalize(glm::cross(x, glm::dvec3(1, 4, 2)));
   return {glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0), glm::dvec4(40, -25, 13, 1)};
@@ -190,12 +190,12 @@ TEST(Rounds, HalvesCountAndFilletsDoNot) {
   EXPECT_TRUE(rounds_of({.sides = 18, .turn = pi / 2}).rounds.empty());
 }
 
-// A wall of one quad from rim to rim, whose every triangle has a neighbour that is no part of it.
+// A wall of one quad from rim to rim, where every triangle has a neighbour outside the wall.
 TEST(Rounds, WallsEndAtFilletsAndSlightChamfers) {
   struct Case {
     double radius, fillet;
-    int sides, steps;         // of the fillet; none: a chamfer of 15 degrees
-    double turned_first = 0;  // steps: 0 where the fillet begins along the wall
+    int sides, steps;         // of the fillet; 0: a chamfer of 15 degrees
+    double turned_first = 0;  // 0 if the fillet begins along the wall
   };
   for (const Case& c : {Case{8, 1.5, 48, 6}, Case{8, 1.5, 24, 5}, Case{50, 3, 24, 8}, Case{50, 0.5, 24, 10},
                         Case{5, 4, 64, 20}, Case{8, 3, 36, 0}, Case{8, 1.5, 36, 6, 0.5}}) {
@@ -219,7 +219,7 @@ TEST(Rounds, WallsEndAtFilletsAndSlightChamfers) {
   }
 }
 
-// A sphere or torus of an odd number of rings has one whose rims are of one radius.
+// A sphere or torus of an odd number of rings has one ring with rims of equal radius.
 TEST(Rounds, RingsOfWhatIsBentBothWaysAreNoWalls) {
   for (const int rings : {19, 25, 61}) {
     Mesh sphere, torus;
@@ -277,7 +277,7 @@ TEST(Rounds, WhatIsNotRoundAboutAnAxisIsNone) {
   EXPECT_EQ(revolved({{5, 0}, {9, 0}}, 48, 1), 0u);                // flat
 }
 
-// A slanted plane cuts the sides of a bore between their ends, where its corners lie within the circle.
+// A slanted plane cuts the sides of a bore between their ends, where its vertices lie within the circle.
 TEST(Rounds, WallsMayEndAtASlantedCut) {
   constexpr int sides = 36;
   for (const double slope : {0.2, 1.0}) {
@@ -288,7 +288,7 @@ TEST(Rounds, WallsMayEndAtASlantedCut) {
     const auto cut = [&](double turn, double radius) { return at(turn, radius, slope * radius * std::cos(turn)); };
     for (int k = 0; k < sides; ++k) {
       const double a = 2 * pi * k / sides, b = 2 * pi * (k + 1) / sides;
-      // A point of the side of corners a and b, a third of the way from its middle to its end.
+      // A point of the edge from a to b, a third of the way from its middle to its end.
       const glm::dvec2 place =
           (glm::dvec2(std::cos(a), std::sin(a)) * 1.0 + glm::dvec2(std::cos(b), std::sin(b)) * 2.0) / 3.0;
       const double turn = std::atan2(place.y, place.x), radius = 5 * glm::length(place);
@@ -313,7 +313,7 @@ TEST(Rounds, SpheresAndKnotsHaveNone) {
   EXPECT_TRUE(rounds_of(builtin("cubes")).rounds.empty());
 }
 
-/// Whatever is random is not round, and nothing crashes.
+/// Random triangles are not round, and nothing crashes.
 TEST(Rounds, RandomTrianglesHaveNone) {
   for (const Kind kind : all_kinds)
     for (const std::uint64_t seed : {1u, 2u, 3u})
@@ -350,7 +350,8 @@ std::size_t count_of(const Rounds& all, RoundKind kind, double radius) {
 TEST(Rounds, OfPartsAreKnown) {
   FRONTMOST_NEEDS_MODELS();
   const Rounds as1 = rounds_of(load(model("cad/as1.stl")));
-  // The rod, six bolts and their bores in nuts, brackets and plate, and the rod's in two nuts and two brackets.
+  // Cylinders of radius 5: the rod, six bolts and their bores in nuts, brackets and plate, and the rod's bores in two
+  // nuts and two brackets.
   EXPECT_EQ(count_of(as1, RoundKind::cylinder, 5), 1u + 6 + 3 * 6 + 2 * 2);
   EXPECT_EQ(count_of(as1, RoundKind::cylinder, 7.5), 6u);  // heads
   EXPECT_EQ(of_kind(as1, RoundKind::cylinder).size(), 29u + 6);
@@ -367,7 +368,7 @@ TEST(Rounds, OfPartsAreKnown) {
   EXPECT_EQ(of_kind(torus, RoundKind::revolved).size(), 1u);
   const Rounds block = rounds_of(load(model("cad/featuretype.stl")));
   EXPECT_EQ(count_of(block, RoundKind::cylinder, 0.133), 8u);
-  // Counterbores, of which the file has one in two halves that share no corners.
+  // The counterbores; in the file, one of them is in two halves that share no vertices.
   EXPECT_EQ(count_of(block, RoundKind::cylinder, 0.21875), 9u);
 }
 
@@ -377,7 +378,7 @@ TEST(Rounds, OfScansAreNone) {
     EXPECT_TRUE(rounds_of(load(model(name))).rounds.empty()) << name;
 }
 
-/// A drawing at ten pixels to the unit, whose centre lines reach three units beyond.
+/// A drawing at ten pixels a unit, whose centre lines extend three units beyond.
 class CentreLines : public testing::Test {
  protected:
   static constexpr double pixels = 10;
@@ -397,7 +398,7 @@ class CentreLines : public testing::Test {
         chain_strokes(surfaces, drawing, {.by_kind = false, .by_outline = false, .arc_tolerance = 0.1}), options);
   }
 
-  /// Length of the only line in a direction, in units; 0 without one.
+  /// Length of the only line in a direction, in units; 0 if there is none.
   [[nodiscard]] double length(bool is_level) const {
     double length = 0;
     for (const CentreLine& line : lines_) {
@@ -414,7 +415,7 @@ class CentreLines : public testing::Test {
   std::vector<CentreLine> lines_;
 };
 
-// Without any up axis a mesh is y-up: its tubes, along z, are seen along their axes from the front.
+// Without an up axis a mesh is y-up: its tubes, along z, are seen along their axes from the front.
 TEST_F(CentreLines, AreACrossOverWhatIsSeenAlongItsAxis) {
   add_tube(mesh_, {});
   draw(NamedView::front);
@@ -470,7 +471,7 @@ TEST_F(CentreLines, AreOneCrossForAllAboutOneAxis) {
 
 TEST_F(CentreLines, OfWhatIsHiddenGoWithIt) {
   add_tube(mesh_, {});
-  // A plate before it.
+  // A plate stands in front of the tube.
   for (const float z : {30.0f}) {
     add_triangle(mesh_, {-20, -20, z}, {20, -20, z}, {20, 20, z});
     add_triangle(mesh_, {-20, -20, z}, {20, 20, z}, {-20, 20, z});

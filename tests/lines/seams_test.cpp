@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// T-junctions, filled by triangles without area and not.
+// T-junctions, with and without filling triangles of zero area.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,8 +25,8 @@ View junction_view(const glm::dvec3& eye) {
   return view;
 }
 
-/// Every edge with what is seen of it, in an order that does not depend on the triangles'. Ends of parts are rounded:
-/// where triangles are cut in other ways, the same planes have other corners.
+/// Every edge with its visible parts, in an order that does not depend on the triangles' order. Ends of parts are
+/// rounded, as other triangulations of the same planes have other vertices.
 using Line = std::tuple<double, double, double, double, double, double, EdgeKind, double, double, std::uint32_t>;
 std::vector<Line> lines_of(const Mesh& mesh, const View& view, const LineOptions& options) {
   const Scene scene = scene_of(mesh);
@@ -42,8 +42,8 @@ std::vector<Line> lines_of(const Mesh& mesh, const View& view, const LineOptions
   return all;
 }
 
-/// A triangle over the line from (-2, 0, 0) to (2, 0, 0), and below it one for every stretch between `corners`, turned
-/// about the line by the folded height.
+/// A triangle over the line from (-2, 0, 0) to (2, 0, 0), and below it one triangle for every interval between
+/// `corners`, turned about the line by the folded height.
 struct Junction {
   std::vector<float> corners;  ///< ascending, with both ends
   Mesh mesh;
@@ -62,7 +62,7 @@ struct Junction {
   }
 };
 
-/// How many drawn edges lie along the junction, and their length; those elsewhere are the outline.
+/// Number and total length of the drawn edges along the junction; edges elsewhere are the outline.
 std::pair<std::size_t, double> along_x(const Drawing& drawing) {
   std::pair<std::size_t, double> found{0, 0};
   for (const DrawnEdge& edge : drawing.edges) {
@@ -96,7 +96,7 @@ TEST(Seams, OfTwoPlanesDrawTheirCreaseOnce) {
     EXPECT_EQ(std::min(edge.left, edge.right), 0u);  // the long triangle's, by its own number
     EXPECT_LE(std::max(edge.left, edge.right), 2u);  // not the filler's
   }
-  EXPECT_EQ(along_x(junction.drawing(1.6)).first, 0u);  // a right angle is none
+  EXPECT_EQ(along_x(junction.drawing(1.6)).first, 0u);  // a right angle is not drawn
 }
 
 TEST(Seams, OfASilhouetteAreSilhouettes) {
@@ -117,7 +117,7 @@ TEST(Seams, OfManyFillersInAnyPattern) {
                                          {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}},
                                          {{0, 2, 4}, {0, 1, 2}, {2, 3, 4}},
                                          {{0, 3, 4}, {1, 3, 0}, {2, 1, 3}},
-                                         // one more, of which no other triangle has a side
+                                         // one more triangle, which shares no edge with others
                                          {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {1, 2, 3}}};
   for (const float depth : {0.0f, 2.0f})
     for (const Fillers& fillers : patterns) {
@@ -137,7 +137,7 @@ TEST(Seams, AtABoundaryAreDrawnOnce) {
   const Drawing drawing = junction.drawing();
   EXPECT_EQ(along_x(drawing), std::make_pair(std::size_t(3), 4.0));
   EXPECT_EQ(drawing.edges.size(), 5u);
-  // Of a filler that has nothing beside it, nothing is left.
+  // A filler without neighbours leaves no edges.
   junction.mesh.triangles.erase(junction.mesh.triangles.begin());
   EXPECT_TRUE(junction.drawing().edges.empty());
 }
@@ -168,8 +168,8 @@ TEST(Seams, AllButStraightTrianglesAreNoFillers) {
   EXPECT_GT(along_x(junction.drawing()).first, 0u);
 }
 
-/// A surface whose triangles' sides have corners on them; those of some of the triangles are filled, those of the
-/// others are corners of smaller triangles.
+/// A surface whose triangle edges carry additional vertices. Some triangles are filled up to these by slivers, others
+/// are split into smaller triangles at them.
 class Patchwork {
  public:
   Patchwork(std::uint64_t seed, bool is_filled) : random_(seed), choices_(seed + 1000), is_filled_(is_filled) {
@@ -192,7 +192,7 @@ class Patchwork {
  private:
   using Chain = std::vector<std::uint32_t>;
 
-  /// From a to b, with the corners between: the same for both triangles at the side.
+  /// The vertices from a to b, the same for both triangles at the edge.
   Chain chain(std::uint32_t a, std::uint32_t b) {
     const std::pair<std::uint32_t, std::uint32_t> side{std::min(a, b), std::max(a, b)};
     const auto [at, is_new] = chains_.try_emplace(side);
@@ -219,16 +219,16 @@ class Patchwork {
       for (const Chain& side : sides) fill(side, 0, side.size() - 1);
       return;
     }
-    // From the corners on the first side to the next one's last, then what is left of the other two sides.
+    // A fan over the vertices of the first edge to the next one's last, then the rest of the other two edges.
     for (std::size_t i = 0; i + 1 < sides[0].size(); ++i) mesh.triangles.push_back({sides[0][i], sides[0][i + 1], c});
     split_last(sides[1]);
     split_last(sides[2]);
   }
 
-  /// The corners on a side cut the piece at its end once more.
+  /// The vertices on an edge split the last piece once more.
   void split_last(const Chain& side) {
     if (side.size() == 2) return;
-    // The piece with the whole side.
+    // The piece with the whole edge.
     const std::uint32_t from = side.front(), to = side.back();
     for (std::size_t t = mesh.triangles.size(); t-- > 0;) {
       const glm::uvec3 corners = mesh.triangles[t];
@@ -318,7 +318,7 @@ TEST(Seams, SplitTheSameTriangleTheSameWay) {
 }
 
 TEST(Seams, ThatWouldBeTheSquareOfTheirPagesStayOpen) {
-  // As many pages on one spine as it has corners.
+  // One spine has as many pages as vertices.
   constexpr std::uint32_t count = 3000;
   Mesh mesh;
   for (std::uint32_t i = 0; i <= count; ++i) mesh.positions.emplace_back(float(i), 0.0f, 0.0f);
@@ -328,7 +328,7 @@ TEST(Seams, ThatWouldBeTheSquareOfTheirPagesStayOpen) {
     if (i > 0) mesh.triangles.push_back({i, count, i == 1 ? 0 : i - 1});
   }
   EXPECT_EQ(closed(mesh).triangles.size(), count);
-  // A few pages have room.
+  // With few pages, the seams are closed.
   Mesh few = mesh;
   few.triangles.clear();
   for (const glm::uvec3& t : mesh.triangles)
@@ -352,7 +352,7 @@ TEST(Seams, AskOftenWhetherToStop) {
   const CountingWatch watch;
   EXPECT_TRUE(close_seams(mesh, Buffer<std::int8_t>(count, 0), watch.execution()));
   EXPECT_EQ(mesh.triangles.size(), 0u);
-  // Sides are sorted, three to the filler, and then their ends.
+  // Edges are sorted, three for each filler, and then their ends.
   EXPECT_GT(watch.asked(), 6 * count / 32768);
 }
 

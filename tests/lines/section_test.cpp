@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What planes cut of shapes whose cuts are known, of random ones beside the sum over their triangles, and of what no
-// solid is; and that what is left is closed to the bit.
+// Sections of shapes with known cuts, of random shapes against the sum over their triangles, and of shapes that are not
+// solid. The remaining solid is closed to the bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ glm::dvec3 corner_of(const Mesh& mesh, std::size_t triangle, int k) {
   return glm::dvec3(mesh.positions[mesh.triangles[triangle][k]]);
 }
 
-/// Twice the triangle's area, along its normal.
+/// Vector along the triangle's normal whose length is twice the area.
 glm::dvec3 normal_of(const Mesh& mesh, std::size_t triangle) {
   const glm::dvec3 a = corner_of(mesh, triangle, 0);
   return glm::cross(corner_of(mesh, triangle, 1) - a, corner_of(mesh, triangle, 2) - a);
@@ -45,8 +45,8 @@ double volume_of(const Mesh& mesh) {
   return sum;
 }
 
-/// By directed side, to the bit, how often it is there more than the same side the other way round: nothing for what is
-/// closed.
+/// Number of directed edges, compared to the bit, that do not occur as often in the opposite direction: 0 for a closed
+/// mesh.
 std::size_t open_sides(const Mesh& mesh) {
   using Key = std::array<float, 6>;
   std::map<Key, int> sides;
@@ -59,7 +59,7 @@ std::size_t open_sides(const Mesh& mesh) {
   return std::size_t(std::count_if(sides.begin(), sides.end(), [](const auto& side) { return side.second != 0; }));
 }
 
-/// The triangles of a face lie in the plane, look to where the rest was, and cover its area.
+/// Checks that a face's triangles lie in the plane, look towards the removed part, and cover the face's area.
 void expect_filled(const Section& section, const CutFace& face, const CuttingPlane& plane) {
   const Mesh& mesh = section.scene.meshes[face.instance];
   double area = 0;
@@ -81,7 +81,7 @@ void expect_filled(const Section& section, const CutFace& face, const CuttingPla
   EXPECT_NEAR(around, face.area, 1e-9 * face.area);
 }
 
-/// Cuts a closed shape. \returns its face.
+/// Cuts a closed shape. \returns its cut face.
 CutFace expect_solid(const Mesh& mesh, const CuttingPlane& plane) {
   const Section section = cut_of(mesh, plane);
   EXPECT_EQ(section.faces.size(), 1u);
@@ -92,7 +92,7 @@ CutFace expect_solid(const Mesh& mesh, const CuttingPlane& plane) {
   return section.faces[0];
 }
 
-/// Walls over an outline, from z = 0 to 1, with a fan of triangles on either end.
+/// A prism over an outline from z = 0 to 1, with a fan of triangles at either end.
 Mesh walls_over(const std::vector<glm::vec2>& outline) {
   Mesh mesh;
   const auto n = std::uint32_t(outline.size());
@@ -107,7 +107,7 @@ Mesh walls_over(const std::vector<glm::vec2>& outline) {
   return mesh;
 }
 
-/// A rectangle of quads whose rows and columns close, as points on a grid.
+/// A grid of quads on points, whose rows and columns close.
 Mesh ring_mesh(int rows, int columns, const std::function<glm::dvec3(int, int)>& point) {
   Mesh mesh;
   for (int i = 0; i < rows; ++i)
@@ -136,7 +136,7 @@ Mesh tube(double inner, double outer, double height, int sides) {
   });
 }
 
-/// A shape whose corners have places alone.
+/// The mesh with nothing but positions and triangles.
 Mesh bare(const Mesh& mesh) {
   Mesh other;
   other.positions = mesh.positions;
@@ -164,7 +164,7 @@ TEST(Section, ACubeIsCutInASquareFromEverySide) {
 }
 
 TEST(Section, TubesSpheresAndToriHaveTheAreasOfTheirFormulas) {
-  // A polygon of n sides has n / 2 sin(2 pi / n) of the area of the square on its radius.
+  // A polygon of n sides has n / 2 sin(2 pi / n) times the area of the square on its radius.
   const auto polygon = [](int n) { return n / 2.0 * std::sin(2 * pi / n); };
   const Mesh pipe = outwards(tube(3, 5, 10, 48));
   const CutFace across = expect_solid(pipe, {Axis::z, 4.3});
@@ -185,12 +185,12 @@ TEST(Section, TubesSpheresAndToriHaveTheAreasOfTheirFormulas) {
   const CutFace upright = expect_solid(ring, {Axis::x, 0});
   EXPECT_EQ(upright.outlines.size(), 2u);
   EXPECT_NEAR(upright.area, 2 * pi * 9, 0.1);
-  // A plane through the hole cuts one outline that goes around both sides; one that touches the hole's rim, two.
+  // A plane through the hole cuts one outline around both sides; a plane that touches the hole's rim cuts two.
   EXPECT_EQ(expect_solid(ring, {Axis::x, 8.5}).outlines.size(), 1u);
 }
 
 TEST(Section, ThroughCornersEdgesAndFacesOfALatticeEveryCutIsClosed) {
-  // Steps whose faces lie in the planes of the cuts.
+  // The faces of the steps lie in the cutting planes.
   Mesh stairs;
   const auto add = [&](const Mesh& part) {
     const auto first = std::uint32_t(stairs.positions.size());
@@ -201,34 +201,34 @@ TEST(Section, ThroughCornersEdgesAndFacesOfALatticeEveryCutIsClosed) {
   const Scene scene = scene_of(stairs);
   for (int at = 0; at < 6; ++at) {
     const Section section = cut_of(scene, {Axis::z, double(at)});
-    // What ends at the plane is cut, what begins there is not.
+    // A step that ends at the plane is cut; a step that begins there is not.
     const double area = at == 0 ? 0 : std::max(0, 5 - at) * 2;
     EXPECT_EQ(section.faces.empty() ? 0 : section.faces[0].area, area) << at;
     EXPECT_EQ(open_sides(section.scene.meshes[0]), 0u);
     if (!section.faces.empty()) expect_filled(section, section.faces[0], {Axis::z, double(at)});
   }
-  // Along the steps they stand beside each other.
+  // Along the steps, the cuts are side by side.
   EXPECT_EQ(cut_of(scene, {Axis::y, 1}).faces[0].area, 1 + 2 + 3 + 4);
   EXPECT_EQ(cut_of(scene, {Axis::y, 1}).faces[0].outlines.size(), 4u);
-  // A wall that two have in common is there in both directions, and is none.
+  // A wall shared by two boxes occurs in both directions, and cancels out.
   stairs = {};
   for (int k = 0; k < 3; ++k) add(box({k, 0, 0}, {k + 1, 1, 1}));
   EXPECT_EQ(cut_of(stairs, {Axis::y, 0.5}).faces[0].area, 3);
   EXPECT_EQ(cut_of(stairs, {Axis::y, 0.5}).faces[0].outlines.size(), 1u);
 
-  // An octahedron through its corners and edges.
+  // An octahedron, cut through its vertices and edges.
   Mesh octahedron = sphere(2);
   for (const Axis axis : all_axes) EXPECT_EQ(expect_solid(octahedron, {axis, 0}).open_count, 0u);
 }
 
 TEST(Section, OutlinesThatCrossThemselvesAreClosedAllTheSame) {
   std::vector<std::vector<glm::vec2>> outlines = {
-      {{-1, 0}, {2, 0}, {0, 1}, {0, -2}},                               // an hourglass, as much one way as the other
-      {{-1, 0}, {2, 0}, {0, 1}, {0, -1}},                               // one that is not
-      {{0, 0}, {9, 0}, {9, 0.01f}, {8.9f, -0.01f}, {8.9f, 5}, {0, 5}},  // a small loop at a corner
+      {{-1, 0}, {2, 0}, {0, 1}, {0, -2}},                               // an hourglass whose two halves cancel
+      {{-1, 0}, {2, 0}, {0, 1}, {0, -1}},                               // an hourglass whose halves do not cancel
+      {{0, 0}, {9, 0}, {9, 0.01f}, {8.9f, -0.01f}, {8.9f, 5}, {0, 5}},  // a small loop at a vertex
       {},
       {}};
-  for (int i = 0; i < 5; ++i)  // a star of five points in one line, which goes around its middle twice
+  for (int i = 0; i < 5; ++i)  // a pentagram, which winds around its middle twice
     outlines[3].emplace_back(std::cos(4 * pi * i / 5), std::sin(4 * pi * i / 5));
   Random random(7);
   for (int i = 0; i < 40; ++i) outlines[4].emplace_back(random.point(1));
@@ -245,7 +245,7 @@ TEST(Section, OutlinesThatCrossThemselvesAreClosedAllTheSame) {
 
 TEST(Section, RandomConvexSolidsBesideTheHullOfTheirEdges) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    // A stretched and turned ball of few sides, moved.
+    // A stretched, rotated and moved ball of few sides.
     Random random(seed);
     Mesh solid = sphere(2 + random.below(6));
     glm::mat3 turn(1);
@@ -256,7 +256,7 @@ TEST(Section, RandomConvexSolidsBesideTheHullOfTheirEdges) {
     const Axis axis = all_axes[random.below(6)];
     const CuttingPlane plane{axis, double(away[int(axis) % 3]) + random.within(-0.4f, 0.4f)};
     const CutFace face = expect_solid(solid, plane);
-    // The points in which edges meet the plane, by their angle about a point within: the hull of a convex cut.
+    // Points where edges meet the plane, by angle about an inner point: the hull of a convex cut.
     const int across = axis_of(plane), u = (across + 1) % 3, v = (across + 2) % 3;
     std::vector<glm::dvec2> points;
     glm::dvec2 middle(0);
@@ -283,7 +283,7 @@ TEST(Section, RandomConvexSolidsBesideTheHullOfTheirEdges) {
 
 TEST(Section, CubesThatTouchInAnyPatternHaveAsManySquares) {
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
-    // At corners, at edges and at faces; those between two are there in both directions.
+    // Cubes touch at vertices, edges and faces; common faces occur in both directions.
     constexpr int side = 4;
     Random random(seed);
     const int share = 2 + random.below(4);
@@ -301,7 +301,7 @@ TEST(Section, CubesThatTouchInAnyPatternHaveAsManySquares) {
     const Scene scene = scene_of(mesh);
     const Surfaces surfaces(scene);
     for (const double at : {0.5, 1.0, 1.75, 2.0, 3.0, 4.0}) {
-      // What ends at the plane is cut, what begins there is not.
+      // A cube that ends at the plane is cut; a cube that begins there is not.
       const int below = layers[int(std::ceil(at)) - 1];
       const Section section = cut(surfaces, {Axis::z, at});
       EXPECT_EQ(section.faces.empty() ? 0 : section.faces[0].area, below) << seed << " at " << at;
@@ -314,7 +314,7 @@ TEST(Section, CubesThatTouchInAnyPatternHaveAsManySquares) {
 }
 
 TEST(Section, HollowsAndIslandsInThemAreTold) {
-  // From the outside: solid, hollow, solid, hollow. Every second one is turned inside out.
+  // From the outside: solid, hollow, solid, hollow. Every second sphere is turned inside out.
   Mesh all;
   for (int k = 0; k < 4; ++k) {
     Mesh ball = sphere(24);
@@ -330,7 +330,7 @@ TEST(Section, HollowsAndIslandsInThemAreTold) {
   const double whole = expect_solid(sphere(24), {Axis::y, 0.025}).area;
   EXPECT_NEAR(face.area, whole * (16 - 9 + 4 - 1), 0.1);
 
-  // Solids within solids: all that is wound around is filled, and what is not wound alike goes by odd and even.
+  // Solids within solids: equal windings fill all; opposite windings go by odd and even.
   Mesh within = bare(box({-2, -2, -2}, {2, 2, 2}));
   const Mesh core = box({-1, -1, -1}, {1, 1, 1});
   const auto first = std::uint32_t(within.positions.size());
@@ -360,7 +360,7 @@ TEST(Section, EveryObjectHasItsOwnFace) {
   for (const CutFace& face : section.faces) {
     EXPECT_EQ(face.area, 4);
     EXPECT_EQ(open_sides(section.scene.meshes[face.instance]), 0u);
-    EXPECT_GT(volume_of(section.scene.meshes[face.instance]), 0);  // also what was mirrored is wound outwards
+    EXPECT_GT(volume_of(section.scene.meshes[face.instance]), 0);  // mirrored objects are wound outwards too
   }
   validate(section.scene);
 }
@@ -375,12 +375,12 @@ TEST(Section, OpenMeshesAndBrokenNumbersAreNoSolids) {
   EXPECT_TRUE(cut_sheet.faces[0].outlines.empty());
 
   Mesh cup = bare(box({0, 0, 0}, {1, 1, 1}));
-  cup.triangles.erase(cup.triangles.begin());  // a side is open
+  cup.triangles.erase(cup.triangles.begin());  // one side is open
   std::size_t open = 0;
   for (const Axis axis : all_axes) open += cut_of(cup, {axis, 0.25}).faces[0].open_count;
   EXPECT_EQ(open, 4u);
 
-  // One corner moved by a millionth: the crack is closed. By a tenth: it is not.
+  // A vertex moved by a millionth leaves a crack, which is closed; moved by a tenth, one that stays open.
   for (const auto& [off, is_open] : {std::pair(1e-6f, false), std::pair(0.1f, true)}) {
     Mesh soup;
     const Mesh whole = sphere(8);
@@ -441,7 +441,7 @@ TEST(Section, ADrawingShowsTheOutlineAndNoLineWithinIt) {
   for (const Stroke& stroke : all.strokes)
     for (std::uint32_t i = 0; i + 1 < stroke.count + std::uint32_t(stroke.is_closed); ++i)
       length += glm::distance(all.points[stroke.first + i], all.points[stroke.first + (i + 1) % stroke.count]);
-  // Two rectangles of 2 by 10, and the ends of the bore between them.
+  // The section shows two rectangles of 2 by 10, and the ends of the bore between them.
   EXPECT_NEAR(length / std::max(pixel, 1e-9), 2 * 24 + 2 * 6, 0.5);
 }
 
@@ -469,13 +469,13 @@ TEST(Section, HatchingLiesOnCutFacesThatAreSeen) {
     length[line.instance] += glm::distance(line.from, line.to);
     direction[line.instance] = glm::normalize(line.to - line.from);
   }
-  // Length times spacing is the area. The first two touch, so that they differ in angle; the third is apart.
+  // Length times spacing is the area. The first two objects touch, so their angles differ; the third is apart.
   EXPECT_NEAR(length[0] * 10, 16 * pixels * pixels, 0.02 * 16 * pixels * pixels);
   EXPECT_NEAR(length[1] * 10, 8 * pixels * pixels, 0.03 * 8 * pixels * pixels);
   EXPECT_NEAR(std::abs(glm::dot(direction[0], direction[1])), 0, 1e-6);
   EXPECT_NEAR(std::abs(glm::dot(direction[0], direction[2])), 1, 1e-6);
   for (const glm::dvec2& d : direction) EXPECT_NEAR(std::abs(d.x), std::abs(d.y), 1e-6);
-  // From behind nothing of the cut is seen, and thin parts are solid.
+  // From behind, nothing of the cut is visible, and thin parts are solid.
   front.forward = {0, -1, 0};
   EXPECT_TRUE(hatch(surfaces, frame(surfaces, 800, 800, front), options).empty());
   const std::vector<HatchSet> solid = section_hatch_sets(section, hatch_styles(std::array{&section}),

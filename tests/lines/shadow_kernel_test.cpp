@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels against the plain functions, bit for bit.
+// The kernels against their plain functions, bit for bit.
 #include "lines/hiding/shadow_kernel.h"
 
 #include <gtest/gtest.h>
@@ -12,14 +12,14 @@ namespace {
 
 using namespace lines_detail;
 
-/// Places on a coarse lattice, so that many lie on one line, in one plane, or at one place.
+/// A point of a coarse lattice, so that many points are collinear, coplanar or equal.
 glm::vec3 place(Random& random) {
   const auto coordinate = [&] { return std::round(random.within(-3, 3)) * 0.5f; };
   const float x = coordinate(), y = coordinate(), z = coordinate();
   return {x, y, z};
 }
 
-/// Vertex n of a made-up mesh lies at place n.
+/// A mesh whose vertex n lies at place n.
 struct Lattice {
   std::vector<glm::vec3> places;
 
@@ -50,7 +50,7 @@ SightedEdge random_edge(const Lattice& lattice, Random& random) {
   return {glm::dvec3(lattice.places[a]), glm::dvec3(lattice.places[b]), {a, a}, {b, b}};
 }
 
-/// `plain_function` is hidden_by() or covered_by().
+/// Compares a kernel with `plain_function`, which is hidden_by() or covered_by().
 void expect_equal(Interval (*plain_function)(const Occluder&, const SightedEdge&, const Sight&), bool covers) {
   std::size_t hidden = 0, open = 0;
   for (const Isa isa : available_isas()) {

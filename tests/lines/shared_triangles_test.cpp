@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles that are there more than once: in objects that have them in common, within one object, turned and mirrored.
+// Triangles that occur more than once: shared by objects or repeated within one, with other vertex orders, and
+// mirrored.
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -19,8 +20,8 @@ View view_of_all() {
   return view;
 }
 
-/// A plate of n x n squares with sides of 1/4 around the origin, with the diagonals of each as `is_rising` says. The
-/// middle square is cut the same way whatever it says.
+/// A plate of n x n squares with edges of 1/4 around the origin; `is_rising` chooses the diagonals. The middle square
+/// is cut the same way in any case.
 Mesh plate(int n, bool is_rising) {
   Mesh mesh;
   for (int x = 0; x < n; ++x)
@@ -43,7 +44,7 @@ void append(Mesh& mesh, const Mesh& other) {
   for (const glm::uvec3& t : other.triangles) mesh.triangles.push_back(t + first);
 }
 
-/// Corners of each triangle begin elsewhere, and every other one runs the other way.
+/// Rotates the vertex order of each triangle, and reverses every other triangle.
 Mesh turned(Mesh mesh) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     glm::uvec3& t = mesh.triangles[i];
@@ -66,7 +67,7 @@ std::size_t edge_count(const Scene& scene, const LineOptions& options = {}) {
   return draw_lines(Surfaces(scene), view_of_all(), options).edges.size();
 }
 
-/// Sides of the rim alone: 4 n.
+/// Only the edges of the rim remain: 4 n.
 TEST(SharedTriangles, LeaveNoEdgesBetweenTwoPlates) {
   const Mesh one = plate(5, true), other = plate(5, false);
   EXPECT_EQ(edge_count(scene_of_objects({one})), 20u);
@@ -76,13 +77,13 @@ TEST(SharedTriangles, LeaveNoEdgesBetweenTwoPlates) {
 
 TEST(SharedTriangles, MayBeMirroredCopies) {
   Scene scene = scene_of_objects({plate(5, true), plate(5, false)});
-  // The plate's mirror image has its diagonals the other way, but for those of the middle square.
+  // The plate's mirror image has the other diagonals, except in the middle square.
   scene.instances.push_back({"mirrored", 0, glm::scale(glm::dmat4(1.0), {-1, 1, 1})});
   scene.instances.push_back({"turned", 1, glm::scale(glm::dmat4(1.0), {-1, -1, 1})});
   EXPECT_EQ(edge_count(scene), 20u);
 }
 
-/// The middle square of plate(5, ...) with a triangle on each of its sides, up to tips that no plate has.
+/// The middle square of plate(5, ...) with a triangle on each edge, up to tips that no plate has.
 Mesh patch() {
   Mesh mesh;
   const float r = 0.125f, far = 0.22f;
@@ -107,7 +108,7 @@ TEST(SharedTriangles, MayBeOfOneObject) {
   EXPECT_EQ(edge_count(scene_of_objects({both, plate(5, true), turned(both)})), 20u + 8u);
 }
 
-/// A box and a wedge on one half of its top, which have a triangle of it in common, and each a side of their own.
+/// A box, and a wedge on one half of its top. They share a triangle of the top, and each has an edge of its own.
 TEST(SharedTriangles, KeepTheCreasesOfEachObject) {
   const glm::vec3 a(-1, 0, -1), b(1, 0, -1), c(1, 0, 1), d(-1, 0, 1), down(0, -1, 0), top(0.8f, 1, -0.8f);
   Mesh box, wedge;
@@ -132,7 +133,7 @@ TEST(SharedTriangles, KeepTheCreasesOfEachObject) {
 }
 
 TEST(SharedTriangles, LeaveOpenWhatIsOpen) {
-  // Three sheets around an edge, each given twice, and a fourth that shares nothing.
+  // Three triangles around an edge, each given twice, and a fourth that shares nothing.
   Mesh fans;
   const glm::vec3 low(0, -1, 0), high(0, 1, 0);
   for (const glm::vec3& tip : {glm::vec3(1, 0, 0), glm::vec3(-1, 0.1f, 0.1f), glm::vec3(0.1f, 0.2f, 1)})
@@ -144,7 +145,7 @@ TEST(SharedTriangles, LeaveOpenWhatIsOpen) {
   };
   EXPECT_EQ(edge_kind(scene_of(fans)), EdgeKind::boundary);
   EXPECT_EQ(edge_kind(scene_of_objects({fans, turned(fans)})), EdgeKind::boundary);
-  // Two sheets of different objects that only meet in the edge, one of them there twice.
+  // Two sheets of different objects meet only in the edge; one sheet occurs twice.
   Mesh flat, upright;
   add_triangle(flat, low, high, {1, 0, 0});
   add_triangle(flat, low, high, {-1, 0, 0});
@@ -162,7 +163,7 @@ lines_detail::SheetQuestions asking(const std::function<lines_detail::SurfaceOf(
 
 TEST(Sheets, PairCopiesOfOneMaterial) {
   using namespace lines_detail;
-  // Opposite vertex 5 in materials 0 and 1, its neighbours in one each.
+  // Triangles 0 and 1 at vertex 5 have materials 0 and 1; their neighbours have one each.
   const std::vector<Side> sides = {side(0, 5), side(1, 5), side(2, 6), side(3, 7)};
   const auto sheets = find_sheets(sides, asking([](std::uint32_t triangle) {
                                     return SurfaceOf{0, triangle == 1 || triangle == 2};
@@ -179,11 +180,11 @@ TEST(Sheets, OfTwoCommonSidesNoneCanBeTold) {
   using namespace lines_detail;
   const std::vector<Side> sides = {side(0, 5), side(1, 5), side(2, 6), side(3, 6), side(4, 7), side(5, 8)};
   EXPECT_FALSE(find_sheets(sides, asking([](std::uint32_t) { return SurfaceOf{0, 0}; })));
-  // Objects tell: two have 5 and 6 in common, and 7 and 8 are a third one's, which only meets them.
+  // Objects tell sheets apart: two share 5 and 6; 7 and 8 belong to a third, which only meets them.
   EXPECT_FALSE(find_sheets(sides, asking([](std::uint32_t triangle) {
                              return SurfaceOf{triangle < 4 ? triangle % 2 : 2, 0};
                            })));
-  // 5 6, 5 7 and 6 8.
+  // The objects have 5 and 6, 5 and 7, and 6 and 8.
   const std::uint32_t instances[] = {0, 1, 0, 2, 1, 2};
   const auto sheets = find_sheets(sides, asking([&](std::uint32_t triangle) {
                                     return SurfaceOf{instances[triangle], 0};

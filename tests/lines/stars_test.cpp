@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is known of the triangles at a vertex, and what it spares.
+// Facts about the triangles around a vertex, and the work that they save.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -29,13 +29,13 @@ struct Found {
         features(find_features(seen, surfaces, {}, execution)) {}
 };
 
-/// A fan of triangles around the origin, on through all of `rim`.
+/// A fan of triangles around the origin, over all points of `rim`.
 void add_fan(Mesh& mesh, const std::vector<glm::vec3>& rim, bool is_closed = true) {
   for (std::size_t i = 0; i + (is_closed ? 0 : 1) < rim.size(); ++i)
     add_triangle(mesh, {0, 0, 0}, rim[i], rim[(i + 1) % rim.size()]);
 }
 
-/// Whether the origin is spread, along z and the other two axes.
+/// Whether the origin is spread; the answer must be the same for all six orders of the axes.
 bool is_spread(const Mesh& mesh) {
   std::vector<bool> answers;
   for (int turned = 0; turned < 6; ++turned) {
@@ -54,7 +54,7 @@ bool is_spread(const Mesh& mesh) {
   return answers[0];
 }
 
-/// `count` places over `turns` around z, up and down by turns.
+/// `count` points over `turns` around z, alternately up and down.
 std::vector<glm::vec3> rim(int count, float turns, float height) {
   std::vector<glm::vec3> places;
   for (int i = 0; i < count; ++i) {
@@ -94,19 +94,19 @@ TEST(Stars, AreNotKnownToBeSpreadWhereTheyAreOpenJoinedOrMany) {
   add_fan(fin, rim(6, 1, 0.1f));
   add_triangle(fin, {0, 0, 0}, rim(6, 1, 0.1f)[0], {2, 0, 3});
   EXPECT_FALSE(is_spread(fin));
-  Mesh flipped;  // one is wound the other way
+  Mesh flipped;  // one triangle has the reverse winding
   add_fan(flipped, rim(6, 1, 0.1f));
   std::swap(flipped.triangles[2].y, flipped.triangles[2].z);
   EXPECT_FALSE(is_spread(flipped));
   Mesh many;
   add_fan(many, rim(int(Star::most) + 1, 1, 0.2f));
   EXPECT_FALSE(is_spread(many));
-  Mesh corner;  // of a cube: along no axis are all three seen from a side
+  Mesh corner;  // of a cube: no axis shows all three faces from one side
   add_fan(corner, {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}, {1, 0, 1}});
   EXPECT_FALSE(is_spread(corner));
 }
 
-/// A sheet whose vertices stand on a lattice, so that it folds, touches and overlaps itself exactly.
+/// A sheet with vertices on a lattice, so that it folds, touches and overlaps itself exactly.
 Mesh crumpled(int size, int jitter, std::uint64_t seed) {
   Random random(seed);
   Mesh mesh;
@@ -148,7 +148,7 @@ TEST(Stars, SpareNoCrossing) {
 }
 
 TEST(Stars, OfAnySizeHaveTheirCreases) {
-  for (const float size : {1.0f, 1e-27f}) {  // normals of the smaller one are out of the range that is squared
+  for (const float size : {1.0f, 1e-27f}) {  // for the smaller one, squares of normals underflow
     Mesh mesh;
     for (const glm::vec3 p : {glm::vec3(1, 1, 1), glm::vec3(1, -1, -1), glm::vec3(-1, 1, -1), glm::vec3(-1, -1, 1)})
       mesh.positions.push_back(p * size);

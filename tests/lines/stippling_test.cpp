@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dots: as many as it is dark, evenly spread, and nowhere else.
+// Dots: their number follows the darkness, they are evenly spread, and none are elsewhere.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ void add_level_square(Mesh& mesh, float half, float height) {
   add_triangle(mesh, a, c, d);
 }
 
-/// From above: 4 by 4 units on 400 by 400 pixels.
+/// A view from above: 4 by 4 units on 400 by 400 pixels.
 View from_above() {
   View view;
   view.width = view.height = 400;
@@ -37,7 +37,7 @@ StippleOptions options_of(double spacing, const glm::dvec3& to_light) {
   return options;
 }
 
-/// A square of 3.2 units, 320 pixels, whose brightness is `cosine`: ten periods of the pattern of spacing 1.
+/// Dots on a square of 3.2 units, 320 pixels, with brightness `cosine`: ten periods of the pattern at spacing 1.
 std::vector<Stipple> dots_at(double cosine, double spacing) {
   Mesh mesh;
   add_level_square(mesh, 1.6f, 0);
@@ -79,7 +79,7 @@ TEST(Stipple, DotsKeepApart) {
       sum += nearest;
       least = std::min(least, nearest);
     }
-    // Thrown at random, the nearest would be half as far away on average, and some a tenth.
+    // For random dots, the mean distance to the nearest would be half as large, and some distances a tenth.
     EXPECT_GT(sum / double(dots.size()), 0.65 * typical) << cosine;
     EXPECT_GT(least, 0.25 * typical) << cosine;
   }
@@ -93,7 +93,7 @@ TEST(Stipple, ShadowsAreFull) {
   scene.meshes.push_back(std::move(plate));
   scene.instances.push_back({"plate", 1, glm::dmat4(1.0)});
   const Surfaces surfaces(scene);
-  // Light along (4, 0, -3): brightnesses of 0.6; the shadow lies a third of a unit further to +x.
+  // Light along (4, 0, -3) gives brightnesses of 0.6; the shadow is shifted a third of a unit to +x.
   const std::vector<Stipple> dots = stipple(surfaces, from_above(), options_of(2, {-4, 0, 3}));
   std::size_t in_shadow = 0, on_plate = 0;
   for (const Stipple& dot : dots) {
@@ -103,7 +103,7 @@ TEST(Stipple, ShadowsAreFull) {
     on_plate += is_over_plate;
     in_shadow += at.x > 0.4 && at.x < 0.4 + 1.0 / 3 && std::abs(at.y) < 0.4;
   }
-  const double shadow = 0.8 / 3 * 10000 / 4;  // squares of the spacing
+  const double shadow = 0.8 / 3 * 10000 / 4;  // in squares of the spacing
   EXPECT_NEAR(double(in_shadow), shadow * 0.95 * 0.95, 0.05 * shadow);
   EXPECT_NEAR(double(on_plate), 0.64 * 10000 / 4 * 0.35 * 0.35, 20);
 }
@@ -132,7 +132,7 @@ TEST_P(EveryKindStippled, OnlyWhereItIsSeenAndNotBright) {
       EXPECT_TRUE(!answer.is_certain || answer.is_dark) << dot.at.x << " " << dot.at.y;
     }
   }
-  // Slivers and specks have hardly any place for dots, and triangles in one plane are all in doubt.
+  // Slivers and specks have little room for dots, and coplanar triangles are all in doubt.
   const bool has_few = GetParam() == Kind::slivers || GetParam() == Kind::tiny || GetParam() == Kind::coplanar;
   EXPECT_TRUE(has_few || certain > 5) << certain;
 }

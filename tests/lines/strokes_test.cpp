@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strokes: known counts, every line once, arcs where arcs are, and pens that travel little.
+// Strokes: known counts, every line once, arcs for round shapes, and short pen travel.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ View parallel_view(const glm::dvec3& eye) {
   return view;
 }
 
-/// The prism over a polygon in the plane z = -1, to z = 1, with flat ends about the origin.
+/// The prism over a polygon from z = -1 to z = 1, with flat end faces as fans around the axis.
 Mesh prism(const std::vector<glm::dvec2>& polygon) {
   Mesh mesh;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -67,7 +67,7 @@ double length_of(const Strokes& all, bool hidden) {
 
 TEST(StrokesOfACube, FromACorner) {
   const Strokes all = strokes_of(prism(square), parallel_view({4, 5, 6}));
-  // Three hidden edges that meet, the outline, three seen edges that meet.
+  // Three hidden edges that meet, the outline, and three visible edges that meet.
   ASSERT_EQ(all.strokes.size(), 7u);
   std::size_t closed = 0;
   for (std::size_t i = 0; i < all.strokes.size(); ++i) {
@@ -81,14 +81,14 @@ TEST(StrokesOfACube, FromACorner) {
   EXPECT_EQ(closed, 1u);
   EXPECT_TRUE(all.bulges.empty());
   EXPECT_EQ(strokes_of(prism(square), parallel_view({4, 5, 6}), {.with_hidden = false}).strokes.size(), 4u);
-  // Of any kind: every corner of the cube but the hidden one and three of the outline is a junction.
+  // If kinds may join, every vertex of the cube is a junction except the hidden one and three of the outline.
   EXPECT_EQ(strokes_of(prism(square), parallel_view({4, 5, 6}), {.by_kind = false, .by_outline = false}).strokes.size(),
             9u);
 }
 
 TEST(StrokesOfACube, FromTheFrontEveryLineOnce) {
   const Strokes all = strokes_of(prism(square), parallel_view({0, 0, 10}), {.by_kind = false, .by_outline = false});
-  // Its four back edges lie behind the front ones, and four edges are points.
+  // The cube's four back edges lie behind the front ones, and four edges are seen as points.
   ASSERT_EQ(all.strokes.size(), 1u);
   EXPECT_FALSE(all.strokes[0].is_hidden);
   EXPECT_TRUE(all.strokes[0].is_closed);
@@ -99,7 +99,7 @@ TEST(StrokesOfACube, FromTheFrontEveryLineOnce) {
 TEST(StrokesOnce, WhatIsThereTwiceIsDrawnOnce) {
   const View view = parallel_view({3, 4, 9});
   const Mesh mesh = prism(regular(5));
-  Mesh twice = mesh;  // all edges have more than two triangles now, of which one is drawn
+  Mesh twice = mesh;  // all edges now have more than two triangles, and one of each set is drawn
   for (const glm::uvec3& t : mesh.triangles)
     add_triangle(twice, mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]);
   const StrokeOptions any_kind{.by_kind = false, .by_outline = false};
@@ -110,7 +110,7 @@ TEST(StrokesOnce, WhatIsThereTwiceIsDrawnOnce) {
 }
 
 TEST(StrokesOnce, AHiddenEdgeBehindASeenOneKeepsWhatSticksOut) {
-  // A plate before a wider one of the same height: of the back one's sides only what sticks out is drawn.
+  // A plate in front of a wider one of the same height: only the protruding parts of the back edges are drawn.
   Mesh mesh;
   add_quad(mesh, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1});
   add_quad(mesh, {-1.5, -1, 0}, {1.5, -1, 0}, {1.5, 1, 0}, {-1.5, 1, 0});
@@ -132,7 +132,7 @@ TEST(StrokesOnce, TotalLengthIsThatOfTheParts) {
       if (length < 0.01) shorter += length;
     }
     const Strokes all = chain_strokes(surfaces, drawing);
-    // What is drawn once may be less; never more. Random soups have a few edges on each other.
+    // Drawing each line once may shorten the total, never lengthen it. Random soups have a few coinciding edges.
     EXPECT_LE(length_of(all, false), seen * 1.0001 + 0.1);
     EXPECT_GE(length_of(all, false), (seen - shorter) * 0.9 - 1) << seed;
     EXPECT_LE(length_of(all, true), hidden * 1.0001 + 0.1);
@@ -178,7 +178,7 @@ TEST(StrokesArcs, ARoundedPlateHasFourArcsAndFourLines) {
 }
 
 TEST(StrokesArcs, HalvesOfLongArcsLieOnTheCircle) {
-  // A disc with a slice cut out: 300 degrees.
+  // The outline is a disc without a slice: 300 degrees.
   std::vector<glm::dvec2> outline = {{0, 0}};
   for (int i = 0; i <= 60; ++i) outline.push_back(glm::dvec2(std::cos(i * pi / 36), std::sin(i * pi / 36)));
   const Strokes all = strokes_of(prism(outline), parallel_view({0, 0, 10}),
@@ -215,7 +215,7 @@ TEST(StrokesOrder, TheNextOneIsAlwaysTheNearest) {
 }
 
 TEST(StrokesOrder, OfEndsAsNearTheFirst) {
-  // Spokes from one point: all ends there are as near.
+  // Spokes from one point: all ends there are equally near.
   Drawing drawing;
   constexpr int count = 100;
   for (int i = 0; i < count; ++i) {
@@ -227,7 +227,7 @@ TEST(StrokesOrder, OfEndsAsNearTheFirst) {
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
   const Strokes all = chain_strokes(surfaces, drawing, {.by_instance = false, .nearest_first = true});
-  // In along one, and out along the lowest that is left; from there to its neighbour's end.
+  // Each stroke comes in along one spoke, and leaves along the lowest that is left.
   EXPECT_EQ(all.strokes.size(), std::size_t(count / 2));
   double length = 0;
   for (const Stroke& stroke : all.strokes) length += length_of(all, stroke);
@@ -236,8 +236,8 @@ TEST(StrokesOrder, OfEndsAsNearTheFirst) {
   EXPECT_EQ(all.points[2], drawing.parts[0].to);
 }
 
-/// Short lines within a three-hundredth of the picture, and one on its other side. How many lines are looked at in such
-/// crowds, and in those of long lines below, is counted by the tests of LaidLines.
+/// Short lines within a three-hundredth of the picture, and one on its other side. The tests of LaidLines count the
+/// comparisons in such crowds, and in those of long lines below.
 Drawing far_crowd(int count) {
   Drawing drawing;
   Random random(4);
@@ -265,8 +265,8 @@ TEST(StrokesOnce, NorIsItWhereMoreCountsAsOneLine) {
   const Surfaces surfaces(scene);
   const Drawing drawing = far_crowd(under_sanitizer ? 4000 : 50000);
   for (const double apart : {0.09, 0.12, 1.0}) {
-    // All are 0.1 long: within more than that each is no more than a point, unless it meets another, as many of 50000
-    // do.
+    // All lines are 0.1 long. If `apart` is greater, each is just a point unless it meets another line, as many of
+    // 50000 do.
     const bool is_empty = chain_strokes(surfaces, drawing, {.by_instance = false, .apart = apart}).strokes.empty();
     EXPECT_EQ(is_empty, apart == 1.0 || (under_sanitizer && apart > 0.1));
   }
@@ -285,10 +285,10 @@ TEST(StrokesOnce, NorAreLongLinesSideBySide) {
   EXPECT_EQ(chain_strokes(surfaces, drawing, {.by_instance = false}).strokes.size(), std::size_t(count));
 }
 
-/// Pieces of straight lines, by the line that they lie on.
+/// Pieces of straight lines, by the line they lie on.
 struct PiecesOfLines {
   Drawing drawing;
-  double length = 0;  ///< of what they cover together
+  double length = 0;  ///< total length that the pieces cover
 };
 
 PiecesOfLines pieces_of_lines(int line_count, int piece_count, std::uint64_t seed) {
@@ -300,7 +300,7 @@ PiecesOfLines pieces_of_lines(int line_count, int piece_count, std::uint64_t see
   };
   PiecesOfLines result;
   for (int line = 0; line < line_count; ++line) {
-    // Level, upright and exactly or nearly diagonal ones among them.
+    // Some lines are level, upright, and exactly or nearly diagonal.
     const double angle = line % 3 == 0 ? line / 3 * pi / 4 : line % 3 == 1 ? pi / 4 + up_to(0.1) - 0.05 : up_to(2 * pi);
     const glm::dvec2 along(std::cos(angle), std::sin(angle)), middle = near(glm::dvec2(1000), 300);
     std::vector<std::pair<double, double>> covered;
@@ -330,7 +330,7 @@ TEST(StrokesOnce, PiecesOfOneLineCoverItOnceHoweverLongTheyAre) {
     PiecesOfLines pieces = pieces_of_lines(30, 40, seed);
     std::shuffle(pieces.drawing.parts.begin(), pieces.drawing.parts.end(), std::mt19937_64(seed));
     const Strokes all = chain_strokes(surfaces, pieces.drawing, {.by_instance = false});
-    // A piece may go on up to the width of a point under another.
+    // A piece may extend under another by up to the width of a point.
     EXPECT_NEAR(length_of(all, false), pieces.length, 0.01 * double(all.strokes.size())) << seed;
     EXPECT_LT(all.strokes.size(), 30u * 40u / 2) << seed;
   }
@@ -364,7 +364,7 @@ TEST(StrokesOnce, CopiesInACrowdAreDrawnOnce) {
   EXPECT_EQ(chain_strokes(surfaces, drawing, options).points, once.points);
 }
 
-/// A drawing of these lines, all seen.
+/// A drawing of these lines, all visible.
 Drawing drawing_of(const std::vector<std::array<glm::dvec2, 2>>& parts) {
   Drawing drawing;
   for (const auto& [from, to] : parts) {
@@ -378,9 +378,9 @@ TEST(StrokesOnce, LinesBesideEachOtherAreOneWhereTheyAreAskedToBe) {
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
   const Drawing drawing = drawing_of({{{{100, 100}, {200, 100}}},
-                                      {{{150, 100.09}, {250, 100.09}}},  // half of it sticks out
-                                      {{{120, 100.03}, {130, 99.97}}},   // across
-                                      {{{110, 100}, {115, 100.5}}}});    // leaves it
+                                      {{{150, 100.09}, {250, 100.09}}},  // half of it protrudes
+                                      {{{120, 100.03}, {130, 99.97}}},   // crosses the line
+                                      {{{110, 100}, {115, 100.5}}}});    // leaves the line
   StrokeOptions options{.by_instance = false};
   EXPECT_NEAR(length_of(chain_strokes(surfaces, drawing, options), false), 100 + 100 + 10 + 5.02, 0.01);
   options.apart = 0.1;
@@ -394,7 +394,7 @@ TEST(StrokesOnce, CrumbsAreNoLinesButLinesOfCrumbsAre) {
   const Surfaces surfaces(scene);
   std::vector<std::array<glm::dvec2, 2>> parts = {{{{210, 300}, {210.05, 300}}}};
   for (int i = 0; i < 10; ++i) parts.push_back({{{210 + 0.05 * i, 320}, {210 + 0.05 * (i + 1), 320}}});
-  // Round and back again to where it began: no point either, for all that its ends meet.
+  // A loop back to its start is not a point either, although its ends meet.
   parts.push_back({{{250, 250}, {251, 250}}});
   parts.push_back({{{251, 250}, {251, 251}}});
   parts.push_back({{{251, 251}, {250, 250}}});
@@ -406,7 +406,7 @@ TEST(StrokesOnce, CrumbsAreNoLinesButLinesOfCrumbsAre) {
   EXPECT_NEAR(length_of(few, few.strokes[1]), 2 + std::sqrt(2.0), 1e-9);
 }
 
-/// Two tubes along z, of nearly one radius.
+/// Two tubes along z, with nearly equal radii.
 Mesh bolt_in_bore() {
   Mesh mesh = prism(regular(24)), bore = prism(regular(31));
   for (glm::vec3& p : mesh.positions) p.z *= 1.5f;
@@ -427,7 +427,7 @@ TEST(Strokes, HiddenIntersectionsAreLeftOutWhereSurfacesGraze) {
   const View view = parallel_view({4, 5, 6});
   const Strokes all = strokes_of(bolt_in_bore(), view), few = strokes_of(bolt_in_bore(), view, {.grazing_angle = 0.5});
   EXPECT_GT(intersection_length(all, true), 1000);
-  // What is seen stays, and so does where the bolt comes out, square to the end of the bore.
+  // Visible intersections stay, and so does the one where the bolt leaves the bore at a right angle.
   EXPECT_NEAR(intersection_length(few, false), intersection_length(all, false), 1e-9);
   EXPECT_LT(intersection_length(few, true), intersection_length(all, true) / 4);
   EXPECT_THROW((void)strokes_of(bolt_in_bore(), view, {.grazing_angle = 1.6}), Error);
@@ -450,7 +450,7 @@ TEST(StrokesOrder, StopsWhenAsked) {
 }
 
 TEST(StrokesOrder, APenGoesOnWhereStrokesTouch) {
-  // Nine seen edges of a cube with eight odd corners or so: fewer lifts than chains.
+  // Nine visible edges of a cube with about eight odd vertices: fewer pen lifts than chains.
   const StrokeOptions plain{.with_hidden = false, .by_kind = false, .by_outline = false};
   StrokeOptions plot = plain;
   plot.nearest_first = true;
@@ -502,7 +502,7 @@ TEST(Strokes, NothingAndNonsense) {
 }
 
 TEST(Strokes, NeedNoMemoryForADrawingOfNextToNothing) {
-  // A flat sliver seen along its length is a point: a grid for so little once had ten million cells a side.
+  // A flat sliver seen along its length is a point, for which a grid must not get ten million cells a side.
   for (const float width : {0.f, 1e-7f, 1e-5f, 1e-3f}) {
     Mesh sliver;
     add_triangle(sliver, {0, 0, -1}, {width, 0, 0}, {0, 0, 1});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small models that would take minutes are refused, by counted work, with what there is too much of.
+// Small models that would take minutes are refused by counted work; the error names the excess.
 #include <gtest/gtest.h>
 
 #include "frontmost/lines.h"

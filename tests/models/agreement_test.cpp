@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every method on every model: where they differ, exact arithmetic allows both answers.
+// Every method on every model: where methods differ, exact arithmetic allows both answers.
 
 #include <iostream>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every model that others made, through the whole path: read, flattened, seen, shaded; the same bytes by every
-// instruction set and any number of threads, and by the oracle where it is small enough for that.
+// Every collected model through the whole path: read, flattened, seen, shaded. The bytes are the same by every
+// instruction set and any number of threads, and by the oracle for small models.
 
 #include <iostream>
 
@@ -12,7 +12,7 @@
 namespace frontmost::test {
 namespace {
 
-/// The oracle's time is triangles times pixels.
+/// The oracle's time is the number of triangles times pixels.
 bool is_small(const Surfaces& surfaces) { return surfaces.primitive_count() <= 6000; }
 
 void expect_oracles_answer(const Surfaces& surfaces) {
@@ -37,7 +37,7 @@ TEST(AllModels, AreSeenAlikeByEveryInstructionSetAndNumberOfThreads) {
       ++without_triangles;
       continue;
     }
-    // One has holes wherever alpha is below 1.1.
+    // One model has holes wherever alpha is below 1.1.
     const bool is_all_hole = name.ends_with("Material_AlphaMask_03.gltf");
     EXPECT_EQ(covered(visible) > 1000, !is_all_hole) << "seen of " << surfaces.primitive_count() << " triangles";
     for (const Isa isa : available_isas())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawings of models that others made: against every triangle, against the z-buffer, and by the lengths that another
-// system draws.
+// Drawings of collected models: against every triangle, against the z-buffer, and by the lengths of another system's
+// drawings.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ namespace {
 constexpr const char* names[] = {"cad/as1.stl", "cad/crank-arm.stl", "cad/torus.stl", "cad/two-cylinders.stl",
                                  "cad/rocker-arm.obj"};
 
-/// From outside, in both projections, and from the middle of the model.
+/// Views from outside, in both projections, and from the middle of the model.
 std::vector<View> views_of(const Surfaces& surfaces) {
   std::vector<View> views = {frame(surfaces, 320, 240), frame(surfaces, 320, 240, {.orthographic = true})};
   View inside = views[0];
@@ -60,7 +60,7 @@ TEST(DrawnModels, PointsOfPartsAreHiddenWhereATriangleIsBefore) {
   std::cout << asked << " points, " << asked - certain << " of them within rounding of another answer\n";
 }
 
-/// Pixels within one of a seen part.
+/// Marks pixels within one pixel of a visible part.
 std::vector<bool> near_lines(const Drawing& drawing, int width, int height) {
   std::vector<bool> near(std::size_t(width) * std::size_t(height), false);
   for (const DrawnPart& part : drawing.parts) {
@@ -86,8 +86,8 @@ bool are_flat(const Surfaces& surfaces, PrimitiveId a, PrimitiveId b) {
   return true;
 }
 
-/// With holes, borders between objects, and parts through each other. Not nonmanifold-crash.obj: of its sheets a
-/// rounding apart, the z-buffer shows now the one and now the other.
+/// Models with holes, borders between objects, and parts that intersect. nonmanifold-crash.obj is left out: its sheets
+/// are a rounding error apart, so the z-buffer shows now one and now the other.
 constexpr const char* others[] = {"cad/fandisk.obj",
                                   "cad/linkrod.glb",
                                   "assembly/as1.glb",
@@ -115,7 +115,7 @@ TEST(DrawnModels, BordersOfSeenTrianglesLieOnDrawnLines) {
             are_flat(surfaces, visible.primitives[a], visible.primitives[b]))
           return;
         ++borders;
-        // Where the near plane cuts a surface open there is no edge.
+        // The near plane cuts a surface open here, which makes no edge.
         const bool is_cut = std::max(visible.keys[a], visible.keys[b]) > 0.98f;
         const bool is_bare = !near[a] && !near[b] && !is_cut;
         if (is_bare && bare++ < 10)
@@ -139,8 +139,8 @@ struct Reference {
   double length, tolerance;
 };
 
-/// Seen lengths by Open CASCADE's exact hidden-line removal of the shapes that the meshes were made of, without its
-/// smooth seams. The tolerance is the tessellation's: silhouettes go to and fro between its triangles.
+/// Visible lengths by Open CASCADE's exact hidden-line removal of the original shapes, without its smooth seams. The
+/// tolerance is due to the tessellation: silhouettes zigzag between its triangles.
 constexpr Reference references[] = {{"cad/as1.stl", {1, -1, 1}, 2444.05, 0.002},
                                     {"cad/as1.stl", {0.31, -0.82, 0.48}, 2317.3, 0.002},
                                     {"cad/two-cylinders.stl", {0, -1, 0}, 160, 0.0001},
@@ -172,7 +172,7 @@ glm::dvec3 right_of(const glm::dvec3& towards_viewer) {
   return glm::normalize(glm::cross(glm::dvec3(0, 0, 1), towards_viewer));
 }
 
-/// As it is seen, of a closed curve from t = 0 to 2 pi.
+/// Projected length of a closed curve, t = 0 to 2 pi, seen from direction `towards_viewer`.
 template <class Curve>
 double seen_length(const Curve& curve, const glm::dvec3& towards_viewer) {
   const glm::dvec3 d = glm::normalize(towards_viewer), right = right_of(d), up = glm::cross(d, right);
@@ -189,7 +189,7 @@ double circle_length(double radius, const glm::dvec3& towards_viewer) {
   return seen_length([&](double t) { return radius * glm::dvec3(std::cos(t), std::sin(t), 0); }, towards_viewer);
 }
 
-/// The circles of two cylinders, one on the other, and the four sides.
+/// Length of the circles of two cylinders, one on the other, and of the four sides.
 double cylinders_length(const glm::dvec3& towards_viewer) {
   const double upright = glm::length(glm::dvec2(towards_viewer)) / glm::length(towards_viewer);
   return 2 * circle_length(10, towards_viewer) + 2 * circle_length(8, towards_viewer) + 2 * (30 + 22) * upright;
@@ -198,11 +198,11 @@ double cylinders_length(const glm::dvec3& towards_viewer) {
 struct HiddenReference {
   const char* name;
   glm::dvec3 towards_viewer;
-  double (*all)(const glm::dvec3&);  ///< the length of what is seen and hidden, by formula
-  double seen, tolerance;            ///< Open CASCADE's, and of `all`
+  double (*all)(const glm::dvec3&);  ///< length of visible and hidden lines, by formula
+  double seen, tolerance;            ///< by Open CASCADE; as a share of `all`
 };
 
-// The stored drawings have no hidden lines. Where all lines of a shape are known by formula, they are the rest.
+// The stored drawings have no hidden lines. If all lines of a shape are known by formula, the hidden ones are the rest.
 constexpr HiddenReference hidden_references[] = {
     {"cad/two-cylinders.stl", {1, -1, 1}, cylinders_length, 203.49, 0.01},
     {"cad/two-cylinders.stl", {0.31, -0.82, 0.48}, cylinders_length, 203.5, 0.01}};
@@ -223,7 +223,7 @@ TEST(DrawnModels, HideAsMuchAsAnotherSystemLeavesOut) {
   }
 }
 
-/// The two silhouettes of a torus of radii 30 and 10 about z, as they are seen: closed, in its unit, y upwards.
+/// The two projected silhouettes of a torus of radii 30 and 10 about z: closed curves in its unit, y up.
 std::array<std::vector<glm::dvec2>, 2> torus_silhouettes(const glm::dvec3& towards_viewer) {
   const glm::dvec3 d = glm::normalize(towards_viewer), right = right_of(d), up = glm::cross(d, right);
   std::array<std::vector<glm::dvec2>, 2> curves;
@@ -231,7 +231,7 @@ std::array<std::vector<glm::dvec2>, 2> torus_silhouettes(const glm::dvec3& towar
   for (int i = 0; i <= steps; ++i) {
     const double u = 2 * 3.14159265358979323846 * i / steps;
     const glm::dvec3 outwards(std::cos(u), std::sin(u), 0);
-    // The normal cos v * outwards + sin v * z is square to d.
+    // The normal cos v * outwards + sin v * z is perpendicular to d.
     const double v = std::atan2(-glm::dot(outwards, d), d.z);
     for (int side = 0; side < 2; ++side) {
       const double r = side == 0 ? 10 : -10;
@@ -242,7 +242,7 @@ std::array<std::vector<glm::dvec2>, 2> torus_silhouettes(const glm::dvec3& towar
   return curves;
 }
 
-/// Points along the seen or the hidden parts of a drawing in parallel projection, in the unit of the scene.
+/// Points along the visible or the hidden parts of a drawing in parallel projection, in the scene's unit.
 std::vector<glm::dvec2> points_along(const Drawing& drawing, bool hidden) {
   const View& view = drawing.view;
   const Projection& p = view.projection;
@@ -266,15 +266,15 @@ bool is_near(const std::vector<glm::dvec2>& points, const glm::dvec2& place, dou
                      [&](const glm::dvec2& p) { return glm::distance(p, place) < reach; });
 }
 
-// Where a torus curves away from the eye, the silhouettes of its triangles go to and fro, all of them hidden: 40 of 300
-// too long. So what counts is on how much of the true silhouette no seen part lies, and that hidden ones lie on all of
-// that.
+// Where a torus curves away from the eye, the silhouettes of its triangles zigzag, all of them hidden: 40 of 300 too
+// long. So the test measures how much of the true silhouette has no visible part, and checks that hidden parts cover
+// all of that.
 TEST(DrawnModels, HideAsMuchOfATorusAsAnotherSystemLeavesOut) {
   FRONTMOST_NEEDS_MODELS();
   const Scene scene = load(model("cad/torus.stl"));
   const Surfaces surfaces(scene);
   constexpr Reference views[] = {{"iso", {1, -1, 1}, 302.41, 0.005}, {"skew", {0.31, -0.82, 0.48}, 288.84, 0.005}};
-  constexpr double reach = 0.03;  // half of what the mesh may be from the torus
+  constexpr double reach = 0.03;  // half of the mesh's possible distance from the torus
   for (const Reference& reference : views) {
     SCOPED_TRACE(reference.name);
     const Drawing drawing =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A teapot whose outline and depth others have drawn (daniilidis-group/neural_renderer, tests/data): every pixel of the
-// outline, and every depth to the eight bits in which it is stored.
+// A teapot whose outline and depth others have drawn (daniilidis-group/neural_renderer, tests/data): compares every
+// pixel of the outline, and every depth to the eight bits in which it is stored.
 
 #include <algorithm>
 #include <fstream>
@@ -19,7 +19,7 @@ Texture picture(const std::string& relative) {
   return decode_texture(std::as_bytes(std::span(bytes)), relative);
 }
 
-/// The model scaled as the references' notes say, and mirrored: their camera is left-handed.
+/// The model, scaled as the references' notes say, and mirrored, as their camera is left-handed.
 Scene scaled_teapot() {
   Scene scene = load(model("reference/teapot/teapot.obj"));
   const Surfaces surfaces(scene);
@@ -69,7 +69,7 @@ TEST(TeapotReference, OutlineAndDepthAreTheirs) {
   }
   EXPECT_GT(covered, 5000u);
   EXPECT_EQ(outline_differs, 0u);
-  // At pixel (79, 161) the surface is so steep that 1/128 pixel to the side is three steps of eight bits.
+  // At pixel (79, 161) the surface is so steep that a shift of 1/128 pixel is three steps of eight bits.
   EXPECT_LE(depth_differs, 1u);
   EXPECT_LT(worst, 0.008);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Culling of instances without groups of them: the plain loop over objects that the tree is held to.
+// Culls instances by a plain loop, without groups: the reference for the tree.
 #pragma once
 
 #include "occlusion/sweep.h"
@@ -8,7 +8,7 @@ namespace frontmost::test {
 
 enum class Ends { count, are_forgotten };
 
-/// Each object for itself, however many there are. What ends forgotten do stands in veto_test.cpp.
+/// Culls each object by itself, however many there are. veto_test.cpp describes the effect of forgotten ends.
 inline std::vector<ObjectSight> sights_by_hand(const Surfaces& surfaces, const View& view, int cell, Ends ends) {
   using namespace occlusion_detail;
   const Scene& scene = surfaces.scene();
@@ -18,7 +18,7 @@ inline std::vector<ObjectSight> sights_by_hand(const Surfaces& surfaces, const V
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
     OccluderMesh& mesh = meshes[scene.instances[i].mesh] =
         occluder_mesh(placed_scene(surfaces), i, ObjectUnit::instances);
-    // What lies beyond each side counts always: the triangle itself.
+    // Each edge's neighbour becomes the triangle itself, so that no edge counts as an end.
     if (ends == Ends::are_forgotten)
       for (std::uint32_t t = 0; t < mesh.neighbours.size(); ++t) mesh.neighbours[t] = glm::uvec3(t);
     objects.push_back({i, 0});

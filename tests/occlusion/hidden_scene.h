@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes in which much is hidden: closed and open objects of all sizes, tessellated and not, mirrored and sheared, and
-// eyes among them.
+// Scenes with much hidden: closed and open objects of all sizes, tessellated or not, mirrored and sheared, with eyes
+// among them.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace frontmost::test {
 
-/// A box of the given half sides about the origin, each face `steps` x `steps` quads; without its last `open` faces.
+/// A box about the origin with these half edges, each face `steps` x `steps` quads, without its last `open` faces.
 inline Mesh tessellated_box(const glm::vec3& half, int steps, int open) {
   Mesh mesh;
   for (int face = 0; face < 6 - open; ++face) {
@@ -74,7 +74,7 @@ inline View random_view(int width, int height, std::uint64_t seed) {
   return view.looking(glm::dvec3(eye), glm::dvec3(target), {0.1, 1, 0.2});
 }
 
-/// How many objects have this answer.
+/// Number of objects with this answer.
 inline std::size_t count_of(std::span<const ObjectSight> sights, ObjectSight sight) {
   return std::size_t(std::count(sights.begin(), sights.end(), sight));
 }

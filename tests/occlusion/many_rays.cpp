@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // usage: occlusion_rays RAYS [FIRST]
-// Looks along at least so many rays into random scenes, from the scene of number FIRST on, and says how many of them
-// meet first what culling says to be hidden or outside. The exit status is 0 where none does.
+// Casts at least RAYS rays into random scenes, from scene number FIRST on, and counts rays whose first hit is an object
+// that culling calls hidden or outside. The exit status is 0 if there is none.
 #include <cstdio>
 #include <cstdlib>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many objects: what groups of them say is what a loop over all objects says.
+// Many objects: the tree of groups gives the answers of a loop over all objects.
 #include "occlusion/object_tree.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ std::vector<Box> random_boxes(std::size_t count, std::uint64_t seed) {
   Random random(seed);
   std::vector<Box> boxes(count);
   for (Box& box : boxes) {
-    if (random.below(20) == 0) continue;  // empty
+    if (random.below(20) == 0) continue;  // an empty box
     const glm::vec3 at = random.point(9);
     box.include(at);
     box.include(at + glm::abs(random.point(random.below(20) == 0 ? 5.0f : 0.2f)));
@@ -26,7 +26,7 @@ std::vector<Box> random_boxes(std::size_t count, std::uint64_t seed) {
   return boxes;
 }
 
-/// Adds the objects below an item to `found`. Every box must be the one that those below it span.
+/// Adds the objects below an item to `found`. Checks that every box is the union of those below it.
 Box spanned_by(const ObjectTree& tree, std::uint32_t item, std::vector<std::uint32_t>& found) {
   const std::size_t before = found.size();
   Box box;
@@ -95,7 +95,7 @@ TEST(ObjectTree, BoxesFollowWhatMoves) {
 TEST(ObjectTree, NeighboursAreInOneGroup) {
   std::vector<Box> boxes;
   for (int i = 0; i < 4096; ++i) {
-    // In no order that means anything.
+    // The objects are in a scrambled order.
     const int place = i * 2731 % 4096;
     const glm::vec3 at(place % 64, 0, place / 64);
     boxes.push_back({at, at + 0.9f});
@@ -109,7 +109,7 @@ TEST(ObjectTree, CullingByGroupsSaysWhatALoopOverObjectsSays) {
   for (std::uint64_t seed = 0; seed < seeds(40); ++seed) {
     Scene scene = hidden_scene(1500, seed + 2000);
     scene.instances[3].mesh = std::uint32_t(scene.meshes.size());
-    scene.meshes.emplace_back();  // without triangles
+    scene.meshes.emplace_back();  // a mesh without triangles
     const Surfaces surfaces(scene);
     const View view = random_view(97, 61, seed);
     const int cell = 1 + int(seed % 3);
@@ -133,7 +133,7 @@ TEST(ObjectTree, CullingFollowsCrowdsThatMoveUntilTheirOrderIsMadeAnew) {
     Occlusion kept(surfaces);
     Random random(seed);
     for (int step = 0; step < 12; ++step) {
-      // A few, or all of them several times.
+      // Moves a few objects, or all of them several times.
       for (int moves = step % 4 == 3 ? 1500 : 1 + random.below(200); moves > 0; --moves)
         surfaces.move(scene, std::uint32_t(random.below(600)), random_placement(random, 2, 0.3f));
       const View view = random_view(97, 61, seed + 40 * std::uint64_t(step));
@@ -156,7 +156,7 @@ TEST(ObjectTree, WhatIsTooLargeForFloatsDoesNotPutItsNeighboursOutside) {
     Occlusion occlusion(surfaces), without(without_it);
     for (std::uint64_t seed = 0; seed < 9; ++seed) {
       View view = random_view(97, 61, seed);
-      // The plate is all at one depth, and of what is across only one sum overflows.
+      // The plate is all at one depth, and only one of its sums across overflows.
       if (seed == 0) view = make_view(1, 97, 61).looking({0, 0, 19}, {0, 0, 0}, {0.3, 1, 0}).between(0.1, 80);
       const auto sights = occlusion.cull(view, {.cell = 1}), expected = without.cull(view, {.cell = 1});
       EXPECT_EQ(sights.back(), ObjectSight::may_be_seen) << seed;

@@ -23,7 +23,7 @@ TEST(OccluderMesh, NeighboursAreThoseAcrossSharedPlaces) {
   Mesh mesh;
   add_quad(mesh, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
   const OccluderMesh m = mesh_of(mesh);
-  EXPECT_EQ(m.positions.size(), 4u);  // of six vertices
+  EXPECT_EQ(m.positions.size(), 4u);  // six vertices before welding
   ASSERT_EQ(m.triangles.size(), 2u);
   EXPECT_EQ(m.neighbours[0], glm::uvec3(no_index, no_index, 1));
   EXPECT_EQ(m.neighbours[1], glm::uvec3(0, no_index, no_index));
@@ -96,7 +96,7 @@ TEST(OccluderMesh, ClustersHoldEveryTriangleOnceAndReachIntoTheNext) {
   std::vector<int> times(scene.meshes[0].triangles.size(), 0);
   for (const OccluderPart& part : mesh.parts) {
     EXPECT_LE(part.own.size(), most_in_cluster);
-    EXPECT_GT(part.triangle_count, part.own.size());  // of a closed surface, each touches others
+    EXPECT_GT(part.triangle_count, part.own.size());  // in a closed surface, each part touches others
     EXPECT_TRUE(part.is_whole);
     for (const std::uint32_t t : part.own) ++times[t];
   }

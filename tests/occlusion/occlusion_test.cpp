@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-/// A wall of 4 x 4 units at z = 0, and a thing two units behind it.
+/// A wall of 4 x 4 units at z = 0, and an object ("thing") two units behind it.
 Scene wall_and_thing() {
   Scene scene;
   Mesh wall;
@@ -66,7 +66,7 @@ TEST(Occlusion, HolesGlassBlendedSurfacesAndCulledFacesHideNothing) {
   scene.materials[0] = {};
   scene.materials[0].transmission.factor = 0.01f;
   EXPECT_EQ(sight_of_thing(scene, view), ObjectSight::may_be_seen);
-  scene.materials[0].unlit = true;  // has no light that passes
+  scene.materials[0].unlit = true;  // unlit, it lets no light through
   EXPECT_EQ(sight_of_thing(scene, view), ObjectSight::hidden);
   scene.materials.clear();
   scene.meshes[0].material_ids.clear();
@@ -75,14 +75,14 @@ TEST(Occlusion, HolesGlassBlendedSurfacesAndCulledFacesHideNothing) {
   EXPECT_EQ(sight_of_thing(scene, culled), ObjectSight::hidden);
   culled.culling = Culling::front;
   EXPECT_EQ(sight_of_thing(scene, culled), ObjectSight::may_be_seen);
-  scene.instances[0].world_from_mesh[0][0] = -1;  // mirrored: its front still looks to +z
+  scene.instances[0].world_from_mesh[0][0] = -1;  // mirrored: its front still faces +z
   EXPECT_EQ(sight_of_thing(scene, culled), ObjectSight::may_be_seen);
   culled.culling = Culling::back;
   EXPECT_EQ(sight_of_thing(scene, culled), ObjectSight::hidden);
 }
 
-/// A floor of two triangles from behind the eye to far away, and a thing below it, which is to be far nearer than the
-/// floor's end.
+/// A floor of two triangles from behind the eye to far away, and a thing below it, much nearer than the floor's far
+/// end.
 Scene floor_and_thing(double distance) {
   Scene scene = wall_and_thing();
   scene.meshes[0] = Mesh();
@@ -96,17 +96,17 @@ TEST(Occlusion, AFloorHidesWhatLiesBelowItAlsoFarBeforeItsEnd) {
   for (const double distance : {4.0, 8.0, 16.0, 40.0})
     EXPECT_EQ(sight_of_thing(floor_and_thing(distance), view), ObjectSight::hidden) << distance;
   Scene above = floor_and_thing(8);
-  above.instances[1].world_from_mesh[3].y = -1;  // it looks out of the floor
+  above.instances[1].world_from_mesh[3].y = -1;  // it protrudes from the floor
   EXPECT_EQ(sight_of_thing(above, view), ObjectSight::may_be_seen);
   View parallel = view;
   parallel.projection = make_orthographic(-20, 20, -15, 15, {0.1, 500});
   EXPECT_EQ(sight_of_thing(above, parallel), ObjectSight::may_be_seen);
-  above.instances[1].world_from_mesh[3] = {0, -6, -40, 1};  // the floor is 17 units before it
+  above.instances[1].world_from_mesh[3] = {0, -6, -40, 1};  // the floor is 17 units in front of it
   EXPECT_EQ(sight_of_thing(above, parallel), ObjectSight::hidden);
 }
 
 TEST(Occlusion, WhatTheNearPlaneCutsOffHidesNothingInParallelProjection) {
-  // The plane runs through the wall: what is left of it ends within the picture, before the thing's middle.
+  // The near plane cuts the wall: the rest of the wall ends within the picture, before the thing's middle.
   Scene scene = wall_and_thing();
   Mesh wall;
   add_quad(wall, {-4, -4, 4}, {4, -4, -4}, {4, 4, -4}, {-4, 4, 4});
@@ -173,12 +173,12 @@ TEST(Occlusion, AnswersAreThoseOfEveryInstructionSetAndThreadCountAndOfAFreshSta
   }
 }
 
-/// Corners of such boxes overflow before the eye: what is then no number must not be told by the processor.
+/// Vertices of such boxes overflow in front of the eye: the answer for NaN must not depend on the processor.
 TEST(Occlusion, BoxesAtTheEndOfTheFloatsHaveTheSameAnswerOnEveryInstructionSet) {
   View view = make_view(0.9, 640, 480).looking({0, 0, 0}, {-0.0216184, -0.816451, 0.577009}, {0, 1, 0});
   view.projection.clip = {0.1, std::numeric_limits<double>::infinity()};
   Scene scene;
-  Mesh wall;  // which does not cover the whole picture
+  Mesh wall;  // does not cover the whole picture
   for (const glm::dvec2 at : {glm::dvec2(-0.5, -0.7), {0.7, -0.7}, {0.7, 0.7}, {-0.5, 0.7}})
     wall.positions.emplace_back(view.forward() + view.right() * at.x + view.up() * at.y);
   wall.triangles = {{0, 1, 2}, {0, 2, 3}};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said to be hidden is never seen: neither along rays between the samples, nor in the z-buffer's pictures.
+// Objects that culling calls hidden are never seen: neither along rays between the samples, nor in the z-buffer's
+// pictures.
 #include <gtest/gtest.h>
 
 #include "frontmost/files.h"
@@ -32,13 +33,13 @@ TEST(OcclusionProof, NoRayMeetsWhatIsHiddenFirst) {
   EXPECT_GT(seen, seeds(240) * 5);
 }
 
-/// Draws all objects, and those alone that may be seen. Adds to `hidden` how many are.
+/// Compares pictures of all objects and of the visible ones alone. Adds the number of hidden objects to `hidden`.
 void expect_picture_of_all(const Scene& scene, const View& view, int cell, std::size_t& hidden) {
   const Surfaces all(scene);
   Occlusion occlusion(all);
   const auto sights = occlusion.cull(view, {.cell = cell});
   hidden += count_of(sights, ObjectSight::hidden);
-  // Objects that are left out keep their numbers, but nothing of them is left.
+  // Culled objects keep their numbers, but have no triangles.
   Scene rest = scene;
   for (std::size_t i = 0; i < sights.size(); ++i)
     if (sights[i] != ObjectSight::may_be_seen) rest.instances[i].world_from_mesh = glm::dmat4(0.0);
@@ -77,7 +78,7 @@ TEST(OcclusionProof, BoxesThatAreHiddenAreNotSeenEither) {
     const View view = random_view(97, 61, seed);
     Occlusion occlusion(surfaces);
     static_cast<void>(occlusion.cull(view, {.cell = 1}));
-    // Boxes that were not there: each becomes an object of its own.
+    // New boxes, each added as an object of its own.
     Random random(seed);
     std::vector<Box> boxes(40);
     for (Box& box : boxes) {
@@ -105,14 +106,14 @@ TEST(OcclusionProof, BoxesThatAreHiddenAreNotSeenEither) {
   EXPECT_GT(hidden, seeds(120) * 3);
 }
 
-/// How far to the side of a triangle that its corners go around counter-clockwise a place lies, by volume.
+/// Signed volume between a place and a triangle; positive on the side where the vertices run counter-clockwise.
 double height_over(const std::array<glm::vec3, 3>& corners, const glm::dvec3& place) {
   const glm::dvec3 a(corners[0]), b(corners[1]), c(corners[2]);
   return glm::dot(glm::cross(b - a, c - a), place - a);
 }
 
 TEST(OcclusionProof, NeedlesThatFaceTheEyeAreNotHiddenByNothing) {
-  // Snapped to the screen, hundreds of them turn the other way.
+  // Snapping to the screen reverses hundreds of them.
   std::size_t facing = 0;
   for (std::uint64_t seed = 0; seed < seeds(3000); ++seed) {
     Random random(seed);
@@ -143,7 +144,7 @@ TEST(OcclusionProof, NeedlesThatFaceTheEyeAreNotHiddenByNothing) {
   EXPECT_GT(facing, seeds(3000) / 2);
 }
 
-/// Draws all triangles, and those alone of objects that may be seen, which are less than an instance.
+/// Compares pictures of all triangles and of the visible objects' triangles alone; objects are parts of instances.
 void expect_picture_of_all_triangles(const Scene& scene, const View& view, ObjectUnit unit, std::size_t& hidden) {
   const Surfaces all(scene);
   Occlusion occlusion(all, unit);
@@ -225,8 +226,8 @@ TEST(OcclusionProof, CitiesAndInteriorsAreTheSameWithoutWhatIsHidden) {
   EXPECT_GT(hidden, 500u);
 }
 
-/// A wall at z = 0 with a slit that is `width` pixels wide at x = 0, and a small thing behind it. A pixel is a
-/// hundredth of a unit wide at the wall.
+/// A wall at z = 0 with a slit `width` pixels wide at x = 0, and a small thing behind it. A pixel is a hundredth of a
+/// unit wide at the wall.
 Scene slit(float width) {
   Scene scene;
   Mesh wall;
@@ -263,7 +264,7 @@ TEST(OcclusionProof, SlitsBetweenSamplesAreSeenThrough) {
 }
 
 TEST(OcclusionProof, SeamsWithinASurfaceLetNothingThrough) {
-  // Triangles far smaller than a pixel, and slivers: what counts is where the surface ends.
+  // Triangles are far smaller than a pixel, or slivers: only the end of the surface counts.
   for (const int steps : {7, 40, 60}) {
     Scene scene;
     scene.meshes.push_back(tessellated_box({3, 3, 0.5f}, steps, 0));
@@ -275,7 +276,7 @@ TEST(OcclusionProof, SeamsWithinASurfaceLetNothingThrough) {
     Occlusion occlusion(surfaces);
     View view = make_view(0.8, 480, 360).looking({0.7, 0.3, 4}, {0, 0, 0}, {0, 1, 0});
     EXPECT_EQ(occlusion.cull(view, {.cell = 1})[1], ObjectSight::hidden) << steps;
-    // Along the wall, which then reaches far into depth and covers slab by slab.
+    // A view along the wall, which then reaches far in depth and covers one slab after another.
     view = make_view(0.8, 480, 360).looking({-2.9, 0, 1.2}, {2, 0, -1.1}, {0, 1, 0});
     EXPECT_EQ(occlusion.cull(view, {.cell = 1})[1], ObjectSight::hidden) << steps;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers of occlusion culling held to rays between the samples: what a ray meets first is seen.
+// Checks answers of occlusion culling by rays between the samples: the first hit of a ray is visible.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace frontmost::test {
 
-/// The line of sight through a place of the picture, from the near plane on.
+/// The line of sight through a point of the picture, from the near plane on.
 inline Ray sight_line(const View& view, double x, double y) {
   const Projection& p = view.projection;
   const double right = p.left + (p.right - p.left) * x / view.width, up = p.top - (p.top - p.bottom) * y / view.height;
@@ -21,13 +21,13 @@ inline Ray sight_line(const View& view, double x, double y) {
   return {glm::vec3(view.eye() + p.clip.near * direction), glm::vec3(direction)};
 }
 
-/// Random places of a picture.
+/// Number and seed of random lines of sight.
 struct SightLines {
   int count;
   std::uint64_t seed = 5;
 };
 
-/// How many random sight lines meet something first of which `is_seen(primitive id)` is false.
+/// Number of random lines of sight whose first hit has a false `is_seen(primitive id)`.
 template <class IsSeen>
 std::size_t wrong_sight_lines(const Surfaces& surfaces, const View& view, const SightLines& lines,
                               const IsSeen& is_seen) {
@@ -45,7 +45,7 @@ std::size_t wrong_sight_lines(const Surfaces& surfaces, const View& view, const 
   return wrong;
 }
 
-/// The same of what is known of instances.
+/// Number of random lines of sight whose first hit belongs to an instance not marked as visible.
 inline std::size_t wrong_sights(const Surfaces& surfaces, const View& view, std::span<const ObjectSight> sights,
                                 const SightLines& lines) {
   return wrong_sight_lines(surfaces, view, lines, [&](PrimitiveId id) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the ends of surfaces are for. Culling is run again by hand, over the same meshes: as they are, which must give
-// the same answers, and with sides of which none is an end, so that a cell counts as covered when its middle is. Rays
-// must find that wrong; else they would find nothing.
+// Shows why ends of surfaces matter. Culling by hand over the same meshes must give the same answers. Without ends, a
+// cell counts as covered if its middle is; rays must then find wrong answers, or the rays would prove nothing.
 #include <gtest/gtest.h>
 
 #include "occlusion/by_hand.h"

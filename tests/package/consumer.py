@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Installs a build into a fresh folder, compares what was laid down with the stored list, and builds and runs the
-consumer against it, once found by CMake and once by pkg-config; and a program that asks for the methods alone.
+"""Installs a build into a fresh folder, compares the installed files with the stored list, and builds and runs the
+consumer against them, found once by CMake and once by pkg-config. Also builds a program that needs only the methods.
 
-    consumer.py BUILD            the test; exit status 0 when all is well
-    consumer.py BUILD --update   stores the lists anew
+    consumer.py BUILD            the test; exit status 0 if all is well
+    consumer.py BUILD --update   stores the lists again
 """
 import argparse
 import os
@@ -16,7 +16,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 STORED = HERE / "installed.txt"
-MOST_BYTES = 1_500_000  # of the program that asks for the methods alone
+MOST_BYTES = 1_500_000  # of the program that needs only the methods
 
 
 def run(*command, **options):
@@ -28,7 +28,7 @@ def run(*command, **options):
 
 
 def listing(folder):
-    """All files below a folder; public headers as one line once they are known to be the repository's own."""
+    """All files below a folder. Public headers become one line, once they are known to be the repository's own."""
     found = {p.relative_to(folder).as_posix() for p in folder.rglob("*") if not p.is_dir()}
     headers = {name for name in found if name.endswith(".h")}
     if headers:
@@ -57,7 +57,7 @@ def check_output(text):
 
 
 def check_small(folder):
-    """A program with a z-buffer of its own meshes looks for no library of images, models or pages, and is small."""
+    """A program with a z-buffer of its own meshes finds no library of images, models or pages, and is small."""
     run("cmake", "--build", folder)
     picture = run(folder / "small")
     print(picture, end="")
@@ -88,7 +88,7 @@ endif()
 
 
 def check_components(folder, prefix):
-    """Without libpng, which static files need, methods are found all the same; and what is no part is named."""
+    """Methods are found without libpng, which static files need; a component that does not exist is named in the error."""
     if not list(prefix.rglob("libfrontmost_files.a")):
         return
     folder.mkdir()
@@ -105,7 +105,7 @@ def main():
         folder = pathlib.Path(folder)
         prefix = folder / "prefix"
         run("cmake", "--install", arguments.build.resolve(), "--prefix", prefix)
-        # The modules for Python and MPI are where the build has them; deb.py has their lists.
+        # The modules for Python and MPI lie where the build puts them; deb.py has their lists.
         program = [name for name in listing(prefix) if "-packages/" not in name and "frontmost_mpi" not in name]
         compare(program, STORED, arguments.update)
 

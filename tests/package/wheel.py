@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes a wheel of a build, unpacks it into an empty folder and uses it from there: what its module and the libraries
-beside that are linked with must lie in that folder, or be of the system, and it must see what the build's own module
-sees. What the interpreter and NumPy load beside is theirs.
+"""Makes a wheel of a build, unpacks it into an empty folder and uses it from there. Libraries that its module and its
+other libraries link must lie in that folder or belong to the system. It must give the answers of the build's own
+module. Libraries of the interpreter and NumPy are not checked.
 
     wheel.py BUILD
 """

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cuts that are foreseen beside those that are made.
+// The number of cuts foreseen, against the cuts made.
 
 #include "painter/painted.h"
 #include "painter/stages.h"
@@ -10,8 +10,8 @@ namespace {
 
 using namespace painter_detail;
 
-/// Planes that share lines in every way: none, two in one plane, blades around several axes, corners on a coarse grid,
-/// blades among what has a line of its own.
+/// Ways in which planes share lines: none; two in each plane; blades around several axes; vertices on a coarse grid;
+/// blades among planes with lines of their own.
 enum class Sharing { none, planes, axes, grid, mixed };
 
 void add_blade(Mesh& mesh, const glm::vec3& axis, Random& random) {
@@ -71,7 +71,7 @@ TEST(PaintCrossings, NoMoreCutsAreForeseenThanAreMade) {
       const double foreseen = least_cuts(pieces, members, poll);
       const auto made = double(painter(surfaces, view, {.method = PaintMethod::bsp}).steps.cuts);
       EXPECT_LE(foreseen, made);
-      // And most of the pairs where each has its own.
+      // Most pairs are counted if each has a line of its own.
       if (sharing == Sharing::none) {
         EXPECT_GT(foreseen, 0.25 * count * (count - 1) / 2);
       }

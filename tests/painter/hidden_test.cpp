@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Orders from which most of what is hidden is left out beforehand.
+// Orders from which most hidden polygons are removed beforehand.
 #include <gmock/gmock.h>
 
 #include "painter/painted.h"
@@ -24,7 +24,7 @@ TEST(Hidden, IsNeverCut) {
     const PaintOrder order = painter(surfaces, view, {.occluders = Occluders::all()});
     EXPECT_EQ(order.steps.cuts, 0u);
     EXPECT_THAT(ids_of(order), testing::UnorderedElementsAre(first, first + 1));
-    // Behind glass everything is seen.
+    // Everything behind glass is visible.
     const auto is_no_glass = [&](PrimitiveId id) { return id < first; };
     EXPECT_GT(painter(surfaces, view, {.occluders = Occluders::where(is_no_glass)}).polygons.size(), 20u);
   }
@@ -40,7 +40,7 @@ TEST(Hidden, InOnePlaneTheLowerIdIsLeft) {
                 ElementsAre(1, 0));
 }
 
-/// One through another hides it on one side alone.
+/// A triangle that passes through another hides it on one side only.
 TEST(Hidden, WhatComesThroughStays) {
   Mesh mesh;
   add_square(mesh, 1, 0);
@@ -51,7 +51,7 @@ TEST(Hidden, WhatComesThroughStays) {
   EXPECT_THAT(ids_of(order), testing::Contains(2u));
 }
 
-/// The border of the picture goes through a corner, which is there twice in what is within.
+/// The picture's border passes through a vertex, which then occurs twice in the clipped polygon.
 TEST(Hidden, WhatReachesBeyondThePictureIsSeenBesideItsMiddle) {
   Mesh mesh;
   add_triangle(mesh, {-2, -1, 0}, {1, 0, 0}, {-3, 1.5f, 0});
@@ -62,7 +62,7 @@ TEST(Hidden, WhatReachesBeyondThePictureIsSeenBesideItsMiddle) {
   EXPECT_THAT(ids_of(order), testing::UnorderedElementsAre(0, 1));
 }
 
-/// On the screen it is as good as a point, in the very middle of what lies behind it.
+/// On the screen the grain is nearly a point, in the middle of the surface behind it.
 TEST(Hidden, AGrainHidesNothing) {
   for (const int power : {20, 30, 33, 40, 60, 120}) {
     const float size = std::ldexp(1.0f, -power);
@@ -94,7 +94,7 @@ TEST(Hidden, ThePictureIsTheSame) {
       before += whole.polygons.size();
       left += order.polygons.size();
     }
-  EXPECT_LT(double(differing), 1e-4 * double(samples));  // snapped corners, as for visible_parts()
+  EXPECT_LT(double(differing), 1e-4 * double(samples));  // snapped vertices, as for visible_parts()
   EXPECT_LT(left, before * 3 / 4);
 }
 

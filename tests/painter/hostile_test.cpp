@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes that are made to take long: they end at a limit, or as soon as they are told to.
+// Scenes made to take long: they end at a limit, or as soon as they are told to stop.
 
 #include "painter/painted.h"
 #include "painter/trapped.h"
@@ -11,8 +11,8 @@
 namespace frontmost::test {
 namespace {
 
-/// All through each other, near the origin. `are_pairs`: two are in every plane, each the other one turned about its
-/// middle; without any rounding, for all is on a grid.
+/// Triangles that all intersect near the origin. `are_pairs`: two lie in every plane, one turned about its middle; all
+/// are on a grid, without rounding.
 Scene all_crossing(int count, bool are_pairs = false) {
   Random random(1);
   Mesh mesh;
@@ -29,7 +29,7 @@ class Foreseen : public testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(Hostile, Foreseen, testing::Bool(),
                          [](const auto& p) { return p.param ? "TwoInEveryPlane" : "AllInTheirOwn"; });
 
-/// What no number of cuts within the limit can do is told before they are made; polls count the steps.
+/// Work that no number of cuts within the limit can do is refused before the cuts; polls count the steps.
 TEST_P(Foreseen, TooManyCuts) {
   const Scene scene = all_crossing(3000, GetParam());
   const Surfaces surfaces(scene);
@@ -46,7 +46,7 @@ TEST_P(Foreseen, TooManyCuts) {
   }
 }
 
-/// As many pairs pass through each other, but all in the same two planes.
+/// An equal number of pairs intersect, but all in the same two planes.
 TEST(Hostile, TwoPlanesThroughEachOtherAreNotTooMany) {
   Mesh mesh;
   for (int i = 0; i < 1000; ++i) {
@@ -61,13 +61,13 @@ TEST(Hostile, TwoPlanesThroughEachOtherAreNotTooMany) {
   EXPECT_GT(order.steps.cuts, 900u);
 }
 
-/// Two through each other, many times in the same places: as many polygons, and the work of two.
+/// Two intersecting triangles, many times at the same places: all copies are painted, but cost the work of two.
 TEST(Hostile, CopiesAreHeldAgainstOthersOnce) {
   Mesh mesh;
   const int count = 500;
   for (int i = 0; i < count; ++i) {
     add_triangle(mesh, {-1, -1, 0.125f}, {1, -1, 0.125f}, {0, 1, 0.25f});
-    // As seen from behind, and from another corner on.
+    // The second triangle has the reverse winding and another first vertex.
     add_triangle(mesh, {0, -1, 0.25f}, {-1, 1, 0.25f}, {1, 1, 0.125f});
   }
   const Scene scene = scene_of(mesh);
@@ -80,7 +80,7 @@ TEST(Hostile, CopiesAreHeldAgainstOthersOnce) {
     EXPECT_LE(steps.cuts, 2u);
     EXPECT_LT(steps.behind + steps.before + steps.projections_apart + steps.compared, 20u);
     EXPECT_EQ(found.order.polygons.size(), count * (2 + steps.cuts));
-    // Those of one place one after another, the lowest id last.
+    // Copies at one place follow each other, the lowest id last.
     for (std::size_t i = 0; i < found.order.polygons.size(); ++i) {
       const auto from_top = PrimitiveId(count - 1 - int(i) % count);
       EXPECT_EQ(found.order.polygons[i].id / 2, from_top) << i;
@@ -91,7 +91,7 @@ TEST(Hostile, CopiesAreHeldAgainstOthersOnce) {
   EXPECT_LE(seen.polygons.size(), 4u);
 }
 
-/// All pass through all, but along one line: each is cut there at most once.
+/// All blades intersect, but along one line: each is cut there at most once.
 TEST(Hostile, BladesAroundAnAxisAreFewCuts) {
   Random random(4);
   Mesh mesh;
@@ -108,13 +108,13 @@ TEST(Hostile, BladesAroundAnAxisAreFewCuts) {
   EXPECT_LE(order.steps.cuts, std::uint64_t(count) * 2);
 }
 
-/// Says that work is to stop, from a certain question on.
+/// Asks work to stop, from a certain question on.
 class Stopper {
  public:
   explicit Stopper(std::size_t question) : watch_(question), last_(question + kThreads) {}
   [[nodiscard]] Execution execution() const { return watch_.execution(kThreads); }
 
-  /// Every thread stops at the first answer that says so, and the one that began the work asks once more.
+  /// Every thread stops at the first "yes", and the one that began the work asks once more.
   template <class Work>
   void expect_heard(const Work& work) const {
     try {
@@ -145,7 +145,7 @@ TEST(Hostile, CutsEndAtTheirLimit) {
     }
 }
 
-/// Parallel and tilted: depths overlap, and so does everything on the screen.
+/// Parallel and tilted triangles: their depths overlap, and so do they on the screen.
 Scene stack(int count) {
   Random random(2);
   Mesh mesh;
@@ -164,7 +164,7 @@ TEST(Hostile, StacksArePassedOverManyAtATime) {
   ASSERT_EQ(order.polygons.size(), std::size_t(count));
   for (std::size_t i = 1; i < order.polygons.size(); ++i)
     ASSERT_LE(surfaces.corners(order.polygons[i - 1].id)[0].z, surfaces.corners(order.polygons[i].id)[0].z);
-  // Not every two: each is asked about those of its own box and of a few others.
+  // Not every pair is tested: each triangle is tested against those of its own box and a few others.
   EXPECT_LT(order.steps.behind, std::uint64_t(count) * 200);
 }
 
@@ -179,7 +179,7 @@ TEST(Hostile, OrdersStopWhenTold) {
   }
 }
 
-/// They ask once in some thousand tests, and in some hundred cuts, which take longer.
+/// Orders ask once in some thousand tests, and in some hundred cuts, which take longer.
 TEST(Hostile, OrdersAskOften) {
   for (const Scene& scene : {stack(20000), all_crossing(60)}) {
     const Surfaces surfaces(scene);

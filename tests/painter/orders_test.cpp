@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes whose order, or whose lack of one, is known.
+// Scenes with a known order, or known to have none.
 #include <gmock/gmock.h>
 
 #include "painter/painted.h"
@@ -25,7 +25,7 @@ void add_stick(Mesh& mesh, const glm::vec3& from, const glm::vec3& to) {
   add_triangle(mesh, from + aside, from - aside, to);
 }
 
-/// Three sticks of which each lies over the next: no order without a cut.
+/// Three sticks, each over the next: there is no order without a cut.
 Mesh ring_of_three(float tilt) {
   Mesh mesh;
   for (int i = 0; i < 3; ++i) {
@@ -58,7 +58,7 @@ TEST_P(Orders, InOnePlaneTheLowerIdIsOnTop) {
   EXPECT_EQ(found.unexplained + found.explained, 0u);
 }
 
-/// The far end of the long one is farther than the small one, and yet it lies over it.
+/// The far end of the long stick is farther than the small one, yet the stick lies over it.
 TEST_P(Orders, ExchangesWhereDepthMisleads) {
   Mesh mesh;
   add_triangle(mesh, {-1.5f, -1, -3}, {1.5f, 0, 1}, {-1.5f, 1, -3});
@@ -108,7 +108,7 @@ TEST_P(Orders, SharedEdgesAndCornersNeedNoCut) {
   EXPECT_EQ(found.unexplained, 0u);
 }
 
-/// A corner of one triangle in the middle of another's edge, in the same plane and folded.
+/// A vertex of one triangle lies in the middle of another's edge, in the same plane and folded.
 TEST_P(Orders, TJunctionsNeedNoCut) {
   Mesh mesh;
   add_triangle(mesh, {-1, 0, 0}, {1, 0, 0}, {0, 1, 0.5f});
@@ -135,7 +135,7 @@ TEST_P(Orders, WhatPassesTheEyeIsCutAtTheNearPlane) {
 
 TEST_P(Orders, WhatIsNotSeenIsNotThere) {
   Mesh mesh;
-  add_triangle(mesh, {0, -1, 0}, {0, 1, 0}, {0, 0, 1});             // from its edge, in parallel projection and here
+  add_triangle(mesh, {0, -1, 0}, {0, 1, 0}, {0, 0, 1});             // seen edge-on, in parallel projection and here
   add_triangle(mesh, {-1, -1, 20}, {1, -1, 20}, {0, 1, 20});        // behind the eye
   add_triangle(mesh, {-1, -1, -200}, {1, -1, -200}, {0, 1, -200});  // beyond the far plane
   add_triangle(mesh, {50, 50, 0}, {51, 50, 0}, {50, 51, 0});        // beside the picture
@@ -194,8 +194,8 @@ TEST(Painter, OrdersOfOtherSurfacesAreRefused) {
   EXPECT_TRUE(painter(empty, view_from_above(false)).polygons.empty());
 }
 
-/// A sphere whose pole is a fan of triangles that miss each other by a rounding, and so pass through each other: cut by
-/// planes at tiny angles.
+/// A sphere whose pole is a fan of triangles that miss each other by a rounding error, and so intersect: planes cut
+/// them at tiny angles.
 Scene pole_of_bow_ties(int sectors) {
   Mesh mesh;
   const auto at = [&](int ring, int sector) {
@@ -223,7 +223,7 @@ TEST(Painter, APoleOfBowTiesIsRight) {
   }
 }
 
-/// How far a corner lies beyond another side of the same polygon, in pixels: all are convex.
+/// How far a vertex lies beyond another edge of its polygon, in pixels; every polygon must be convex.
 double worst_bend(const PaintOrder& order) {
   double worst = 0;
   for (const PaintPolygon& polygon : order.polygons) {
@@ -232,7 +232,7 @@ double worst_bend(const PaintOrder& order) {
     };
     for (std::size_t side = 0; side < polygon.corner_count; ++side) {
       const glm::dvec2 way = at(side + 1) - at(side);
-      if (glm::length(way) < 1e-3) continue;  // no direction
+      if (glm::length(way) < 1e-3) continue;  // too short to have a direction
       for (std::size_t i = 0; i < polygon.corner_count; ++i) {
         const glm::dvec2 corner = at(i) - at(side);
         worst = std::max(worst, (way.x * corner.y - way.y * corner.x) / glm::length(way));
@@ -242,7 +242,7 @@ double worst_bend(const PaintOrder& order) {
   return worst;
 }
 
-/// Where three planes meet at tiny angles doubles do not tell the place, not even to a few pixels.
+/// Where three planes meet at tiny angles, doubles do not give the point even to a few pixels.
 TEST(Painter, CornersBetweenPlanesAtTinyAnglesAreInTheirPlace) {
   const Scene scene = pole_of_bow_ties(8);
   const Surfaces surfaces(scene);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is painted of an order that is made by hand.
+// Pictures painted from orders made by hand.
 #include <algorithm>
 
 #include "painter/painted.h"
@@ -8,8 +8,8 @@
 namespace frontmost::test {
 namespace {
 
-/// Cuts leave pieces without a side that is long enough to have a direction. They are where they are, and not in all of
-/// the pixel.
+/// Cuts leave pieces without an edge long enough to have a direction. Such a piece covers its own place, and not the
+/// whole pixel.
 TEST(Paint, SliversOfCutsHoldNoSampleBesideThem) {
   Mesh mesh;
   for (const float z : {0.5f, 0.0f}) add_triangle(mesh, {-4, -4, z}, {4, -4, z}, {0, 6, z});

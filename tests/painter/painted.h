@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A painted order beside the z-buffer.
+// A painted order compared with the z-buffer.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 namespace frontmost::test {
 
-/// How many samples the painted order and the z-buffer show differently, with a reason and without.
+/// An order, and how many samples differ from the z-buffer, with a reason and without.
 struct Painted {
   PaintOrder order;
   std::uint64_t explained = 0, unexplained = 0;
@@ -24,7 +24,7 @@ inline Painted painted(const Surfaces& surfaces, const View& view, PaintMethod m
   return result;
 }
 
-/// Of an order, or of parts.
+/// Ids of the polygons of a PaintOrder or of VisibleParts.
 template <class Order>
 std::vector<PrimitiveId> ids_of(const Order& order) {
   std::vector<PrimitiveId> ids;
@@ -32,7 +32,7 @@ std::vector<PrimitiveId> ids_of(const Order& order) {
   return ids;
 }
 
-/// From (0, 0, 10) down to the origin, parallel or not, with planes at 1 and 100.
+/// A view from (0, 0, 10) down to the origin, parallel or not, with planes at 1 and 100.
 inline View view_from_above(bool is_parallel, int size = 64) {
   View view;
   view.width = view.height = size;

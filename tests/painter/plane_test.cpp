@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// On which side of a plane three others meet, by numbers of twice the length of doubles, and exactly.
+// The side of a plane where three others meet, in double-double numbers and exactly.
 #include "painter/cutting/plane.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ Equation<Number> equation(const ThreePoints& p) {
   return e;
 }
 
-/// The determinant of all four planes, along the last column.
+/// The determinant of all four planes, expanded along the last column.
 template <class Number>
 Number determinant(const std::array<ThreePoints, 4>& planes) {
   const Equation<Number> a = equation<Number>(planes[0]), b = equation<Number>(planes[1]),
@@ -42,7 +42,7 @@ int exact_side(const std::array<ThreePoints, 4>& planes) {
   return determinant<Expansion>(planes).sign() * three.sign();
 }
 
-/// Through points that are whole numbers, a few units of the last place beside them, or shared.
+/// Planes through points that are integers, a few units in the last place off, or shared.
 std::array<ThreePoints, 4> random_planes(Random& random, int kind) {
   std::array<ThreePoints, 4> planes;
   const glm::dvec3 shared(glm::ivec3(random.point(5)));
@@ -75,11 +75,11 @@ TEST(PaintPlane, TheSideOfAMeetingIsExact) {
       zeros += expected == 0;
       left_open += twice == 2;
     }
-  EXPECT_GT(zeros, asked / 5);      // those through one point
-  EXPECT_LT(left_open, asked / 2);  // and few others
+  EXPECT_GT(zeros, asked / 5);      // the meetings at one common point
+  EXPECT_LT(left_open, asked / 2);  // few others stay undecided
 }
 
-/// All through one point, which doubles lose, for the planes are next to parallel.
+/// All planes pass through one point, which doubles cannot locate, as the planes are nearly parallel.
 TEST(PaintPlane, MeetingsAtTinyAnglesAreFoundAsNearAsDoublesAre) {
   Random random(6);
   std::size_t lost = 0;

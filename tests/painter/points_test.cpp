@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The topmost polygon of an order at points of the screen, beside the nearest triangle along the ray through them.
+// The topmost polygon of an order at points of the screen, against the nearest triangle along the ray through them.
 #include <algorithm>
 
 #include "painter/painted.h"
@@ -10,7 +10,7 @@ namespace frontmost::test {
 namespace {
 
 struct Ray {
-  glm::dvec3 from, along;  ///< `along` is 1 long in the direction of the view
+  glm::dvec3 from, along;  ///< `along` has length 1 in the direction of the view
 };
 
 Ray ray_at(const View& view, const glm::dvec2& at) {
@@ -21,7 +21,7 @@ Ray ray_at(const View& view, const glm::dvec2& at) {
   return {view.eye(), view.forward() + aside};
 }
 
-/// What is nearest at a point, where that is clear.
+/// The nearest triangle at a point, if it is clear.
 struct Nearest {
   PrimitiveId id = no_primitive;
   double depth = std::numeric_limits<double>::infinity(), next = depth;
@@ -65,7 +65,7 @@ bool holds(const PaintOrder& order, const PaintPolygon& polygon, const glm::dvec
   };
   for (std::size_t i = 0; i < polygon.corner_count; ++i) {
     const glm::dvec2 p = corner(i), q = corner(i + 1);
-    const double turn = p.x * q.y - p.y * q.x;  // counter-clockwise as it is seen, with y down
+    const double turn = p.x * q.y - p.y * q.x;  // counter-clockwise as seen, with y down
     if (turn > 0) return false;
     area -= turn;
   }
@@ -103,7 +103,7 @@ TEST_P(Points, ShowTheNearestTriangle) {
     }
   }
   RecordProperty("unclear", std::to_string(unclear));
-  // Sheets may be a rounding apart, and what lies in one plane has ties.
+  // Sheets may be a rounding error apart, and coplanar triangles tie.
   if (GetParam() != Kind::coplanar && GetParam() != Kind::sheets) {
     EXPECT_LT(unclear, asked / 5);
   }

@@ -13,7 +13,7 @@ namespace {
 class EveryKind : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(Painter, EveryKind, testing::ValuesIn(all_kinds));
 
-/// Not those that lie in one plane, where ids decide who is seen.
+/// Kinds without coplanar triangles, where ids would decide which is seen.
 class KindWithoutTies : public testing::TestWithParam<Kind> {};
 std::vector<Kind> kinds_without_ties() {
   std::vector<Kind> kinds(std::begin(all_kinds), std::end(all_kinds));
@@ -24,7 +24,7 @@ INSTANTIATE_TEST_SUITE_P(Painter, KindWithoutTies, testing::ValuesIn(kinds_witho
 
 RandomCase small_case(Kind kind, std::uint64_t seed) {
   Random random(seed + 900);
-  // Sheets are all through each other, and next to parallel: hardly a sign that doubles decide.
+  // Sheets all intersect, and are nearly parallel: doubles decide hardly any sign.
   const int count = kind == Kind::sheets ? 5 + random.below(30) : 20 + random.below(120);
   RandomCase made{scene_of(random_mesh(kind, count, seed)), {}};
   const int width = 1 + random.below(120), height = 1 + random.below(100);
@@ -71,7 +71,7 @@ TEST_P(EveryKind, ThreadsChangeNothing) {
   for (std::size_t i = 0; i < one.corners.size(); ++i) ASSERT_EQ(one.corners[i].at, three.corners[i].at);
 }
 
-/// In another order of the file other ids are asked about in another order, and the picture is the same.
+/// In another order of the file, ids are queried in another order, and the picture is the same.
 TEST_P(KindWithoutTies, TheOrderOfTheFileChangesNothing) {
   const RandomCase c = small_case(GetParam(), 7);
   Scene turned = c.scene;
@@ -84,7 +84,7 @@ TEST_P(KindWithoutTies, TheOrderOfTheFileChangesNothing) {
   EXPECT_EQ(check_agreement(surfaces, a, b).count(Difference::unexplained), 0u);
 }
 
-/// Boxes on a grid and through each other: faces in one plane, edges on edges, corners on faces.
+/// Boxes on a grid that intersect: coplanar faces, edges on edges, vertices on faces.
 TEST(Painter, BoxesOnAGridAreRight) {
   for (std::uint64_t seed = 0; seed < seeds(8); ++seed) {
     SCOPED_TRACE(seed);
@@ -108,7 +108,7 @@ TEST(Painter, BoxesOnAGridAreRight) {
     const Surfaces surfaces(scene);
     View view = random_view(random, 100, 80);
     EXPECT_EQ(painted(surfaces, view).unexplained, 0u);
-    view = view_from_above(seed % 2 == 0, 80);  // along the axes: every second face from its edge
+    view = view_from_above(seed % 2 == 0, 80);  // along the axes: half of the faces are seen edge-on
     EXPECT_EQ(painted(surfaces, view).unexplained, 0u);
     EXPECT_EQ(painted(surfaces, view, PaintMethod::bsp).unexplained, 0u);
   }

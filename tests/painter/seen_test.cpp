@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is told of polygons that lie side by side: neighbours, what they hide together, and which overlap nothing.
+// Facts about polygons side by side: their neighbours, what they hide together, and which of them overlap nothing.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 using namespace painter_detail;
 using OutlinePoints = std::vector<glm::dvec2>;
 
-/// Outlines one over the other, counter-clockwise as they are seen: with y down, (0, 0) (0, 1) (1, 1).
+/// An order of outlines, one over the other, counter-clockwise as seen: with y down, (0, 0) (0, 1) (1, 1).
 PaintOrder order_of(const std::vector<OutlinePoints>& outlines) {
   PaintOrder order;
   order.view.width = order.view.height = 100;
@@ -33,7 +33,7 @@ OutlinePoints square(double x, double y, double size = 10) {
   return {{x, y}, {x, y + size}, {x + size, y + size}, {x + size, y}};
 }
 
-/// `side` by `side` squares from the corner of the picture on.
+/// `side` by `side` squares, from the corner of the picture on.
 std::vector<OutlinePoints> tiles(int side) {
   std::vector<OutlinePoints> all;
   for (int y = 0; y < side; ++y)
@@ -58,7 +58,7 @@ struct Laid {
 };
 
 TEST(Adjacency, FindsWhatHasTheSameSide) {
-  // Two triangles of a square, one that has only half of a side, and one that is beside the first on the wrong side.
+  // Two triangles of a square, one that shares only half of an edge, and one on the wrong side of the first one's edge.
   const Laid laid(
       {{{0, 0}, {0, 8}, {8, 8}}, {{0, 0}, {8, 8}, {8, 0}}, {{0, 0}, {0, -4}, {-4, 0}}, {{0, 0}, {0, 8}, {3, 8}}});
   const auto across = [&](std::uint32_t place, std::size_t side) {
@@ -90,7 +90,7 @@ TEST(Adjacency, TilesHaveNoOtherOpenSidesThanTheirBorder) {
   EXPECT_EQ(open, 40u);
 }
 
-/// Each would be held against all others.
+/// Each would be compared with all others.
 TEST(Adjacency, OfManyThatHaveTheSameSideAFewFindANeighbour) {
   std::vector<OutlinePoints> all(1000, square(10, 10));
   all.resize(2000, square(20, 10));
@@ -101,7 +101,7 @@ TEST(Adjacency, OfManyThatHaveTheSameSideAFewFindANeighbour) {
   EXPECT_EQ(found, 2u * 64);
 }
 
-/// All but one hide where they lie.
+/// All polygons but one hide others.
 struct AllBut {
   const Laid& laid;
   std::uint32_t missing;
@@ -120,7 +120,7 @@ struct AllBut {
 
 class SpreadTest : public testing::Test {
  protected:
-  /// Begins at the polygon in which a place next to the first corner is.
+  /// Starts at the polygon that contains a point next to the first vertex.
   OccluderUnion::Found spread(const Laid& laid, const OutlinePoints& outline, std::uint32_t missing = no_index) {
     const PaintOrder asked = order_of({outline});
     OccluderUnion spreader(laid.screen, laid.adjacency);
@@ -142,29 +142,29 @@ TEST_F(SpreadTest, TellsWhereTilesHideTogether) {
   EXPECT_EQ(spread(laid, asked, 22), OccluderUnion::Found::open);
   EXPECT_THAT(open_at_.x, testing::AllOf(testing::Ge(20 - 1e-9), testing::Le(30 + 1e-9)));
   EXPECT_THAT(open_at_.y, testing::AllOf(testing::Ge(20 - 1e-9), testing::Le(30 + 1e-9)));
-  // Those that it does not reach may be missing.
+  // Tiles outside the asked outline may be missing.
   for (const std::uint32_t missing : {0u, 10u, 41u, 44u, 77u})
     EXPECT_EQ(spread(laid, asked, missing), OccluderUnion::Found::hidden);
-  // Beyond the last tiles there is nothing.
+  // Nothing lies beyond the last tiles.
   EXPECT_EQ(spread(laid, {{85, 85}, {85, 95}, {105, 95}}), OccluderUnion::Found::open);
   EXPECT_NEAR(open_at_.x, 100, 0.01);
 }
 
 TEST_F(SpreadTest, TouchingIsNotCrossing) {
-  // One tile exactly, all others missing.
+  // The outline is one tile exactly, and all other tiles are missing.
   const Laid laid({square(50, 50)});
   EXPECT_EQ(spread(laid, square(50, 50)), OccluderUnion::Found::hidden);
   EXPECT_EQ(spread(laid, square(50, 50, 10.01)), OccluderUnion::Found::open);
 }
 
-/// Cuts at a corner leave it twice, and nothing is on the inner side of no side.
+/// Cuts at a vertex leave it twice, and an edge of length zero has no inner side.
 TEST_F(SpreadTest, ACornerMayBeThereTwice) {
   const Laid laid({square(50, 50)});
   EXPECT_EQ(spread(laid, {{50, 50}, {50, 70}, {70, 70}, {70, 70}, {70, 50}}), OccluderUnion::Found::open);
   EXPECT_EQ(spread(laid, {{50, 50}, {50, 60}, {60, 60}, {60, 60}, {60, 50}}), OccluderUnion::Found::hidden);
 }
 
-/// Bricks: few sides are those of two, but all lie beside others.
+/// Bricks: few edges are shared whole, but all lie beside others.
 TEST_F(SpreadTest, StepsAlongSidesThatLieBesideTwo) {
   std::vector<OutlinePoints> bricks;
   for (int row = 0; row < 10; ++row)
@@ -184,7 +184,7 @@ TEST_F(SpreadTest, StepsAlongSidesThatLieBesideTwo) {
     ++open;
     EXPECT_TRUE(is_within(brick.corners, open_at_, 1e-9)) << missing;
   }
-  // Of five rows it reaches into one to four bricks each.
+  // The outline reaches into one to four bricks of each of five rows.
   EXPECT_GE(open, 8u);
   EXPECT_LE(open, 16u);
 }
@@ -202,7 +202,7 @@ TEST(Alone, TilesAreAndWhatLiesOverOthersIsNot) {
   EXPECT_EQ(Laid(ten).alone().size(), 100u);
 
   std::vector<OutlinePoints> with_small = ten;
-  with_small.push_back(square(42, 42, 3));  // within tile 44
+  with_small.push_back(square(42, 42, 3));  // lies within tile 44
   std::vector<std::uint32_t> expected(100);
   std::iota(expected.begin(), expected.end(), 0u);
   expected.erase(expected.begin() + 44);
@@ -213,7 +213,8 @@ TEST(Alone, TilesAreAndWhatLiesOverOthersIsNot) {
   EXPECT_TRUE(Laid(twice).alone().empty());
 }
 
-/// The middle of a sheet has no open side near it, only its own neighbours; its number comes from where it begins.
+/// The middle of a sheet has no open edges near it, only its own neighbours; its group is known from where the sheet
+/// begins.
 TEST(Alone, SheetsOverEachOtherAreNot) {
   std::vector<OutlinePoints> two = tiles(10);
   for (int y = 0; y < 8; ++y)
@@ -221,15 +222,15 @@ TEST(Alone, SheetsOverEachOtherAreNot) {
   const Laid laid(two);
   const std::vector<std::uint32_t> alone = laid.alone();
   EXPECT_THAT(alone, testing::Each(testing::Lt(100u)));
-  // The upper one ends within the tiles of the ninth column and row, so that the tenth of both are left.
+  // The upper sheet ends within the tiles of the ninth column and row, so only the tenth of both are free.
   EXPECT_EQ(alone.size(), 19u);
-  // As if the upper one were not there.
+  // With the upper sheet removed, all tiles are alone.
   std::vector<std::uint8_t> gone(two.size(), 0);
   for (std::uint32_t place = 100; place < two.size(); ++place) gone[laid.screen.slot(place)] = 1;
   EXPECT_EQ(laid.alone(gone).size(), 100u);
 }
 
-/// By definition: a line along a side of one has the other on its outer side.
+/// The definition: the line along an edge of one polygon has the other polygon on its outer side.
 bool are_apart(const Outline& a, const Outline& b) {
   const auto parts = [](const Outline& p, const Outline& q) {
     for (std::size_t i = 0; i < p.size(); ++i) {
@@ -284,7 +285,7 @@ Mesh sphere(int sectors) {
   return mesh;
 }
 
-/// Of a closed surface nothing is left to be put into order but what is next to its outline.
+/// In a closed surface, only polygons next to its outline still need an order.
 TEST(Alone, TheFrontOfASphereIsNotAskedAbout) {
   const Scene scene = scene_of(sphere(120));
   const Surfaces surfaces(scene);

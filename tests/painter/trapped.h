@@ -9,7 +9,7 @@ namespace frontmost::test {
 
 using PolygonCorners = std::vector<glm::dvec2>;
 
-/// The outlines of an order, or of parts.
+/// The outlines of a PaintOrder or of VisibleParts.
 template <class Order>
 std::vector<PolygonCorners> outlines_of(const Order& order) {
   std::vector<PolygonCorners> outlines;
@@ -21,7 +21,7 @@ std::vector<PolygonCorners> outlines_of(const Order& order) {
   return outlines;
 }
 
-/// The same with traps. Polygons of one id look the same; `occluders` are told by it.
+/// The outlines, widened by traps. Polygons with one id look the same; `occluders` is asked by id.
 template <class Order>
 std::vector<PolygonCorners> trapped(const Order& order, double width, const Occluders& occluders = Occluders::all(),
                                     const Execution& execution = {}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strips that reach under what is painted later.
+// Traps: strips that extend a polygon under those painted later.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace frontmost::test {
 namespace {
 
-/// Square pixels.
+/// Area in square pixels.
 double area_of(const PolygonCorners& outline) {
   double area = 0;
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -30,17 +30,17 @@ TEST(Traps, ReachUnderWhatHidesThem) {
   const PaintOrder order = painter(surfaces, view_from_above(true));
   const std::vector<PolygonCorners> outlines = trapped(order, 0.5);
   ASSERT_EQ(outlines.size(), 2u);
-  // The diagonal has one, under the other half; the outline of the square has none.
+  // The diagonal has a trap under the other half; the outline of the square has none.
   EXPECT_EQ(outlines[0].size(), 5u);
   EXPECT_EQ(outlines[1].size(), 3u);
   const double diagonal = 32 * std::sqrt(2.0);
   EXPECT_NEAR(area_of(outlines[0]), 512 + 0.5 * (diagonal - 1.25), 1e-9);
   EXPECT_NEAR(area_of(outlines[1]), 512, 1e-9);
-  // Under glass it would show.
+  // Under glass a trap would show.
   EXPECT_EQ(trapped(order, 0.5, Occluders::none())[0].size(), 3u);
 }
 
-/// By counting the sides to the right of a point: traps make outlines that are not convex.
+/// Whether a point is inside, by counting the edges to its right, as outlines with traps are not convex.
 bool holds(const PolygonCorners& outline, const glm::dvec2& at) {
   bool is_inside = false;
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -68,7 +68,8 @@ PaintOrder order_of_triangles(const std::vector<std::array<glm::dvec2, 3>>& tria
   return order;
 }
 
-/// A pixel whose polygons each cover a part of it shows what is below. So the first one there goes all around a corner.
+/// Where polygons each cover part of a pixel, the background shows through. So the first polygon extends all around a
+/// vertex.
 TEST(Traps, GoAroundCorners) {
   for (const int count : {3, 4, 5, 7, 12, 40}) {
     SCOPED_TRACE(count);
@@ -88,7 +89,7 @@ TEST(Traps, GoAroundCorners) {
   }
 }
 
-/// Beyond a needle that ends before the side does: the trap goes as far as there is something beyond.
+/// A needle beside the edge ends before the edge does: the trap extends as far as there is a polygon beyond.
 TEST(Traps, ReachBeyondNeedles) {
   const glm::dvec2 left(5, 20), right(60, 20), end(45, 20.05);
   const std::vector<PolygonCorners> outlines =
@@ -97,7 +98,7 @@ TEST(Traps, ReachBeyondNeedles) {
   for (double x = 46; x < 60; x += 0.7) EXPECT_FALSE(holds(outlines[0], {x, 20.06})) << x;
 }
 
-/// Cuts leave pieces without an area between neighbours, which cover nothing, whenever they are painted.
+/// Cuts leave pieces without area between neighbours, which cover nothing, whenever they are painted.
 TEST(Traps, ReachBeyondWhatHasNoArea) {
   const glm::dvec2 left(5, 20), right(60, 20);
   for (const bool is_first : {false, true}) {
@@ -108,7 +109,7 @@ TEST(Traps, ReachBeyondWhatHasNoArea) {
   }
 }
 
-/// Two squares, and what was painted before both fills the gap between them, once as wide as the narrowest trap.
+/// Two squares; a polygon painted before both fills the gap between them, once as wide as the narrowest trap.
 TEST(Traps, DoNotHideWhatIsSeenInGaps) {
   for (const double gap : {0.5, 1.0, 2.0, 4.0, 16.0}) {
     PaintOrder order;
@@ -125,7 +126,7 @@ TEST(Traps, DoNotHideWhatIsSeenInGaps) {
   }
 }
 
-/// What is painted after a box beside it is a wedge, with nothing beyond: its trap gets narrower with the wedge.
+/// A wedge is painted after a box beside it, with nothing beyond the wedge: the trap gets narrower with the wedge.
 TEST(Traps, TaperTowardsWedges) {
   PaintOrder order;
   order.view = view_from_above(true);
@@ -137,8 +138,8 @@ TEST(Traps, TaperTowardsWedges) {
   add({{10, 24}, {90, 20}, {10, 20}});
   const std::vector<PolygonCorners> outlines = trapped(order, 4);
   EXPECT_EQ(outlines[0].size(), 6u);
-  // A pixel below what is open, six tenths of the way where that is less, and inset by half of its height at the
-  // outline.
+  // The trap stops short of the open part by a pixel, or by six tenths of the height if that is less. At the outline it
+  // is inset by half of its height.
   EXPECT_NEAR(area_of(outlines[0]), 800 + 40 * (3 + 1) / 2 + 40 / 2 - 1.5 * 3 / 2, 1e-9);
 }
 
@@ -163,7 +164,7 @@ TEST(Traps, AreNotSeen) {
       }
     }
   EXPECT_GT(traps, 1000u);
-  // Next to outlines: what is up to 1/1024 pixel beside a polygon counts as hidden by it.
+  // Differences are next to outlines, as anything up to 1/1024 pixel beside a polygon counts as hidden by it.
   EXPECT_LT(double(differing), 2e-4 * double(points));
 }
 

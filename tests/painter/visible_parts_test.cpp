@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is left of an order for drawings.
+// Visible parts of an order, for drawings.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// Square pixels.
+/// Area in square pixels.
 template <class Order>
 double area_of(const Order& order, std::size_t polygon) {
   const PaintPolygon& p = order.polygons[polygon];
@@ -35,7 +35,7 @@ TEST(VisibleParts, WhatOthersHideTogetherIsLeftOut) {
   const PaintOrder order = painter(surfaces, view_from_above(true));
   EXPECT_EQ(order.polygons.size(), 3u);
   EXPECT_THAT(ids_of(visible_parts(order)), testing::UnorderedElementsAre(1, 2));
-  // Glass hides nothing, nor do two together of which one is glass.
+  // Glass hides nothing, and neither do two polygons together if one is glass.
   EXPECT_EQ(visible_parts(order, Occluders::where([](PrimitiveId id) { return id != 1; })).polygons.size(), 3u);
 }
 
@@ -49,7 +49,7 @@ TEST(VisibleParts, WhatIsHiddenInPartIsCut) {
   ASSERT_EQ(seen.polygons.back().id, 1u);
   double left = 0;
   for (std::size_t i = 0; i + 1 < seen.polygons.size(); ++i) left += area_of(seen, i);
-  // 16 pixels a unit. Beside the cover's slanted side a corner of the lower triangle's upper half is seen.
+  // A unit is 16 pixels. A corner of the lower triangle's upper half shows beside the cover's slanted edge.
   EXPECT_GE(left, 256 * 1.5 - 1e-6);
   EXPECT_LT(left, 256 * 1.75);
 }
@@ -61,7 +61,7 @@ double area_of(const Order& order) {
   return area;
 }
 
-/// A grid of squares, each half as wide as its cell of the whole square, or as wide.
+/// A grid of squares in the square; each is `share` of its cell wide.
 void add_tiles(Mesh& mesh, int side, float share) {
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) {
@@ -72,7 +72,7 @@ void add_tiles(Mesh& mesh, int side, float share) {
     }
 }
 
-/// Cuts leave pieces without a direction. One hid all that its box lay on.
+/// Cuts leave pieces without a direction, which must not hide everything below their box.
 TEST(VisibleParts, APointHidesNothing) {
   Mesh mesh;
   add_square(mesh, 1, 0);
@@ -87,7 +87,7 @@ TEST(VisibleParts, APointHidesNothing) {
   }
 }
 
-/// Triangles, counter-clockwise as they are seen, in a picture of 64 by 64 pixels.
+/// An order of triangles, counter-clockwise as seen, in a picture of 64 by 64 pixels.
 PaintOrder order_of(const std::vector<std::array<glm::dvec2, 3>>& triangles) {
   PaintOrder order;
   order.view = view_from_above(true);
@@ -98,13 +98,13 @@ PaintOrder order_of(const std::vector<std::array<glm::dvec2, 3>>& triangles) {
   return order;
 }
 
-/// From the middle of the picture to one of its sides, of which it takes 48 pixels, and so far on.
+/// A triangle from the middle of the picture towards one side, where it takes 48 pixels, and on to distance `far`.
 std::array<glm::dvec2, 3> wedge(const glm::dvec2& out, double far) {
   const glm::dvec2 middle(32, 32), aside(-out.y, out.x);
   return {middle, middle + far * (out + 0.75 * aside), middle + far * (out - 0.75 * aside)};
 }
 
-/// Next to the eye's plane triangles end any number of pixels away.
+/// Triangles that reach the eye's plane may end any number of pixels away.
 TEST(VisibleParts, CornersFarOutsideLeavePlacesWithinAsTheyAre) {
   const std::array<glm::dvec2, 3> all{{{-200, 200}, {400, 200}, {-200, -400}}};
   for (const double far : {1e3, 1e12, 1e15, 1e17, 1e20, 1e30, 5e37})
@@ -125,7 +125,7 @@ TEST(VisibleParts, CornersFarOutsideLeaveDepthsWithinAsTheyAre) {
     EXPECT_NEAR(corner.at.z, 1 / (0.1 - 0.09 * (corner.at.x - 32) / 1e8), 1e-7);  // 1 / z is even on the screen
 }
 
-/// Where all of a triangle's corners are far away, its sides are known to a few pixels alone.
+/// If all vertices of a triangle are far away, its edges are known only to a few pixels.
 TEST(VisibleParts, NoCornerIsOutsideThePicture) {
   Random random(9);
   std::size_t seen = 0;
@@ -155,7 +155,7 @@ TEST(VisibleParts, LargePolygonsAreCutAmongManySmallOnes) {
   double square = 0;
   for (std::size_t i = 0; i < seen.polygons.size(); ++i)
     if (seen.polygons[i].id < 2) square += area_of(seen, i);
-  // What would leave a sliver, where the grid passes close to a small one, stays.
+  // Pieces stay whose removal would leave slivers, where the grid passes close to a small square.
   EXPECT_GE(square, 128 * 128 * 0.75 - 1e-3);
   EXPECT_LT(square, 128 * 128 * 0.82);
 }
@@ -171,7 +171,7 @@ TEST(VisibleParts, LargePolygonsGoWhereManySmallOnesHideThem) {
   for (const PaintPolygon& polygon : seen.polygons) EXPECT_GE(polygon.id, 2u);
 }
 
-/// The areas add up to what the scene covers, and a little more beside slivers.
+/// The areas add up to the covered area of the scene, and a little more beside slivers.
 TEST(VisibleParts, HardlyAnythingIsPaintedTwice) {
   for (const Kind kind : {Kind::soup, Kind::shared_grid, Kind::through_eye, Kind::sheets}) {
     SCOPED_TRACE(int(kind));
@@ -211,7 +211,8 @@ TEST(VisibleParts, ThePictureIsTheSame) {
         EXPECT_LE(corner.at.y, 90 + 1e-3);
       }
     }
-  // paint() covers from snapped corners: a sample between those and the true outline of what hides may be left open.
+  // paint() covers from snapped vertices: samples between those and the true outline of the hiding polygon may stay
+  // open.
   EXPECT_LT(double(differing), 1e-3 * double(samples));
   EXPECT_GT(samples, 10000u);
 }

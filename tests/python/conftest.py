@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of the module share: the command line to compare with, and small scenes."""
+"""Shared by the module's tests: the command line to compare with, and small scenes."""
 import os
 import pathlib
 import subprocess
@@ -24,7 +24,7 @@ def cli(tmp_path):
 
 @pytest.fixture
 def box():
-    """Corners and faces of a cube of side 2 about zero, counter-clockwise from outside."""
+    """Vertices and faces of a cube of side 2 about zero, counter-clockwise from outside."""
     vertices = numpy.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=numpy.float32)
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     faces = numpy.array([f for a, b, c, d in quads for f in ((a, b, c), (a, c, d))], dtype=numpy.int64)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How much of every object is seen, and why not the rest."""
+"""How much of every object is visible, and what hides the rest."""
 import json
 import os
 import subprocess
@@ -25,7 +25,7 @@ def wall_and_crate(box):
 
 
 def test_counts_are_known_on_paper(wall_and_crate):
-    # 16 pixels a unit: the crate covers 32 x 32 of them, the wall all that is right of the middle, 3 high either way.
+    # 16 pixels a unit: the crate covers 32 x 32 of them, the wall all right of the middle, 3 units up and down.
     accounts = wall_and_crate.account()
     assert accounts.alone.tolist() == [32 * 32, 64 * 96, 0]
     assert accounts.in_frame.tolist() == [32 * 32, 32 * 64, 0]

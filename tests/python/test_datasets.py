@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Data sets: COCO, BOP and masks are the command line's files, to the byte."""
+"""Data sets: COCO, BOP and mask files equal the command line's, to the byte."""
 import json
 
 import pytest
@@ -13,7 +13,7 @@ KINDS = {"teapot": "vessel", "vase": "vessel", "knot": (17, "toy"), "stage": (3,
 
 @pytest.fixture
 def views(tmp_path):
-    """The gallery; beside the program a batch file of three views of it, and a file of categories."""
+    """The gallery; for the program, a batch file of three views and a file of categories."""
     scene = fm.load("builtin:gallery")
     (tmp_path / "views.json").write_text(json.dumps({"views": [
         {"pose": pose + [[0, 0, 0, 1]], "pose-convention": "opencv-world-to-camera"} for pose in POSES]}))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes made of others: sections, and finer triangles of curved surfaces."""
+"""Scenes derived from others: sections, and finer triangles of curved surfaces."""
 import gc
 
 import numpy

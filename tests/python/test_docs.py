@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The documentation at its word: every ```python block of README.md and docs/*.md runs, in the order of its page."""
+"""Runs every ```python block of README.md and docs/*.md, in the order of its page."""
 import pathlib
 import sys
 

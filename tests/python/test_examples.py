@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The programs of examples/python: each runs, is short, and makes the picture that docs/python.md shows."""
+"""The programs of examples/python: each runs, is short, and draws the picture that docs/python.md shows."""
 import json
 import os
 import pathlib
@@ -17,7 +17,7 @@ EXAMPLES = ROOT / "examples" / "python"
 
 
 def run(folder, name, *arguments):
-    """What it prints."""
+    """Runs an example; returns its printed text."""
     command = [sys.executable, EXAMPLES / f"{name}.py", *map(str, arguments)]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -25,7 +25,7 @@ def run(folder, name, *arguments):
 
 
 def same_picture(path, name):
-    """Whether it is, pixel by pixel, what the documentation shows."""
+    """Checks that the picture equals the documentation's, pixel by pixel."""
     ours, shown = fm.load_image(path), fm.load_image(ROOT / "docs" / "images" / name)
     return ours.keys() == shown.keys() and all((ours[plane] == shown[plane]).all() for plane in ours)
 
@@ -51,7 +51,7 @@ def test_bop_data_set(tmp_path, cli):
     assert len(infos) == 50 and len(list((files / "rgb").iterdir())) == len(list((files / "depth").iterdir())) == 50
     assert len(list((files / "mask").iterdir())) == sum(map(len, infos.values()))
     assert same_picture(files / "bop_data_set.png", "python-bop-data-set.png")
-    # One of its views is what the program writes.
+    # One of the example's views is compared with the program's files.
     direction = [numpy.cos(2.4 * 30), -1.2 + 30 / 50, numpy.sin(2.4 * 30)]
     there = cli("report", "builtin:gallery", "--resolution", "320,240", "--camera-direction",
                 ",".join(map(repr, map(float, direction))), "--bop", "one") / "one"
@@ -89,7 +89,7 @@ def test_z_fighting(tmp_path):
 
 
 def test_calibrated_depth(tmp_path):
-    # The photograph is a picture of the same model from a camera that the calibration file tells.
+    # The photograph shows the same model, from the camera in the calibration file.
     surfaces = fm.Surfaces(fm.builtin("gallery"))
     view = fm.View.look_at((7, 5, 9), (0, 0.8, 0), width=640, height=420, fov=36).enclosing(surfaces).sampled(8)
     photo = surfaces.zbuffer(view).shade(background=(0.8, 0.84, 0.88), ambient_occlusion=0.6, shadows="rays")

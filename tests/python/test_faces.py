@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Visible faces: areas that are known on paper, and the bytes of the command line's tables."""
+"""Visible faces: areas computed by hand, and the bytes of the command line's tables."""
 import json
 
 import numpy
@@ -9,7 +9,7 @@ import frontmost as fm
 
 
 def test_areas_are_known_on_paper(box):
-    # From the middle of a cube of side 2 each of the 6 sides fills a view of 90 degrees, and a sixth of the sphere.
+    # From the middle of a cube of side 2, each of the 6 sides fills a view of 90 degrees, and a sixth of the sphere.
     surfaces = fm.Surfaces(fm.Scene.from_arrays(*box))
     view = fm.View.look_at((0, 0, 0), (0, 0, -1), width=80, height=80, fov=90)
     faces = surfaces.visible_faces(view)

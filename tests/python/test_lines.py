@@ -23,10 +23,10 @@ def test_segments_are_known_on_paper(crate_behind_wall):
     view = fm.View.orthographic((0, 0, 10), (0, 0, 0), width=64, height=64, tall=4, near=1, far=20)
     drawing = crate_behind_wall.draw_lines(view, counts_hidden=True)
     seen = drawing.segments[drawing.is_seen]
-    # The crate's left side and the left halves of top and bottom, from x = 16 to 32; and the wall's left side.
+    # The crate's left edge and the left halves of top and bottom, from x = 16 to 32; and the wall's left edge.
     for ends in ([[16, 16], [16, 48]], [[16, 16], [32, 16]], [[16, 48], [32, 48]]):
         assert any(numpy.allclose(sorted(s.tolist()), ends, atol=1e-6) for s in seen), ends
-    assert not any(numpy.allclose(s[:, 0], 48) for s in seen)  # its right side is behind the wall
+    assert not any(numpy.allclose(s[:, 0], 48) for s in seen)  # the crate's right edge is behind the wall
     assert (drawing.is_seen == (drawing.hidden_by == 0)).all() and drawing.is_seen.dtype == bool
     assert drawing.hidden_by.max() >= 2
     assert {fm.edge_kinds[k] for k in drawing.kind} <= {"silhouette", "crease"}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The programs of docs/many-machines.md that take engines from Debian: mpi4py's ranks, Dask's workers."""
+"""The programs of docs/many-machines.md that use Debian's engines: mpi4py's ranks and Dask's workers."""
 import importlib.util
 import os
 import pathlib
@@ -28,7 +28,7 @@ def needs(*modules):
 
 
 def strip(part):
-    """Triangles one behind the other, of which some lie at the same place as another part's."""
+    """Triangles one behind the other; some lie at the same place as another part's."""
     count = 0 if part == 1 else 40 + part
     rows = numpy.arange(count)[:, None]
     corners = numpy.array([[0, 0], [1, 0], [0, 1]], dtype=numpy.float32)
@@ -89,14 +89,14 @@ def test_dask_renders_what_is_not_there_yet(tmp_path):
     surfaces = fm.Surfaces(fm.load(tmp_path / "model.ply"))
     seen = surfaces.zbuffer(fm.frame(surfaces, 320, 240, forward=(0.0, -0.4, -1.0)))
     assert (fm.load_image(folder / "0.exr")["Z"] == seen.depth).all()
-    # Repeated, it makes what is missing, and leaves alone what is there.
+    # A repeated run makes missing files, and leaves existing ones alone.
     (folder / "3.exr").unlink()
     (folder / "4.exr").write_text("finished before")
     done = run(tmp_path, command)
     assert done.returncode == 0, done.stderr
     assert (folder / "3.exr").read_bytes() == files["3.exr"]
     assert (folder / "4.exr").read_text() == "finished before"
-    # What fails in every try fails the run, and says why.
+    # A view that fails in every try makes the run fail with its error.
     done = run(tmp_path, [*command[:2], tmp_path / "missing.ply", *command[3:]])
     assert done.returncode == 0, "all views are there, and the model is not looked at"
     (folder / "0.exr").unlink()

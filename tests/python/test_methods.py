@@ -54,7 +54,8 @@ def test_agreement_is_the_command_lines():
 
 
 def test_orders_are_known_on_paper(box):
-    # A triangle 2 before another: the far one is painted first; of that an L is seen where the near one covers a corner.
+    # A triangle 2 units in front of another. The far one is painted first; an L of it shows around the near one's
+    # corner.
     far = numpy.array([[-4, -4, 0], [4, -4, 0], [-4, 4, 0]])
     scene = fm.Scene.from_arrays(far / 4 + [0, 0, 2], [[0, 1, 2]], name="near")
     scene.add(far, [[0, 1, 2]], name="far")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Occlusion culling: what is said to be hidden is."""
+"""Occlusion culling: objects that are called hidden are hidden."""
 import gc
 
 import numpy
@@ -40,7 +40,7 @@ def test_boxes_are_told_on_paper(crates_and_wall):
     surfaces, view = crates_and_wall
     occlusion = fm.Occlusion(surfaces)
     boxes = numpy.array([[[-1, -1, 0], [1, 1, 1]], [[-1, -1, 6], [1, 1, 7]], [[0, 0, 0], [9, 1, 1]], [[0, 0, 30], [1, 1, 31]]])
-    assert occlusion.is_hidden(boxes).all()  # nothing is known to be seen before the first view
+    assert occlusion.is_hidden(boxes).all()  # before the first view, nothing is known to be visible
     occlusion.cull(view)
     hidden = occlusion.is_hidden(boxes)
     assert hidden.dtype == bool and hidden.tolist() == [True, False, False, True]

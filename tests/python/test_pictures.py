@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures and maps: the bytes of the command line's files, and back from files."""
+"""Pictures and maps: the bytes of the command line's files, and reading them back."""
 import numpy
 import pytest
 
@@ -23,7 +23,7 @@ def test_pictures_are_the_command_lines_files(cli, flags, options):
     folder = cli("render", "builtin:gallery", "--resolution", "160,120", "-o", "picture.png", "-q", *flags)
     seen = look(samples=4)
     ours = folder / "ours.png"
-    for _ in range(2):  # the second from what the first made
+    for _ in range(2):  # the second time with what the first one kept
         fm.save(seen.shade(**options), ours)
         assert ours.read_bytes() == (folder / "picture.png").read_bytes()
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What depth buffers tell apart: gaps, fights, and what ends them."""
+"""Resolution of depth buffers: gaps, fights, and remedies."""
 import json
 import os
 import subprocess

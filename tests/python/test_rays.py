@@ -11,7 +11,7 @@ import frontmost as fm
 
 
 def met_by_hand(corners, origin, direction):
-    """The t of a ray and every triangle, by a determinant in doubles; inf where it passes."""
+    """The t of a ray and every triangle, by a determinant in doubles; inf if the ray misses."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     normal = numpy.cross(b - a, c - a)
     with numpy.errstate(divide="ignore", invalid="ignore"):

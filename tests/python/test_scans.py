@@ -63,7 +63,7 @@ def test_patterns_are_rays(box):
 
 
 def test_scanners_have_parts_of_a_turn_ranges_and_incidence(box):
-    # Two units in front of a cube of side 2: its wall is one away.
+    # The scanner is two units from the middle of a cube of side 2, so its wall is one away.
     index = fm.RayIndex(fm.Surfaces(fm.Scene.from_arrays(*box)))
     camera = fm.RayCamera.lidar([0, -30], 3, azimuths=(30, -30)).looking((0, 0, 2), (0, 0, 0))
     scan, slant = index.scan(camera), 2 / numpy.sqrt(3)

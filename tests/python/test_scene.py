@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes: from arrays, from files, looked into, changed, and written."""
+"""Scenes: made from arrays, read from files, inspected, changed, and written."""
 import base64
 import gc
 import json
@@ -82,7 +82,7 @@ def test_hostile_arrays_end_in_errors_that_name_the_argument(box, argument, valu
     scene = fm.Scene.from_arrays(*box)
     with pytest.raises(error, match=f"^{argument}: "):
         scene.add(**arguments)
-    assert len(scene.objects) == len(scene.meshes) == 1  # nothing is half added
+    assert len(scene.objects) == len(scene.meshes) == 1  # no partial addition
 
 
 def test_empty_arrays_show_nothing():
@@ -230,7 +230,7 @@ def test_builtin_scenes():
 
 
 def test_polygons_of_files_keep_their_numbers(tmp_path):
-    # Two squares side by side, of two triangles each, and a material library that is not there.
+    # Two squares side by side, of two triangles each, and a missing material library.
     path = tmp_path / "squares.obj"
     path.write_text("mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nf 1 2 5 4\nf 2 3 6 5\n")
     scene = fm.load(path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The stubs, the docstrings and docs/python.md name what is there, all of it and nothing else."""
+"""The stubs, the docstrings and docs/python.md name all of the module, and nothing else."""
 import ast
 import inspect
 import os
@@ -46,7 +46,7 @@ def module_members():
 
 
 def arguments_of(docstring):
-    """Argument names out of the signature that pybind11 writes."""
+    """Argument names in the signature that pybind11 writes."""
     match = re.match(r"\w+\((.*?)\)(?: -> .*)?$", docstring.splitlines()[0])
     depth, parts = 0, [""]
     for letter in match[1]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Surfaces and Visible: planes that equal the command line's files, and that nothing takes away."""
+"""Surfaces and Visible: planes equal the command line's files, and stay valid while in use."""
 import gc
 import os
 import pathlib
@@ -25,7 +25,7 @@ def test_planes_are_the_command_lines_files(cli):
 
 
 def test_depth_is_known_on_paper(box):
-    # The eye is 5 before the middle of a cube of side 2: its front is 4 away, along the axis and beside it.
+    # The eye is 5 from the middle of a cube of side 2: its front is 4 away, along the axis and beside it.
     scene = fm.Scene.from_arrays(*box)
     view = fm.View.look_at((0, 0, 5), (0, 0, 0), width=65, height=65, fov=60, near=0.5, far=100)
     seen = fm.Surfaces(scene).zbuffer(view)
@@ -78,6 +78,7 @@ def test_planes_outlive_everything():
     del seen, others
     gc.collect()
     again = [surfaces.zbuffer(view.looking((0, 30, 30), (0, 0, 0))) for _ in range(8)]  # into planes that are free
+                                                                                        # again
     del surfaces, again
     gc.collect()
     noise = [numpy.full(480 * 640, i, dtype=numpy.uint32) for i in range(20)]
@@ -92,7 +93,7 @@ def test_what_pictures_are_made_of_cannot_be_written():
             plane[...] = 0
         with pytest.raises(ValueError):
             plane.flags.writeable = True
-    seen.depth[0, 0] = -1  # the caller's own
+    seen.depth[0, 0] = -1  # the caller owns its planes
     assert seen.depth[0, 0] == -1
 
 
@@ -192,7 +193,7 @@ def test_views_do_not_grow_memory():
     look(100)
     before = resident()
     look(1000)
-    assert resident() - before < 2**22  # a view takes a quarter of it
+    assert resident() - before < 2**22  # a view takes a quarter of this
 
 
 @pytest.mark.skipif("FRONTMOST_SANITIZED" in os.environ, reason="a sanitizer keeps what was freed for a while")
@@ -218,7 +219,7 @@ def test_answers_of_every_kind_do_not_grow_memory():
     look(20)
     before = resident()
     look(100)
-    assert resident() - before < 2**22  # the planes of one round alone take a quarter of it
+    assert resident() - before < 2**22  # the planes of one round take a quarter of this
 
 
 def test_planes_of_every_kind_outlive_everything():
@@ -248,8 +249,8 @@ def big_work(**options):
 
 
 def test_control_c_stops_a_call_in_the_middle():
-    # Hidden lines of ten thousand triangles through each other: minutes of work. What is told of the progress is put into
-    # a dict by C, so that no Python runs meanwhile that could see the signal by itself.
+    # Hidden lines of ten thousand intersecting triangles take minutes. C code puts the progress into a dict, so that no
+    # Python code runs meanwhile that could notice the signal.
     random = numpy.random.default_rng(1)
     surfaces = fm.Surfaces(fm.Scene.from_arrays(random.random((30000, 3)), numpy.arange(30000).reshape(-1, 3)))
     view, told = fm.frame(surfaces), {}

@@ -81,7 +81,7 @@ def test_copies_with_one_thing_changed(box):
     for bounds in (surfaces, surfaces.bounds):
         fitted = view.enclosing(bounds)
         assert 3.9 < fitted.near <= 4 and 6 <= fitted.far < 6.1
-    assert view.near == 0.1 and view.samples == 1  # as it was
+    assert view.near == 0.1 and view.samples == 1  # unchanged
 
 
 @pytest.mark.parametrize("change, error, message", [

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ray caster and the z-buffer have no code in common; where they differ, there is a reason.
+// The ray caster and the z-buffer share no code; every difference between them has a reason.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ class EveryKindAgrees : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(Agreement, EveryKindAgrees, testing::ValuesIn(all_kinds));
 
 TEST_P(EveryKindAgrees, WithTheZBuffer) {
-  // Most pixels of stacked sheets are put to exact arithmetic.
+  // Exact arithmetic decides most pixels of stacked sheets.
   const std::uint64_t count = seeds(GetParam() == Kind::sheets ? 8 : 40);
   std::size_t differing = 0, samples = 0;
   for (std::uint64_t seed = 0; seed < count; ++seed) {
@@ -42,7 +42,7 @@ TEST_P(EveryKindAgrees, WithTheZBuffer) {
     samples += view.sample_count();
   }
   EXPECT_GT(samples, count * 5'000);
-  // Coplanar triangles and stacked sheets lie in each other: everywhere either may be seen.
+  // Coplanar triangles and stacked sheets coincide: either may be seen everywhere.
   const bool are_one = GetParam() == Kind::coplanar || GetParam() == Kind::sheets;
   const std::size_t most = are_one ? samples / 10 : samples / 50;
   EXPECT_LT(differing, most) << "reasons have become the excuse";

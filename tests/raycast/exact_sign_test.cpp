@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signs of determinants, against whole numbers of 128 bits.
+// Signs of determinants, against 128-bit integers.
 #include <gtest/gtest.h>
 
 #include "raycast/query/query_rule.h"
@@ -16,7 +16,7 @@ __extension__ using Int128 = __int128;
 
 int sign_of(Int128 v) { return int(v > 0) - int(v < 0); }
 
-/// Coordinates are whole numbers below 2^24, so that floats hold them and 128 bits hold the determinant.
+/// Coordinates are integers below 2^24, so floats hold them and 128 bits hold the determinant.
 Int128 determinant(const glm::vec3& o, const std::array<glm::vec3, 3>& p) {
   Int128 m[3][3];
   for (int i = 0; i < 3; ++i)
@@ -37,7 +37,7 @@ TEST(ExactSign, EqualsWholeNumbers) {
     const int reach = seed % 3 == 0 ? 3 : seed % 3 == 1 ? 1000 : 1 << 23;
     const glm::vec3 o = whole_point(random, reach);
     std::array<glm::vec3, 3> p{whole_point(random, reach), whole_point(random, reach), {}};
-    // Half of them all but coplanar: the third point is the other two's, as far as whole numbers allow.
+    // Half of them are nearly coplanar: the third point is the middle of the other two, as far as integers allow.
     p[2] = seed % 2 ? whole_point(random, reach) : glm::floor((p[0] + p[1]) * 0.5f);
     const Int128 expected = determinant(o, p);
     zeros += expected == 0;
@@ -57,8 +57,8 @@ TEST(ExactSign, SeesTheLastBit) {
   // Denormals: products far below what floats hold.
   const float tiny = 1e-40f;
   EXPECT_EQ(determinant_sign(high_low(tiny * x), high_low(tiny * y), high_low(-tiny * z)), -1);
-  // Seen from 1e30 to the left, three corners in the plane x = 0; one of them 1e-30 out of it makes no difference to
-  // a double: the difference is 1e30 either way. Three columns of them are dependent but for that.
+  // The eye is 1e30 to the left of three points in the plane x = 0. Moving one of them by 1e-30 makes no difference in
+  // doubles: the distance is 1e30 either way. Without that move, the three columns are dependent.
   const glm::vec3 eye(-1e30f, 0, 0);
   const auto from_eye = [&](const glm::vec3& p) { return high_low_difference(p, eye); };
   EXPECT_EQ(determinant_sign(from_eye({0, 1, 0}), from_eye({0, 1, 1}), from_eye({0, 1, 2})), 0);

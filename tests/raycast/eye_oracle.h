@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is seen through every sample, by a plain search in doubles over all triangles; and eyes where such a search, as
-// any, has a hard time: on corners, on edges, in triangles and in their planes.
+// The visible primitive at every sample, by a plain search in doubles over all triangles. Also eyes that are hard for
+// any search: at vertices, on edges, in triangles and in their planes.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,8 @@
 
 namespace frontmost::test {
 
-/// Keys are rounded once; what is seen edge-on, by exact signs, is not met. Near edges this and a method may differ.
+/// Keys are rounded once; triangles that exact signs find edge-on are not hit. Near edges the oracle and a method may
+/// differ.
 class EyeOracle {
  public:
   EyeOracle(const Surfaces& surfaces, const View& view) : surfaces_(surfaces), view_(view), transform_(view) {}
@@ -73,13 +74,14 @@ class EyeOracle {
   ScreenTransform transform_;
 };
 
-/// Where an eye is put, beside one triangle.
+/// Place of the eye relative to one triangle.
 enum class EyePlace { corner, edge, inside, plane };
 inline constexpr EyePlace all_eye_places[] = {EyePlace::corner, EyePlace::edge, EyePlace::inside, EyePlace::plane};
 
-/// Weights of the three corners: none, or all rounded, so that the eye is in the plane exactly or by a rounding.
+/// An eye at a weighted mean of the three vertices; the weights are exact or all rounded, so that the eye lies in the
+/// plane exactly or up to rounding.
 inline glm::dvec3 eye_beside(Random& random, const std::array<glm::vec3, 3>& corners, EyePlace place) {
-  // Eighths, so that of corners on a grid such eyes are in the plane to the last bit.
+  // Weights in eighths: for vertices on a grid, such eyes lie in the plane to the last bit.
   const auto eighths = [&](int most) { return (1 + random.below(most)) / 8.0; };
   glm::dvec3 weights(0);
   const int first = random.below(3);
@@ -95,7 +97,7 @@ inline glm::dvec3 eye_beside(Random& random, const std::array<glm::vec3, 3>& cor
   weights[first] = 1 - weights[(first + 1) % 3] - weights[(first + 2) % 3];
   const glm::dvec3 eye =
       weights.x * glm::dvec3(corners[0]) + weights.y * glm::dvec3(corners[1]) + weights.z * glm::dvec3(corners[2]);
-  // Half of them in doubles, as poses are, half in floats, as models are.
+  // Half of the eyes are doubles, as poses are, half are floats, as models are.
   return random.below(2) ? glm::dvec3(glm::vec3(eye)) : eye;
 }
 

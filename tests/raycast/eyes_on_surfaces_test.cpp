@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eyes on corners, on edges, inside of triangles and in their planes: a triangle that is seen edge-on covers nothing.
+// Eyes at vertices, on edges, inside triangles and in their planes: a triangle seen edge-on covers nothing.
 
 #include <gtest/gtest.h>
 
@@ -71,7 +71,8 @@ TEST(EyesOnSurfaces, SeeTheCityFromACornerOfIt) {
   EXPECT_EQ(covered(zbuffer(surfaces, view)), 6413u);
 }
 
-/// Rays against another search: what differs is within rounding of an edge or of another depth. \returns how many.
+/// Compares rays with another search: differences must be within rounding of an edge or of another depth. \returns
+/// their number.
 std::uint64_t expect_explained(const Surfaces& surfaces, const Visible& expected, const Visible& seen) {
   const View& view = seen.view;
   const Agreement answer = check_agreement(surfaces, expected, seen);
@@ -81,7 +82,7 @@ std::uint64_t expect_explained(const Surfaces& surfaces, const Visible& expected
   return answer.differing();
 }
 
-/// A direction in the triangle's plane, or any.
+/// A direction in the triangle's plane, or any direction.
 glm::dvec3 look_from(Random& random, const std::array<glm::vec3, 3>& corners) {
   const glm::dvec3 ab = glm::dvec3(corners[1]) - glm::dvec3(corners[0]);
   const glm::dvec3 ac = glm::dvec3(corners[2]) - glm::dvec3(corners[0]);
@@ -132,7 +133,7 @@ TEST_P(EyesOnEveryKind, SeeTheSameOnEveryInstructionSet) {
   }
 }
 
-/// What single rays meet first between the planes.
+/// First hits of single rays between the near and far planes.
 Visible by_single_rays(const Indexed& in, const View& view) {
   Visible visible = nothing_visible(view);
   const Projection& p = view.projection;
@@ -166,7 +167,7 @@ TEST(EyesOnSurfaces, SeeWhatSingleRaysMeetInBuiltInScenes) {
       for (const EyePlace place : all_eye_places) {
         SCOPED_TRACE(testing::Message() << name << ", seed " << seed << ", place " << int(place));
         const auto corners = in.surfaces.corners(PrimitiveId(random.below(int(triangles))));
-        // Rays have origins in floats.
+        // Ray origins are floats.
         const glm::dvec3 eye(glm::vec3(eye_beside(random, corners, place)));
         View view = view_from(eye, look_from(random, corners));
         view.projection = make_projection(glm::radians(70.0), 4.0 / 3, {1e-4 * size, 2 * size});
@@ -218,7 +219,7 @@ TEST(EyesOnSurfaces, ALightInTheirPlaneThrowsNoShadowOfThem) {
   }
   std::vector<std::uint8_t> lit(points.size());
   are_lit(in.index, points, {0, 1, 0}, lit);
-  // The wall shades them all, whatever is in their plane; towards the other side nothing does.
+  // The wall shades all points, whatever lies in their plane; towards the other side nothing shades them.
   EXPECT_EQ(std::count(lit.begin(), lit.end(), 0), 3);
   are_lit(in.index, points, {1, 0, 0}, lit);
   EXPECT_EQ(std::count(lit.begin(), lit.end(), 1), 3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views of hostile geometry: a stated answer, the same on every instruction set; and pictures that do not leak.
+// Views of hostile geometry: a documented answer, the same on every instruction set; and pictures that do not leak.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -100,9 +100,9 @@ TEST(HostileRayCast, TrianglesFartherApartThanFloatsReach) {
 
 TEST(HostileRayCast, TrianglesThroughTheEyeAndInItsPlane) {
   Mesh mesh;
-  add_triangle(mesh, {-1, 0, 3}, {1, 0, 3}, {0, 0, -3});       // the eye lies in it, edge-on
-  add_triangle(mesh, {0, 0, 3}, {1, 0.5f, 0}, {1, -0.5f, 0});  // the eye is its corner
-  add_triangle(mesh, {-1, -1, 3}, {1, -1, 3}, {0, 1, 3});      // in the eye's plane, across
+  add_triangle(mesh, {-1, 0, 3}, {1, 0, 3}, {0, 0, -3});       // the eye lies in its plane, edge-on
+  add_triangle(mesh, {0, 0, 3}, {1, 0.5f, 0}, {1, -0.5f, 0});  // the eye is its vertex
+  add_triangle(mesh, {-1, -1, 3}, {1, -1, 3}, {0, 1, 3});      // crosses the eye's plane
   add_triangle(mesh, {-5, -1, 9}, {5, -1, 9}, {0, -1, -9});    // the ground, from behind to far ahead
   expect_the_oracle(scene_of(mesh), from_the_front());
   expect_the_oracle(scene_of(mesh), from_the_front(1e-6, 10));
@@ -119,7 +119,7 @@ TEST(HostileRayCast, TheCallersRoundingModeDoesNotMatter) {
 }
 
 TEST(HostileRayCast, NoPixelOfAClosedSurfaceLeaks) {
-  // From inside, in all directions: rays through edges and corners included, as corners lie on whole pixels.
+  // Rays from inside, in all directions, also through edges and vertices, as vertices project to whole pixels.
   Mesh mesh;
   const glm::vec3 corner[8] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
                                {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
@@ -176,7 +176,7 @@ TEST(HostileRayCast, WithoutMemoryForAllPlanesNoneIsUsed) {
     RayCaster caster;
     View view = from_the_front();
     view.width = view.height = 16384;  // 1 GiB a plane
-    // Room for what there is, one plane, and half of the other.
+    // The memory limit leaves room for current memory, one plane, and half of the other.
     std::size_t pages = 0;
     std::ifstream("/proc/self/statm") >> pages;
     const rlimit limit{pages * 4096 + (std::size_t(3) << 29), RLIM_INFINITY};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene with all that rays need, and the plainest of scenes.
+// A scene with everything that rays need, and simple scenes.
 #pragma once
 
 #include <initializer_list>
@@ -17,7 +17,8 @@ struct Indexed {
   RayIndex index;
 };
 
-/// The square from (-1, -1) to (1, 1) at each height, as two triangles; ids 2 i and 2 i + 1. Seen from above: front.
+/// The square from (-1, -1) to (1, 1) at each height, as two triangles with ids 2 i and 2 i + 1. From above, fronts are
+/// seen.
 inline Scene floors(std::initializer_list<float> heights) {
   Mesh mesh;
   for (const float z : heights) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What queries must do whatever the scene is: laws that need no oracle, and the words for what they refuse.
+// Laws that queries obey for any scene, without an oracle, and the error messages of refused queries.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,13 +26,13 @@ glm::vec3 lattice_point(Random& random) {
   return glm::vec3(x, y, z) / 16.0f;
 }
 
-/// Ends on a lattice, so that differences are exact and some of them lie on triangles of kinds that do.
+/// A segment with ends on a lattice, so that differences are exact and some ends lie on triangles.
 Segment law_segment(Random& random) {
   const glm::vec3 from = lattice_point(random), to = lattice_point(random);
   return {from, to};
 }
 
-/// Not those that are too small, too thin or too far apart for queries that are drawn by lot.
+/// Excludes kinds too small, too thin or too far apart to be hit by random queries.
 bool is_met_often(Kind kind) { return kind != Kind::tiny && kind != Kind::slivers && kind != Kind::huge; }
 
 std::vector<PrimitiveId> ids_of(const std::vector<RayHit>& hits) {
@@ -89,15 +89,15 @@ TEST_P(EveryKindOfLaw, AllHitsAreInOrderAndBeginWithTheClosest) {
       if (hits.empty()) continue;
       ASSERT_EQ(hits[0].primitive, closest.primitive);
       ASSERT_EQ(hits[0].t, closest.t);
-      // No triangle is passed through twice.
+      // A ray passes through no triangle twice.
       const std::vector<PrimitiveId> ids = ids_of(hits);
       ASSERT_EQ(std::adjacent_find(ids.begin(), ids.end()), ids.end());
     }
   }
 }
 
-// Signs are decided on the floats as they are. So powers of two, axes changed for each other and mirrors change neither
-// who is met nor where; mirrors change the side.
+// Signs are decided on exact floats. So scaling by powers of two, exchanging axes and mirroring change neither the
+// triangle hit nor the place; mirroring changes the side.
 TEST_P(EveryKindOfLaw, AxesScalesAndMirrorsChangeNothing) {
   for (std::uint64_t seed = 0; seed < seeds(10); ++seed) {
     const Scene scene = law_scene(GetParam(), seed + 200);
@@ -127,7 +127,7 @@ TEST_P(EveryKindOfLaw, AxesScalesAndMirrorsChangeNothing) {
         ASSERT_EQ(is_clear(other_index, moved), !a);
         if (!a) continue;
         ASSERT_NEAR(a.t, b.t, 1e-12);
-        // At one place of the segment, rounding may name another one first.
+        // At equal places on the segment, rounding may name another triangle first.
         if (a.primitive == b.primitive) {
           ASSERT_EQ(b.is_front, a.is_front != map.mirrors) << seed << ", " << i;
         }
@@ -144,10 +144,10 @@ TEST_P(EveryKindOfLaw, ASegmentIsClearWhereBothItsHalvesAre) {
     Random random(seed);
     for (int i = 0; i < 400; ++i) {
       const Segment whole = law_segment(random);
-      const glm::vec3 middle = (whole.from + whole.to) * 0.5f;  // on the lattice of half the width: exact
+      const glm::vec3 middle = (whole.from + whole.to) * 0.5f;  // exact, on the lattice of half the width
       const bool halves = is_clear(index, {whole.from, middle}) && is_clear(index, {middle, whole.to});
       const bool all = is_clear(index, whole);
-      // A surface through the middle blocks the whole alone.
+      // A surface through the middle may block only the whole segment.
       if (all) {
         ASSERT_TRUE(halves) << seed << ", " << i;
       }
@@ -163,7 +163,7 @@ TEST_P(EveryKindOfLaw, ASegmentIsClearWhereBothItsHalvesAre) {
   }
 }
 
-// Into a closed body and out of it again: as many fronts as backs, in turn, for rays through no edge.
+// Rays into a closed body and out again hit as many fronts as backs, alternately, unless they pass through an edge.
 TEST(ClosedBody, IsEnteredAndLeftInTurn) {
   Mesh cube;
   for (int i = 0; i < 8; ++i) cube.positions.push_back({i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1});
@@ -182,7 +182,7 @@ TEST(ClosedBody, IsEnteredAndLeftInTurn) {
     ++entered;
   }
   EXPECT_GT(entered, 200);
-  // From within there is only a way out.
+  // A ray from within only leaves the body.
   for (int i = 0; i < 100; ++i) {
     const std::vector<RayHit> hits = all_hits(index, {random.point(0.9f), random.point(1) + glm::vec3(0.001f)});
     ASSERT_EQ(hits.size(), 1u);

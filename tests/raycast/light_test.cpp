@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays to a light: known answers, against every triangle one by one in fractions, and nothing shadows itself.
+// Rays to a light: known answers, a comparison with every triangle one by one in fractions, and no self-shadowing.
 
 #include <gmock/gmock.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using Corners = std::array<glm::vec3, 3>;
 
-/// What src/methods/raycast says in doubles and expansions, in fractions.
+/// Position of a triangle point in exact fractions; src/methods/raycast computes it in doubles and expansions.
 RationalVector position_of(const TrianglePoint& p) {
   RationalVector sum{0, 0, 0};
   for (int i = 0; i < 3; ++i)
@@ -34,7 +34,7 @@ bool oracle_stands_before(const Corners& corners, const TrianglePoint& point, co
   if (along == 0) return false;
   const Rational t = dot(n, a) / along;
   if (t <= 0) return false;
-  // Barycentric weights of where the line meets the plane.
+  // Barycentric weights of the point where the line meets the plane.
   const RationalVector at = t * light;
   const Rational u = dot(n, cross(b - at, c - at)), v = dot(n, cross(c - at, a - at)),
                  w = dot(n, cross(a - at, b - at));
@@ -74,7 +74,7 @@ TEST(Light, AFloorAboveIsInTheWayUnlessTheLightComesPastIt) {
   const TrianglePoint centre = of.point(0, {1, 0, 1});
   EXPECT_FALSE(of.is_lit(centre, {0, 0, 1}));
   EXPECT_TRUE(of.is_lit(centre, {0, 0, -1}));
-  // From the middle, the edge of the floor above is met exactly at a slope of 1: edges count.
+  // From the middle, a slope of 1 hits the edge of the floor above exactly: edges count.
   EXPECT_FALSE(of.is_lit(centre, {1, 0, 1}));
   EXPECT_TRUE(of.is_lit(centre, {std::nextafter(1.0f, 2.0f), 0, 1}));
   EXPECT_TRUE(of.is_lit(centre, {1, 0, 0}));
@@ -92,7 +92,7 @@ TEST(Light, ALiftedPointIsWhereItSaysExactly) {
     point.lift = {0, 0, height};
     EXPECT_TRUE(of.is_lit(point, {0, 0, 1})) << height;
   }
-  // Below its own triangle, which is never in its way; the other half of the floor would be.
+  // The point is below its own triangle, which never shades it; the other half of the floor would.
   point.lift = {0, 0, -0.5f};
   EXPECT_TRUE(of.is_lit(point, {0, 0, -1}));
   const Lit one(floors({0}));
@@ -109,7 +109,7 @@ Mesh cube() {
 }
 
 TEST(Light, NothingShadowsItselfAlongEdgesAndCorners) {
-  // A cube whose faces the light meets: every point of these is lit, those on edges and corners too.
+  // A cube: every point of the faces towards the light is lit, on edges and at vertices too.
   Scene scene = scene_of(cube());
   scene.instances[0].world_from_mesh =
       glm::dmat4({0.36, 0.48, -0.8, 0}, {-0.8, 0.6, 0, 0}, {0.48, 0.64, 0.6, 0}, {0.1, 0.2, 0.3, 1});
@@ -125,7 +125,8 @@ TEST(Light, NothingShadowsItselfAlongEdgesAndCorners) {
       const double facing = glm::dot(normal, glm::dvec3(to_light));
       if (std::abs(facing) < 1e-4) continue;
       for (int k = 0; k < 8; ++k) {
-        // What faces away is in the shadow of the far side, but for points on an edge that the light reaches.
+        // Points of faces away from the light are shaded by the far side, unless they lie on an edge that the light
+        // reaches.
         const float least = facing > 0 ? 0.0f : 0.1f;
         const float a = least + float(random.below(3)), b = least + float(random.below(3)), d = 0.1f + random.unit();
         points.push_back(of.point(id, {a, b, d}));
@@ -136,7 +137,7 @@ TEST(Light, NothingShadowsItselfAlongEdgesAndCorners) {
   }
 }
 
-/// Points of every kind: inside, on edges, at corners, lifted by much and by next to nothing.
+/// Points of every kind: inside, on edges, at vertices, lifted much or by almost nothing.
 std::vector<TrianglePoint> random_points(const Surfaces& surfaces, int count, Random& random) {
   std::vector<TrianglePoint> points;
   for (int i = 0; i < count; ++i) {
@@ -253,8 +254,7 @@ TEST(Light, HugeTinyAndEmptyTrianglesAreNoTrouble) {
   }
 }
 
-// Instances near the end of the floats: what overflows must not depend on which of NaN and a number is the greater one
-// to a processor.
+// Instances near the largest float: an overflow must not depend on how a processor compares NaN with a number.
 TEST(Light, InstancesNearTheEndOfFloatsThrowTheSameShadowsOnEveryInstructionSet) {
   Scene scene;
   Mesh receiver;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays and segments: known answers, the rules at the ends, against every triangle one by one, and nothing leaks.
+// Rays and segments: known answers, the rules at the ends, a comparison with every triangle one by one, and no leaks.
 
 #include <gmock/gmock.h>
 
@@ -35,7 +35,7 @@ TEST(Query, ARayThroughASharedEdgeMeetsBothAndNamesTheLower) {
   const Indexed of(floors({0}));
   EXPECT_EQ(closest_hit(of.index, Ray{{0.25f, 0.25f, 1}, {0, 0, -1}}).primitive, 0u);
   EXPECT_EQ(all_hits(of.index, Ray{{0.25f, 0.25f, 1}, {0, 0, -1}}).size(), 2u);
-  // The outer edge and the corner belong to the floor too.
+  // The floor's outer edge and its vertices belong to the floor too.
   EXPECT_TRUE(closest_hit(of.index, Ray{{1, 0.25f, 1}, {0, 0, -1}}));
   EXPECT_TRUE(closest_hit(of.index, Ray{{1, -1, 1}, {0, 0, -1}}));
   EXPECT_FALSE(closest_hit(of.index, Ray{{std::nextafter(1.0f, 2.0f), 0.25f, 1}, {0, 0, -1}}));
@@ -51,15 +51,15 @@ TEST(Query, WhatLiesAtAnEndDoesNotBlock) {
   EXPECT_FALSE(is_clear(of.index, {low, {0.5f, -0.25f, just_above}}));
   EXPECT_TRUE(is_clear(of.index, {low, {0.5f, -0.25f, just_below}}));
   EXPECT_EQ(closest_hit(of.index, Segment{low, above}).t, 0.5);
-  // A ray starts after its origin.
+  // A ray starts behind its origin.
   EXPECT_EQ(closest_hit(of.index, Ray{high, {0, 0, -1}}).primitive, 0u);
-  // Along a surface there is nothing to pass through.
+  // A segment within a surface passes through nothing.
   EXPECT_TRUE(is_clear(of.index, {{-2, 0, 1}, {2, 0.5f, 1}}));
   EXPECT_FALSE(closest_hit(of.index, Ray{{-2, 0, 1}, {1, 0, 0}}));
 }
 
 TEST(Query, WhatIsTinyAgainstItsDistanceIsMetWhereItIs) {
-  // A pole whose ring is as wide as the sine of pi in floats, below the rounding of doubles seen from afar.
+  // A pole whose ring is as wide as sin(pi) in floats, below the rounding error of doubles from afar.
   Mesh mesh;
   add_triangle(mesh, {1.2e-17f, 0, 0}, {-1e-17f, 1e-18f, 1e-17f}, {-1e-17f, 0, -1e-17f});
   add_triangle(mesh, {-1, 0.5f, -1}, {0, 0.5f, 2}, {2, 0.5f, 0});
@@ -83,7 +83,7 @@ TEST(Query, TheLengthOfADirectionSaysNothing) {
     const glm::vec3 origin = random.point(0x1p-20f), direction = random.point(1);
     const RayHit expected = closest_hit(of.index, Ray{origin, direction});
     met += bool(expected);
-    // Powers of two: the same line, to the bit.
+    // Lengths are powers of two: the same line, to the bit.
     for (const float length : {0x1p-100f, 0x1p-40f, 0x1p100f, 0x1p120f, 0x1p127f}) {
       const Ray ray{origin, direction * length};
       EXPECT_EQ(closest_hit(of.index, ray).primitive, expected.primitive) << length;
@@ -106,7 +106,7 @@ TEST(Query, NonsenseMeetsNothing) {
     EXPECT_TRUE(is_clear(of.index, segment));
   EXPECT_FALSE(closest_hit(empty.index, Ray{origin, down}));
   EXPECT_TRUE(is_clear(empty.index, {origin, -origin}));
-  // Neither tiny nor huge directions are nonsense.
+  // Tiny and huge directions are valid.
   EXPECT_EQ(closest_hit(of.index, Ray{origin, 1e-42f * down}).primitive, 0u);
   EXPECT_EQ(closest_hit(of.index, Ray{origin, 3e38f * down}).primitive, 0u);
   EXPECT_FALSE(is_clear(of.index, {{0.5f, -0.25f, 3e38f}, {0.5f, -0.25f, -3e38f}}));
@@ -131,7 +131,7 @@ TEST(Query, AMillionCoincidentTriangles) {
 class EveryKindOfQuery : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(Query, EveryKindOfQuery, testing::ValuesIn(all_kinds));
 
-/// A point of a triangle's own, or anywhere: queries along edges and through corners are the hard ones.
+/// A point of one of the triangles, or any point: queries along edges and through vertices are the hard ones.
 glm::vec3 some_point(Random& random, const Surfaces& surfaces) {
   const std::array<glm::vec3, 3> c = surfaces.corners(PrimitiveId(random.below(int(surfaces.primitive_count()))));
   switch (random.below(4)) {
@@ -141,7 +141,7 @@ glm::vec3 some_point(Random& random, const Surfaces& surfaces) {
   }
 }
 
-/// Every way to ask, against every triangle one by one. \returns whether anything is met.
+/// Compares every kind of query with a test of all triangles one by one. \returns whether anything is hit.
 bool expect_each_triangle_asked(const Indexed& of, const raycast_detail::Query& query) {
   std::vector<RayHit> expected;
   for (PrimitiveId id = 0; id < of.surfaces.primitive_count(); ++id)
@@ -188,7 +188,7 @@ TEST_P(EveryKindOfQuery, EqualsEveryTriangleOneByOneOnEveryInstructionSet) {
   }
 }
 
-/// Products of coordinates of one overflow, of others underflow.
+/// Products of coordinates overflow at one scale and underflow at another.
 TEST(Query, EqualsEveryTriangleOneByOneAtEveryScale) {
   for (const float scale : {1e-30f, 1e-20f, 1e-13f, 1e-6f, 1e6f, 1e13f, 1e20f, 1e30f}) {
     std::size_t met = 0;
@@ -200,7 +200,7 @@ TEST(Query, EqualsEveryTriangleOneByOneAtEveryScale) {
       for (int i = 0; i < 40 && !HasFailure(); ++i) {
         SCOPED_TRACE(testing::Message() << "scale " << scale << ", seed " << seed << ", query " << i);
         const glm::vec3 from = scale * random.point(1.5f), to = scale * random.point(1.5f);
-        // Rays of any length, too.
+        // Rays have any length, too.
         const glm::vec3 direction = i % 4 == 1 ? (to - from) / scale : to - from;
         met += expect_each_triangle_asked(of, {from, to, direction, i % 2 == 0});
       }
@@ -209,7 +209,7 @@ TEST(Query, EqualsEveryTriangleOneByOneAtEveryScale) {
   }
 }
 
-/// A ball with bumps: closed, its corners shared.
+/// A closed ball with bumps and shared vertices.
 Mesh bumpy_ball(int rings, std::uint64_t seed) {
   Random random(seed);
   Mesh mesh;
@@ -286,7 +286,7 @@ TEST(Query, BatchesDoNotDependOnThreads) {
   }
 }
 
-/// So large that the rays of a batch take turns; some of them are nonsense.
+/// The tree is so large that the rays of a batch take turns; some of the rays are invalid.
 TEST(Query, BatchesOfLargeTreesEqualSingleRays) {
   const Indexed of(scene_of(random_mesh(Kind::tiny, 250'000, 10)));
   ASSERT_GT(of.index.byte_count(), std::size_t(8) << 20);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Panoramas, fisheyes and laser scanners: known directions, exact ranges in a box, the same answers as six pinholes.
+// Panoramas, fisheyes and laser scanners: known directions, exact ranges in a box, and the answers of six pinhole
+// views.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -37,7 +38,7 @@ std::vector<T> values_of(const Buffer<T>& buffer) {
   return {buffer.begin(), buffer.end()};
 }
 
-/// Distance to the box around its middle: to the side that the largest component meets.
+/// Distance from the middle to the box: to the side that the largest component hits.
 double range_in_box(const glm::vec3& direction, double r) {
   const glm::dvec3 d(direction), a = glm::abs(d);
   return r * glm::length(d) / std::max(a.x, std::max(a.y, a.z));
@@ -53,14 +54,14 @@ void expect_near(const glm::vec3& direction, const glm::dvec3& expected) {
 }
 
 TEST(RayCamera, APanoramasMiddleLooksAheadAndItsQuartersToTheSides) {
-  // Odd sides have a pixel whose centre is the middle of the picture.
+  // With odd sizes, one pixel's centre is the middle of the picture.
   expect_direction({Panorama{5, 3}}, 2, 1, {0, 0, -1});
   const RayCamera camera{Panorama{1000, 501}};
   const double half_pixel = pi / 1000;
-  // Pixel 750 lies just past the quarter to the right, 249 just past the one to the left.
+  // Pixel 750 lies just past a quarter turn to the right, 249 just past one to the left.
   expect_near(ray_of(camera, 750, 250).direction, {std::cos(half_pixel), 0, std::sin(half_pixel)});
   expect_near(ray_of(camera, 249, 250).direction, {-std::cos(half_pixel), 0, std::sin(half_pixel)});
-  // The sides meet straight behind; the top row looks almost straight up.
+  // The picture's left and right edges meet straight behind; the top row looks almost straight up.
   expect_near(ray_of(camera, 0, 250).direction, {-std::sin(half_pixel), 0, std::cos(half_pixel)});
   expect_near(ray_of(camera, 999, 250).direction, {std::sin(half_pixel), 0, std::cos(half_pixel)});
   EXPECT_EQ(ray_of(camera, 123, 0).direction.y, float(std::cos(pi / 1002)));
@@ -70,12 +71,12 @@ TEST(RayCamera, APanoramasMiddleLooksAheadAndItsQuartersToTheSides) {
 TEST(RayCamera, AFisheyesAngleGrowsEvenlyFromTheMiddle) {
   const RayCamera half{Fisheye{9, 9, pi}};
   expect_direction(half, 4, 4, {0, 0, -1});
-  // 3 pixels from the middle of a radius of 4.5: two thirds of 90 degrees.
+  // 3 pixels from the middle, at a radius of 4.5, is two thirds of 90 degrees.
   expect_near(ray_of(half, 7, 4).direction, {std::sin(pi / 3), 0, -std::cos(pi / 3)});
   expect_near(ray_of(half, 4, 1).direction, {0, std::sin(pi / 3), -std::cos(pi / 3)});
   expect_near(ray_of(half, 1, 4).direction, {-std::sin(pi / 3), 0, -std::cos(pi / 3)});
   EXPECT_EQ(ray_of(half, 0, 0).direction, glm::vec3(0));  // beyond the circle
-  // The whole turn looks behind at its rim; the circle touches the nearer sides.
+  // The full fisheye looks behind at its rim; the circle touches the nearer sides.
   const RayCamera whole{Fisheye{21, 9, 2 * pi}};
   expect_near(ray_of(whole, 10, 0).direction, {0, std::sin(pi * 8 / 9), -std::cos(pi * 8 / 9)});
   EXPECT_EQ(ray_of(whole, 5, 4).direction, glm::vec3(0));
@@ -95,7 +96,7 @@ TEST(RayCamera, AScannerTurnsToTheRightFromStraightAheadExactlyAtQuarters) {
 }
 
 TEST(RayCamera, ThePoseTurnsAndMovesTheRays) {
-  // From (1, 2, 3) along +x, z up: the right is -y.
+  // The camera is at (1, 2, 3) and looks along +x, z up: its right is -y.
   const RayCamera camera{Lidar{{0}, 4}, look_at({1, 2, 3}, {2, 2, 3}, {0, 0, 1})};
   EXPECT_EQ(ray_of(camera, 0, 0).origin, glm::vec3(1, 2, 3));
   expect_near(ray_of(camera, 0, 0).direction, {1, 0, 0});
@@ -131,7 +132,7 @@ TEST(RangeScan, ALevelRingMeetsTheSidesExactly) {
   const Indexed room(box_room(2));
   const RangeScan ring = scan(room.index, {Lidar{{0}, 4}});
   for (int step = 0; step < 4; ++step) EXPECT_EQ(ring.ranges[std::size_t(step)], 2.0f);
-  const int sides[] = {4, 1, 5, 0};  // -z, +x, +z, -x: pairs of triangles, of which a ray to the middle meets both
+  const int sides[] = {4, 1, 5, 0};  // -z, +x, +z, -x: pairs of triangles; a ray to the middle hits both
   for (int step = 0; step < 4; ++step)
     EXPECT_EQ(ring.primitives[std::size_t(step)], PrimitiveId(2 * sides[step])) << step;
 }
@@ -163,11 +164,11 @@ TEST(RangeScan, PlanarDepthIsThatOfAPinholeAndEndsAtTheSide) {
         EXPECT_EQ(depths[i], kFloatInfinity);
       }
     }
-  // All that is seen on the wall ahead is 2 away along the axis.
+  // All points on the wall ahead are 2 away along the axis.
   EXPECT_NEAR(depths[result.index(36, 18)], 2, 1e-6);
 }
 
-/// The pinhole views through the faces of a cube around the eye, 90 degrees each.
+/// A pinhole view through a face of the cube around the eye, 90 degrees wide and high.
 View face_view(const glm::dvec3& eye, const glm::dvec3& forward, int size) {
   View view;
   view.width = view.height = size;
@@ -186,7 +187,7 @@ struct CubeViews {
         faces.push_back(raycast(index, face_view(eye, forward, size)));
       }
   }
-  /// The ids seen in the 3 x 3 pixels around where a direction leads; empty too near a face's border.
+  /// Ids in the 3 x 3 pixels around the image of a direction; empty close to a face's border.
   [[nodiscard]] std::vector<PrimitiveId> around(const glm::vec3& direction) const {
     const glm::vec3 a = glm::abs(direction);
     const int axis = a.x > a.y && a.x > a.z ? 0 : a.y > a.z ? 1 : 2;
@@ -213,7 +214,7 @@ void expect_agreement(const Indexed& of, const glm::dvec3& eye, const RayCamera&
       if (direction == glm::vec3(0)) continue;
       const std::vector<PrimitiveId> ids = cube.around(direction);
       ++all;
-      // Away from every edge the cube's pixels agree with one another, and so they must with the ray between them.
+      // Away from edges the cube's pixels agree with each other, so the ray between them must agree too.
       if (ids.empty() || std::count(ids.begin(), ids.end(), ids[0]) != 9) continue;
       ++compared;
       ASSERT_EQ(around.primitives[around.index(x, y)], ids[0]) << x << "," << y;
@@ -306,7 +307,7 @@ TEST(RayCamera, RefusesWhatIsOutOfRange) {
 }
 
 TEST(RangeScan, SamplesLieWhereThoseOfAViewDo) {
-  // The middle pixel of a fisheye looks ahead; 10 pixels from the middle to the rim are 60 degrees.
+  // The middle pixel of a fisheye looks ahead; the 10 pixels from the middle to the rim span 60 degrees.
   const RayCamera camera{Fisheye{21, 21, 2.1 * pi / 3}, glm::dmat4(1.0), 4};
   const std::span<const glm::ivec2> offsets = sample_offsets(4);
   for (int s = 0; s < 4; ++s) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The oracle: every sample against every triangle by the sample rule, with nothing clever.
+// The oracle: every sample against every triangle by the sample rule, without shortcuts.
 #pragma once
 
 #include "frontmost/raycast.h"
@@ -17,7 +17,7 @@ class RayOracle {
  public:
   explicit RayOracle(const View& view) : t_(view), visible_(nothing_visible(view)) {}
 
-  /// `cutout`: asked for holes; may be null.
+  /// `cutout` holds the triangle's holes; may be null.
   void meet(const std::array<glm::vec3, 3>& world, PrimitiveId id, const ScreenCutout* cutout = nullptr) {
     cutout_ = cutout;
     const raycast_detail::SampleTriangle triangle = raycast_detail::make_triangle(t_, world);

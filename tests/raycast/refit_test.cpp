@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A refitted index against a new one: the same answers to the bit, wherever the triangles have gone.
+// A refitted index against a new one: the same answers to the bit, wherever the triangles have moved.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -105,7 +105,7 @@ TEST(Refit, OtherTrianglesMakeANewIndex) {
   expect_followed("something");
 }
 
-/// Asks for everything that an index can be asked for: where something were left of two scenes, this would meet it.
+/// Asks the index every kind of query: a leftover of an earlier scene would be hit.
 void expect_empty(const RayIndex& index) {
   EXPECT_EQ(index.triangle_count(), 0u);
   EXPECT_TRUE(index.bounds().is_empty());
@@ -117,7 +117,7 @@ void expect_empty(const RayIndex& index) {
 }
 
 TEST(Refit, OneThatIsEndedHalfwayLeavesNothing) {
-  // Fewer triangles with holes than before: ids of the old ones would be looked up beyond the new table.
+  // The new scene has fewer triangles with holes: ids of old ones would be beyond the new table.
   const Scene many = cutout_scene(random_mesh(Kind::soup, 4000, 1), Cut::all, 0.5f, 1);
   const Scene few = cutout_scene(random_mesh(Kind::soup, 40, 2), Cut::all, 0.5f, 2);
   const Surfaces before(many), after(few);

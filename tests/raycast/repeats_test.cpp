@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One triangle thousands of times: rays meet the first of them, whatever the order of the leaves is.
+// One triangle thousands of times: rays hit the first copy, whatever the order of the leaves.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ TEST(Repeats, RaysMeetTheFirst) {
     add_triangle(mesh, {-9, -9, 0}, {9, -9, 0.1f}, {0, 9, 0});
     add_triangle(mesh, {-9, -9, -1}, {9, -9, 1}, {0, 9, 0.1f});
   }
-  // Behind both of them, so that the pair is in front of something and not of nothing alone.
+  // A triangle behind both, so that the pair hides something.
   add_triangle(mesh, {-90, -90, -2}, {90, -90, -2}, {0, 90, -2});
   const Indexed in(scene_of(std::move(mesh)));
   View view;
@@ -35,7 +35,7 @@ TEST(Repeats, RaysMeetTheFirst) {
   EXPECT_TRUE(both);
 }
 
-/// A leaning triangle and one across it, `count` times, the second one half the time first.
+/// A leaning triangle and one across it, `count` times; half of the time the second one comes first.
 Scene copies_of_two(int count) {
   Mesh mesh;
   const auto first = [&] { add_triangle(mesh, {-9, -9, 0}, {9, -9, 0.1f}, {0, 9, 0}); };
@@ -47,7 +47,7 @@ Scene copies_of_two(int count) {
   return scene_of(std::move(mesh));
 }
 
-// Every tile met every copy: a million of them took minutes.
+// If every tile tested every copy, a million of them would take minutes.
 TEST(Repeats, AMillionCostLikeOne) {
   const int count = under_sanitizer ? 5'000 : 500'000;
   const Indexed one(copies_of_two(1)), many(copies_of_two(count));
@@ -66,7 +66,7 @@ TEST(Repeats, AMillionCostLikeOne) {
     const Ray ray{{x, 0, 5}, {0, 0.01f, -1}};
     EXPECT_EQ(closest_hit(many.index, ray).primitive, closest_hit(one.index, ray).primitive) << x;
     EXPECT_EQ(closest_hit(many.index, ray).t, closest_hit(one.index, ray).t) << x;
-    // Whoever asks for all gets all.
+    // A query for all hits gets all copies.
     const std::vector<RayHit> few = all_hits(one.index, ray), all = all_hits(many.index, ray);
     ASSERT_EQ(all.size(), few.size() * std::size_t(count)) << x;
     std::set<PrimitiveId> ids;

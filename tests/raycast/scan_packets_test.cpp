@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scans are cast in packets: what they find is to the bit what every ray finds alone.
+// Scans are cast in packets, and find to the bit what every ray finds alone.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double half_turn = 3.14159265358979323846;
 
-/// The rays one by one, by the rules of single rays.
+/// Casts the rays one by one, by the rules of single rays.
 RangeScan scan_ray_by_ray(const RayIndex& index, const RayCamera& camera) {
   RangeScan scan{camera, grid_of(camera).x, grid_of(camera).y, {}, {}};
   scan.primitives = Buffer<PrimitiveId>(std::size_t(scan.width) * std::size_t(scan.height));
@@ -45,7 +45,7 @@ std::size_t expect_as_ray_by_ray(const RayIndex& index, const RayCamera& camera)
   return met;
 }
 
-/// Directions within a cone, all over the sphere, at corners of the grid, and some that lead nowhere.
+/// Directions within a cone, all over the sphere, at corners of the grid, and some of length zero.
 RayPattern mixed_pattern(std::uint64_t seed) {
   Random random(seed);
   RayPattern pattern;
@@ -76,7 +76,7 @@ TEST(ScanPackets, FindWhatEveryRayFindsAlone) {
     for (std::uint64_t seed = 0; seed < std::uint64_t(seeds); ++seed) {
       SCOPED_TRACE(testing::Message() << "kind " << int(kind) << " seed " << seed);
       const Indexed of(scene_of(random_mesh(kind, 600, seed)));
-      // Within the triangles, on a triangle's corner, and on a corner of the grids.
+      // Origins: within the triangles, at a triangle's vertex, and at a corner of the grids.
       const glm::dvec3 all[] = {{0.03, -0.1, 0.2}, glm::dvec3(of.surfaces.corners(0)[1]), {0.25, 0.5, 1}};
       for (const glm::dvec3& eye : std::span(all).first(eyes))
         for (const RayCamera& camera : cameras_at(eye, seed)) met += expect_as_ray_by_ray(of.index, camera);
@@ -95,7 +95,7 @@ TEST(ScanPackets, SeeThroughTheSameHoles) {
       }
 }
 
-/// More triangles that each ray may meet first than a packet takes note of.
+/// Each ray may hit more triangles first than a packet records.
 TEST(ScanPackets, ManyHolesBehindEachOtherAreAskedForOneByOne) {
   Mesh mesh;
   for (int i = 0; i < 700; ++i) {
@@ -135,7 +135,7 @@ TEST(ScanPackets, FindTheSameAtEveryScale) {
   }
 }
 
-/// Triangles from a rounding error to a million units, in one scene.
+/// Triangle sizes from a rounding error to a million units, in one scene.
 TEST(ScanPackets, FindTheSameAmongAllSizes) {
   Random random(12);
   Mesh mesh;

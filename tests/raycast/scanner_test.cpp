@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What scanners are told beyond their rings: a part of a turn, limits of range, and the angle at which they meet a
-// surface.
+// Settings of scanners besides rings: a part of a turn, limits of range, and the angle of incidence on a surface.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -34,12 +33,12 @@ TEST(Scanner, AWholeTurnRepeatsNoRay) {
   EXPECT_THAT(directions_of({{0}, 4}), ElementsAre(to_ahead, to_right, to_behind, to_left));
   EXPECT_THAT(directions_of({{0}, 4, -scanner_pi, scanner_pi}), ElementsAre(to_behind, to_left, to_ahead, to_right));
   EXPECT_THAT(directions_of({{0}, 4, 2 * scanner_pi, 0}), ElementsAre(to_ahead, to_left, to_behind, to_right));
-  // In degrees the ends may be off by a rounding.
+  // In degrees the ends may be off by a rounding error.
   EXPECT_THAT(directions_of({{0}, 4, glm::radians(-90.0), glm::radians(270.0)}),
               ElementsAre(to_left, to_ahead, to_right, to_behind));
 }
 
-/// A wall of 2 by 2, one unit ahead of a scanner, and another one behind it at three units.
+/// A wall of 2 by 2, one unit ahead of a scanner, and another behind it at three units.
 struct Walls : Indexed {
   Walls() : Indexed(floors({0, -2})) {}
   static constexpr double third = scanner_pi / 6;  // 30 degrees

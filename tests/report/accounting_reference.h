@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The accounts of objects, the obvious way: every object is drawn alone by zbuffer(), and samples are counted one by
-// one.
+// Accounts of objects by brute force: zbuffer() draws every object alone, and samples are counted one by one.
 #pragma once
 
 #include <map>
@@ -10,14 +9,14 @@
 
 namespace frontmost::test {
 
-/// What zbuffer() shows of one instance when nothing else is there.
+/// The picture of one instance with nothing else in the scene.
 inline Visible draw_alone(const Scene& scene, std::uint32_t instance, const View& view) {
   Scene alone = scene;
   alone.instances = {scene.instances[instance]};
   return zbuffer(Surfaces(alone), view, {.threads = 1});
 }
 
-/// The same camera on `margin` pixels more on each side.
+/// A view by the same camera, with a picture larger by `margin` pixels on each side.
 inline View widened(const View& view, const glm::ivec2& margin) {
   View wide = view;
   const Projection& p = view.projection;
@@ -57,7 +56,7 @@ void for_each_sample(const View& view, const Visit& visit) {
       for (int x = 0; x < view.width; ++x) visit(x, y, s, sample_offsets(view.samples)[std::size_t(s)]);
 }
 
-/// Without is_cut_by_near. `margin`: of the canvas, in pixels.
+/// The reference accounts, without is_cut_by_near. `margin`: margin of the canvas, in pixels.
 inline Accounting reference_account(const Scene& scene, const Visible& visible, const glm::ivec2& margin) {
   const Surfaces surfaces(scene);
   const View& view = visible.view;
@@ -89,7 +88,7 @@ inline Accounting reference_account(const Scene& scene, const Visible& visible, 
   return result;
 }
 
-/// The pairs of a map by object and hider.
+/// The entries of a map from (object, hider) to counts.
 inline std::vector<HiddenSamples> pairs_of(
     const std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint64_t>& counts) {
   std::vector<HiddenSamples> pairs;
@@ -97,7 +96,7 @@ inline std::vector<HiddenSamples> pairs_of(
   return pairs;
 }
 
-/// Every two objects are drawn alone and held against each other.
+/// Draws every two objects alone and compares them.
 inline std::vector<HiddenSamples> reference_hidden_by_any(const Scene& scene, const View& view) {
   std::vector<Visible> alone;
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) alone.push_back(draw_alone(scene, i, view));
@@ -112,7 +111,7 @@ inline std::vector<HiddenSamples> reference_hidden_by_any(const Scene& scene, co
   return pairs_of(counts);
 }
 
-/// Every object is left out once.
+/// Leaves out every object once.
 inline std::vector<HiddenSamples> reference_hidden_only_by(const Scene& scene, const Visible& visible) {
   const Surfaces all(scene);
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint64_t> counts;

@@ -16,7 +16,7 @@ namespace {
 
 using test::Random;
 
-/// Ten by ten units before an eye that looks down from above, one unit a pixel.
+/// A view of ten by ten units from above, one unit a pixel.
 View square_view(int size = 10) {
   View view;
   view.width = view.height = size;
@@ -25,7 +25,7 @@ View square_view(int size = 10) {
   return view;
 }
 
-/// Every field but is_cut_by_near, which the reference does not know.
+/// Compares every field but is_cut_by_near, which the reference lacks.
 void expect_same(const Accounting& a, const Accounting& b) {
   EXPECT_EQ(a.canvas, b.canvas);
   EXPECT_EQ(a.background, b.background);
@@ -41,7 +41,7 @@ void expect_same(const Accounting& a, const Accounting& b) {
   }
 }
 
-/// Of one picture: everything adds up.
+/// Checks that the accounts of one picture add up.
 void expect_sums(const Accounting& accounts, const View& view) {
   std::uint64_t seen = accounts.background;
   std::vector<std::uint64_t> hidden(accounts.objects.size(), 0);
@@ -60,8 +60,8 @@ void expect_sums(const Accounting& accounts, const View& view) {
 TEST(Accounting, CountsSquaresThatCanBeCountedByHand) {
   Scene scene;
   test::place_square(scene, "far", 3, {0, 0, 0});    // 6 x 6 pixels from (2, 2)
-  test::place_square(scene, "near", 2, {4, 2, 1});   // 4 x 4 pixels from (7, 1), of which a column is beyond the frame
-  test::place_square(scene, "away", 1, {20, 0, 0});  // beyond the canvas, too
+  test::place_square(scene, "near", 2, {4, 2, 1});   // 4 x 4 pixels from (7, 1); one column is beyond the frame
+  test::place_square(scene, "away", 1, {20, 0, 0});  // beyond the canvas as well
   const Surfaces surfaces(scene);
   const Accounting accounts = account(surfaces, zbuffer(surfaces, square_view()));
   EXPECT_EQ(accounts.canvas, (PixelBox{-10, -10, 30, 30}));
@@ -104,7 +104,7 @@ TEST(Accounting, EqualsTheReferenceForEveryKindOfTriangles) {
   for (const test::Kind kind : test::all_kinds)
     for (std::uint64_t seed = 0; seed < test::seeds(6); ++seed) {
       test::RandomCase made = test::random_case(kind, seed);
-      // The same mesh again, mirrored and flattened.
+      // The mesh has two more instances, one mirrored and one flattened.
       made.scene.instances.push_back({"mirrored", 0, glm::dmat4(1.0)});
       made.scene.instances.back().world_from_mesh[0][0] = -0.7;
       made.scene.instances.push_back({"flat", 0, glm::dmat4(1.0)});
@@ -117,7 +117,7 @@ TEST(Accounting, EqualsTheReferenceForEveryKindOfTriangles) {
 }
 
 TEST(Accounting, VerticesMayStandInAnyOrder) {
-  // So many that neighbours' vertices are far apart in the list, in a mesh that is placed as it is, mirrored and flat.
+  // Neighbours' vertices are far apart in the list. The mesh is placed unchanged, mirrored and flat.
   constexpr int kTriangles = 6'000;
   test::RandomCase made{test::scene_of(test::random_mesh(test::Kind::soup, kTriangles, 5)), {}};
   Random random(6);
@@ -129,7 +129,7 @@ TEST(Accounting, VerticesMayStandInAnyOrder) {
   Scene strewn = made.scene;
   Mesh& mesh = strewn.meshes[0];
   const std::size_t count = mesh.positions.size();
-  constexpr std::size_t kStep = 7'919;  // a prime, so that all numbers are met
+  constexpr std::size_t kStep = 7'919;  // a prime, so that all numbers occur
   ASSERT_NE(count % kStep, 0u);
   for (std::size_t i = 0; i < count; ++i) mesh.positions[i * kStep % count] = made.scene.meshes[0].positions[i];
   for (glm::uvec3& corners : mesh.triangles)
@@ -174,7 +174,7 @@ TEST(Accounting, HolesOfMasksAreSeenThrough) {
   EXPECT_GT(with_holes, test::seeds(12)) << "the scenes have no holes that matter";
 }
 
-// On a canvas the reference is another camera, whose numbers round as the picture's do where all of them are dyadic.
+// On a canvas, the reference is another camera. Its numbers round as the picture's do if all of them are dyadic.
 TEST(Accounting, BeyondTheFrameEqualsThePictureOfTheCanvas) {
   std::uint64_t cut = 0;
   for (std::uint64_t seed = 0; seed < test::seeds(20); ++seed) {
@@ -214,7 +214,7 @@ TEST(Accounting, IsTheSameForThreadsAndInstructionSets) {
 TEST(Accounting, TellsWhatTheNearPlaneCuts) {
   Scene scene;
   test::place_square(scene, "whole", 1, {0, 0, 0});
-  test::place_square(scene, "cut", 1, {0, 0, 9});  // its one edge at 8, its other at 10, where the eye is
+  test::place_square(scene, "cut", 1, {0, 0, 9});  // one edge at 8, the other at 10, where the eye is
   scene.instances.back().world_from_mesh[0] = glm::dvec4(0, 0, 1, 0);
   test::place_square(scene, "behind", 1, {0, 0, 12});
   const Surfaces surfaces(scene);
@@ -299,7 +299,7 @@ TEST(Accounting, AllHidersAreTheSameForThreadsAndInstructionSets) {
 TEST(Accounting, OneBehindAnotherIsHiddenByBothAndByNoneAlone) {
   Scene scene;
   for (int i = 0; i < 3; ++i) test::place_square(scene, "square", 3, {0, 0, i});  // the last one is the nearest
-  test::place_square(scene, "strip", 1, {0, 4, 3});                               // before nothing but the upper row
+  test::place_square(scene, "strip", 1, {0, 4, 3});                               // in front of the upper row only
   const Surfaces surfaces(scene);
   const Accounting accounts = account(surfaces, zbuffer(surfaces, square_view()), {.all_hiders = true});
   EXPECT_EQ(accounts.hidden_by_front, (std::vector<HiddenSamples>{{0, 2, 36}, {1, 2, 36}}));
@@ -308,7 +308,7 @@ TEST(Accounting, OneBehindAnotherIsHiddenByBothAndByNoneAlone) {
 }
 
 TEST(PixelMasks, RunLengthsAreThoseOfCoco) {
-  // Of 3 x 4 pixels, columns from the left: 0 1 1 0, 1 1 0 0, 0 0 0 1.
+  // A mask of 3 x 4 pixels, columns from the left: 0 1 1 0, 1 1 0 0, 0 0 0 1.
   PixelMask mask;
   mask.box = {0, 0, 3, 4};
   mask.pixels = Buffer<MaskPixel>(12, MaskPixel::outside);
@@ -321,7 +321,7 @@ TEST(PixelMasks, RunLengthsAreThoseOfCoco) {
   EXPECT_EQ(coco_runs({}, MaskPart::whole, {3, 4}), "<");
 }
 
-/// Pixels whose middles lie within an odd number of sides.
+/// Pixels whose centres lie inside by the even-odd rule.
 std::vector<int> filled(const std::vector<std::vector<int>>& polygons, int width, int height) {
   std::vector<int> counts(std::size_t(width * height), 0);
   for (const std::vector<int>& p : polygons)
@@ -385,7 +385,7 @@ TEST(PixelMasks, EqualThePictureOfTheObjectAlone) {
 }
 
 TEST(HidingOrder, RanksWhatHasAnOrderAndListsWhatHasNone) {
-  // 0 hides 1; 1, 2 and 3 hide each other in a ring; 3 hides 4; nothing is known of 5.
+  // 0 hides 1; 1, 2 and 3 hide each other in a ring; 3 hides 4; nothing is known about 5.
   const std::vector<HiddenSamples> pairs = {{1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {1, 3, 5}, {4, 3, 5}};
   const HidingOrder order = find_hiding_order(6, pairs);
   EXPECT_EQ(order.ranks, (std::vector<std::uint32_t>{0, 1, 1, 1, 2, 0}));
@@ -423,7 +423,7 @@ TEST(HidingOrder, EqualsWhatReachesWhat) {
     }
     EXPECT_EQ(order.cycles, cycles);
     for (std::uint32_t i = 0; i < count; ++i) {
-      // One more than the greatest of those that hide any of its cycle from outside.
+      // The rank is one more than the greatest among the objects outside that hide any member of its cycle.
       std::uint32_t rank = 0;
       for (std::uint32_t j = 0; j < count; ++j)
         if (reaches[j][i] && !reaches[i][j]) rank = std::max(rank, order.ranks[j] + 1);
@@ -433,7 +433,7 @@ TEST(HidingOrder, EqualsWhatReachesWhat) {
 }
 
 TEST(HidingOrder, ThreeObjectsInARingHideEachOther) {
-  // Three planks, each above the next at one end and below the one before at the other.
+  // Three planks; each lies above the next at one end and below the previous one at the other.
   Scene scene;
   for (int k = 0; k < 3; ++k) {
     const double angle = glm::radians(120.0 * k);
@@ -466,7 +466,7 @@ TEST(Accounting, CountsTheObjectsOfModels) {
     const Accounting accounts = account(surfaces, visible, {.canvas = 1});
     SCOPED_TRACE(file);
     expect_sums(accounts, view);
-    // Every object takes a scene of its own: of large scenes some of them are enough.
+    // Each object needs a scene of its own, so of large scenes only some objects are tested.
     const std::size_t step = 1 + scene.instances.size() / 20;
     for (std::size_t i = 0; i < scene.instances.size(); i += step) {
       const Visible alone = test::draw_alone(scene, std::uint32_t(i), view);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Right answers are explained, wrong ones are found, whatever the mistake.
+// Right answers are explained, and wrong ones are found, whatever the mistake.
 #include <gtest/gtest.h>
 
 #include "frontmost/painter.h"
@@ -13,7 +13,7 @@
 namespace frontmost::test {
 namespace {
 
-/// Looks along -z from the origin.
+/// A view along -z from the origin.
 View square_view() {
   View view;
   view.width = view.height = 64;
@@ -21,7 +21,8 @@ View square_view() {
   return view;
 }
 
-/// Triangles 0 and 1 fill the view at distance 5, 2 and 3 at `behind`; 4 is small, far to the left at distance 3.
+/// Triangles 0 and 1 fill the view at distance 5, 2 and 3 fill it at `behind`; 4 is small, far to the left at distance
+/// 3.
 Scene sheets(float behind) {
   Mesh mesh;
   for (const float z : {-5.0f, -behind}) {
@@ -74,20 +75,20 @@ TEST(Agreement, EverySingleMistakeIsFound) {
   EXPECT_EQ(with(no_primitive, key), 1u) << "a depth of nothing";
 }
 
-// At an edge two answers are possible; a third is as wrong as anywhere.
+// At an edge two answers are possible; a third is as wrong there as anywhere.
 TEST(Agreement, AnEdgeExcusesOnlyWhatIsAtTheEdge) {
   const Scene scene = sheets(6);
   const Surfaces surfaces(scene);
   View view = square_view();
   const Visible right = zbuffer(surfaces, view);
-  // The diagonal between 0 and 1 goes through pixel centres.
+  // The diagonal between 0 and 1 passes through pixel centres.
   const std::size_t at = right.index(20, 43);
   Visible other = right;
   other.primitives[at] = 1 - right.primitives[at];
   const Agreement answer = check_agreement(surfaces, right, other);
   EXPECT_EQ(answer.differences[at], Difference::edge);
   EXPECT_EQ(answer.differing(), 1u);
-  // Behind the diagonal lies another, but neither of 0 and 1 alone hides it there: together they do.
+  // Triangle 4 lies behind the diagonal. Neither 0 nor 1 alone hides it there, but both together do.
   other.primitives[at] = 4;
   EXPECT_EQ(unexplained(surfaces, right, other), 1u);
 }
@@ -124,7 +125,7 @@ TEST(Agreement, CulledTrianglesAreNoExcuseAndNoObstacle) {
   EXPECT_EQ(unexplained(surfaces, nothing, wrong), 1u);
 }
 
-/// What check_agreement() says of a sample whose ids differ: every triangle is asked, wherever it is.
+/// The answer of check_agreement() at a sample whose ids differ, by a test of every triangle.
 Difference asked_of_all(const Surfaces& surfaces, const SampleRays& rays, const std::array<PrimitiveId, 2>& ids,
                         const SampleSquare& square) {
   bool all_contain = true;
@@ -145,7 +146,7 @@ Difference asked_of_all(const Surfaces& surfaces, const SampleRays& rays, const 
   return all_contain ? Difference::depth : Difference::edge;
 }
 
-/// Orders by centroids give many wrong answers, whose depths are right.
+/// Orders by centroids give many wrong answers with right depths.
 TEST(Agreement, EveryTriangleIsHeardWhereverItHasSomethingToSay) {
   std::array<std::uint64_t, 5> found{};
   for (std::uint64_t seed = 0; seed < seeds(4 * std::size(all_kinds)); ++seed) {
@@ -178,7 +179,7 @@ TEST(Agreement, EveryTriangleIsHeardWhereverItHasSomethingToSay) {
 class MistakesInEveryKind : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(Agreement, MistakesInEveryKind, testing::ValuesIn(all_kinds));
 
-/// Of any two answers that are possible at a sample, one with another key or with a hole is not.
+/// Changing the key of a possible answer, or replacing the answer by a hole, makes it wrong.
 TEST_P(MistakesInEveryKind, WrongDepthsAndForeignTrianglesAreFound) {
   std::size_t planted = 0;
   for (std::uint64_t seed = 0; seed < seeds(12); ++seed) {
@@ -193,7 +194,7 @@ TEST_P(MistakesInEveryKind, WrongDepthsAndForeignTrianglesAreFound) {
     std::vector<std::size_t> places;
     for (std::size_t i = 0; i < right.primitives.size(); ++i) {
       if (right.primitives[i] == no_primitive || random.below(20) != 0) continue;
-      // No corner has a key beyond 1, and none that is seen lies at infinity.
+      // No vertex has a key beyond 1, and no visible point lies at infinity.
       wrong.keys[i] = random.below(2) ? 1.5f : -0.5f;
       if (wrong.primitives[i] == no_primitive) continue;
       places.push_back(i);
@@ -239,7 +240,7 @@ TEST(Agreement, OnlyTranslucentTrianglesAreSeenThrough) {
   EXPECT_EQ(answer.count(Difference::none), 64u * 64u - 2);
 }
 
-// Between planes a few roundings apart, keys are steps: not wrong, but coarse.
+// Between planes a few rounding errors apart, keys are coarse steps, which is not wrong.
 TEST(Agreement, AFlatModelInParallelProjectionHasItsDepth) {
   Mesh mesh;
   add_triangle(mesh, {0, 0, 0}, {10, 0, 0}, {10, 10, 0});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is promised of two surfaces by formats, positions and transforms together, against pictures of such surfaces.
+// The gap promised between two surfaces by formats, positions and transforms together, against pictures of such
+// surfaces.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +22,7 @@ glm::dvec3 direction_of(Random& random) {
   return glm::normalize(v);
 }
 
-/// A camera somewhere, and a depth buffer.
+/// A random camera and depth buffer.
 struct Try {
   View view;
   DepthSetup setup;
@@ -40,7 +41,7 @@ Try random_try(Random& random) {
   one.view.width = one.view.height = 24;
   const glm::dvec3 eye = direction_of(random) * uniform(random, 0, 0.5) * one.distance;
   one.view.world_from_eye = look_at(eye, eye + direction_of(random) * one.distance, direction_of(random));
-  // Corners at most 1.5 times the distance away, so that half of it is left for where the eye is.
+  // Vertices are at most 1.5 times the distance away, which leaves half of it for the eye's position.
   const double side = one.distance * uniform(random, 0.1, 0.7);
   one.view.projection = one.setup.orthographic ? make_orthographic(-side, side, -side, side, one.setup.clip)
                                                : make_frustum(-0.7, 0.7, -0.7, 0.7, one.setup.clip);
@@ -52,7 +53,7 @@ Try random_try(Random& random) {
   return one;
 }
 
-/// A quadrilateral that fills the picture, facing the eye, as floats hold it.
+/// A quadrilateral that fills the picture, facing the eye, in floats.
 Mesh facing(const Try& one, double distance, Random& random) {
   Mesh mesh;
   for (const glm::dvec2& corner : {glm::dvec2(-1, -1), {1, -1}, {1, 1}, {-1, 1}}) {
@@ -64,7 +65,7 @@ Mesh facing(const Try& one, double distance, Random& random) {
   return mesh;
 }
 
-/// Pixels at which the farther of two surfaces is seen, though only the nearer should.
+/// Pixels that show the farther of two surfaces, although only the nearer should be seen.
 std::size_t wrong_pixels(const Try& one, double gap, Random& random) {
   Scene scene;
   const bool nearer_first = random.below(2) == 1;
@@ -92,7 +93,7 @@ struct Tally {
   std::size_t tried = 0, wrong_scenes = 0, wrong_pixels = 0;
 };
 
-/// Of random scenes whose surfaces lie `share` of the gap apart that is promised.
+/// Counts wrong pixels in random scenes whose surfaces are `share` of the promised gap apart.
 Tally tally_of(double share, std::size_t scenes) {
   Random random(11);
   Tally tally;
@@ -100,7 +101,7 @@ Tally tally_of(double share, std::size_t scenes) {
     const Try one = random_try(random);
     const double gap = certain_gap(one.setup, one.distance) * share;
     if (!(one.distance + gap < one.setup.clip.far * 0.9999)) continue;
-    // Corners of the nearer surface may be rounded to before the near plane, where nothing is drawn.
+    // Vertices of the nearer surface may be rounded to before the near plane, where nothing is drawn.
     if (one.distance < one.setup.clip.near * 1.0001) continue;
     const std::size_t wrong = wrong_pixels(one, gap, random);
     ++tally.tried;

@@ -33,7 +33,7 @@ TEST(Collinear, PointsOnALineAreAndOneUnitInTheLastPlaceOffIsNot) {
 }
 
 TEST(Collinear, DifferencesThatRoundDoNotFoolIt) {
-  // The direction from a to the others needs 150 bits: in floats and doubles alike, both differences become (1, 1, 1).
+  // The direction from a to the others needs 150 bits: in floats and doubles, both differences become (1, 1, 1).
   const glm::vec3 a(1e-25f, 2e-25f, 3e-25f);
   EXPECT_FALSE(are_collinear(a, {1, 1, 1}, {2, 2, 2}));
   EXPECT_TRUE(are_collinear({1e-25f, 1e-25f, 1e-25f}, {1, 1, 1}, {2, 2, 2}));
@@ -48,7 +48,7 @@ TEST(Collinear, HoldsAtBothEndsOfTheRange) {
   EXPECT_FALSE(are_collinear({-huge, -huge, huge}, {huge, huge, -huge}, {0, 0, tiny}));
 }
 
-// Integers below 2^20 make every term exact in 64 bits: an oracle that needs no belief in expansions.
+// Integers below 2^20 make every term exact in 64 bits: an oracle without expansions.
 bool oracle(const glm::i64vec3& a, const glm::i64vec3& b, const glm::i64vec3& c) {
   const glm::i64vec3 u = b - a, v = c - a;
   return u.x * v.y == u.y * v.x && u.y * v.z == u.z * v.y && u.z * v.x == u.x * v.z;
@@ -62,7 +62,7 @@ TEST(Collinear, AgreesWithIntegersOnPointsNearAndOnLines) {
     const glm::i64vec3 a(draw(5000), draw(5000), draw(5000)), step(draw(50), draw(50), draw(50));
     glm::i64vec3 b = a + step * draw(900), c = a + step * draw(900);
     if (i % 2 == 1) c[i % 3] += draw(1);
-    // A power of two scales exactly, and an irregular one would not be the same line.
+    // Powers of two scale exactly; other scales would give another line.
     const float scale = std::ldexp(1.0f, int(draw(60)));
     const auto scaled = [&](const glm::i64vec3& p) { return glm::vec3(p) * scale; };
     const bool expected = oracle(a, b, c);
@@ -78,7 +78,7 @@ TEST(Collinear, DoesNotDependOnTheOrderOfCorners) {
   std::uniform_real_distribution<float> draw(-1, 1);
   for (int i = 0; i < 20000; ++i) {
     const glm::vec3 a(draw(random), draw(random), draw(random)), b(draw(random), draw(random), draw(random));
-    const glm::vec3 middle = (a + b) * 0.5f;  // rounded: sometimes on the line, mostly just beside it
+    const glm::vec3 middle = (a + b) * 0.5f;  // rounded: sometimes on the line, mostly just off it
     const bool first = are_collinear(a, b, middle);
     ASSERT_EQ(are_collinear(middle, a, b), first);
     ASSERT_EQ(are_collinear(b, a, middle), first);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every method sees through the holes of alpha mode MASK, and all see the same.
+// Every method sees through the holes of alpha mode MASK, and all methods see the same.
 #include <gtest/gtest.h>
 
 #include "frontmost/frontmost.h"
@@ -12,7 +12,7 @@
 namespace frontmost::test {
 namespace {
 
-/// What each method shows, by its name.
+/// The answer of each method, with its name.
 std::vector<std::pair<const char*, Visible>> all_answers(const Surfaces& surfaces, const View& view) {
   std::vector<std::pair<const char*, Visible>> answers;
   answers.emplace_back("zbuffer", zbuffer(surfaces, view));
@@ -24,7 +24,7 @@ std::vector<std::pair<const char*, Visible>> all_answers(const Surfaces& surface
   return answers;
 }
 
-/// A square of 8 x 8 texels, every second of which is a hole, over 16 x 16 pixels; behind it an opaque one.
+/// A square of 8 x 8 texels over 16 x 16 pixels, where every second texel is a hole; an opaque square behind it.
 Scene checkers() {
   Mesh mesh;
   for (const float z : {0.0f, -1.0f}) {
@@ -168,7 +168,7 @@ TEST(Holes, LetLightPass) {
   const RayIndex index(surfaces);
   std::vector<TrianglePoint> points;
   for (int i = 0; i < 64; ++i) {
-    // The middle of every texel, on the square behind.
+    // Rays to the middle of every texel, on the square behind.
     const float x = -1 + (float(i % 8) + 0.5f) / 4, y = 1 - (float(i / 8) + 0.5f) / 4;
     const PrimitiveId id = x >= y ? 2 : 3;
     const glm::vec3 weights = id == 2 ? glm::vec3(1 - x, x - y, y + 1) : glm::vec3(1 - y, x + 1, y - x);
@@ -202,7 +202,7 @@ TEST(Holes, AreTakenOutOfCoverageMasks) {
       for (const Fragment& f : lists.at(x, y)) front |= f.primitive < 2 ? f.mask : 0;
       ASSERT_EQ(front, 0xF0F0F0F00F0F0F0Fu);
     }
-  // Half red over blue, and nothing of the order in which they came.
+  // Half red over blue, independent of the order in which they came.
   const std::vector<glm::vec4> colors = {{1, 0, 0, 1}, {1, 0, 0, 1}, {0, 0, 1, 1}, {0, 0, 1, 1}};
   EXPECT_EQ(laid_over(lists, 0, 0, colors), glm::dvec4(0.5, 0, 0.5, 1));
   const FragmentLists plain = abuffer(surfaces, front_view(1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exact answer against rational arithmetic, and what depth buffers get wrong against it.
+// The exact answer against rational arithmetic, and errors of depth buffers against it.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -36,7 +36,7 @@ Rational rational_depth(const std::array<glm::vec3, 3>& corners, const SampleRay
   return depth;
 }
 
-/// Which triangles cover a sample, by the oracle's coverage alone.
+/// Triangles that cover a sample, by the oracle's coverage alone.
 std::vector<std::vector<PrimitiveId>> covering(const Surfaces& surfaces, const View& view) {
   std::vector<std::vector<PrimitiveId>> lists(view.sample_count());
   const ScreenTransform transform(view);
@@ -104,7 +104,7 @@ TEST(Expansion, EqualsRationalArithmetic) {
   }
 }
 
-/// A square before the eye at a distance; the eye is at the origin and looks along -z.
+/// Adds a square at a distance from the eye, which is at the origin and looks along -z.
 void add_square(Mesh& mesh, float distance) {
   const float s = distance;
   add_triangle(mesh, {-s, -s, -distance}, {s, -s, -distance}, {s, s, -distance});
@@ -139,14 +139,14 @@ DepthFights fights_with(const Surfaces& surfaces, const View& view, DepthFormat 
   return find_depth_fights(surfaces, find_exact_visible(surfaces, view), buffer.visible(view));
 }
 
-// The gap that resolvable_gap() promises is resolved in the picture; a tenth of it is not, and all of it is wrong.
+// The picture resolves the gap that resolvable_gap() promises; with a tenth of the gap, it is all wrong.
 TEST(DepthFights, SquaresFightWhereTheFormatCannotTellThemApart) {
   for (const DepthFormat format : {DepthFormat::d8, DepthFormat::d16, DepthFormat::d24}) {
     const float distance = 40;
     const double near = format == DepthFormat::d24 ? 0.01 : 1, far = 1000;
     const auto gap = float(resolvable_gap({{near, far}, format}, 40));
     const View view = square_view(near, far);
-    // The farther one is drawn first, so only a difference can bring the nearer one to the front.
+    // The farther square is drawn first, so only a resolved difference brings the nearer one to the front.
     const Scene apart = two_squares(distance + gap * 1.01f, distance);
     EXPECT_EQ(fights_with(Surfaces(apart), view, format).wrong, 0u);
     const Scene close = two_squares(distance + gap * 0.02f, distance);
@@ -175,7 +175,7 @@ TEST(DepthFights, SurfacesInOnePlaneAreTiedAndNotWrong) {
   }
 }
 
-// What rounds to the far plane's depth does not pass LESS against the clear value.
+// A depth that rounds to the far plane's does not pass LESS against the clear value.
 TEST(DepthFights, WhatRoundsToTheClearValueIsNotSeen) {
   const Scene scene = two_squares(90, 95);
   const Surfaces surfaces(scene);

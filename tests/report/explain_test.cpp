@@ -19,7 +19,7 @@ namespace {
 
 using test::Random;
 
-/// At the origin, looking along -z, 60 degrees wide and high.
+/// A view from the origin along -z, 60 degrees wide and high.
 View level_view() {
   View view;
   view.width = view.height = 100;
@@ -44,7 +44,7 @@ Explanation explanation_of(const Scene& scene, const View& view, std::uint32_t o
   return explain(surfaces, view, object);
 }
 
-/// The explanation when its remedy has been done.
+/// The explanation after its remedy was applied.
 Explanation after_remedy(const Scene& scene, const View& view, const Explanation& why) {
   Scene changed = scene;
   std::uint32_t object = why.object;
@@ -79,7 +79,7 @@ TEST(Explain, TellsShareBeyondTheFrame) {
   EXPECT_EQ(sentence(explanation_of(scene, parallel_view()), scene),
             "panel is seen, 50 % of it, 50 % beyond the frame.");
   Scene cut = scene;
-  test::place_square(cut, "post", 1, {5.5, 0, -9});  // over half of what is in frame
+  test::place_square(cut, "post", 1, {5.5, 0, -9});  // hides half of what is in the frame
   EXPECT_EQ(sentence(explanation_of(cut, parallel_view()), cut),
             "panel is seen, 25 % of it, 50 % beyond the frame, the rest hidden by post 25 %.");
 }
@@ -113,7 +113,7 @@ TEST(Explain, BehindTheEyeTheCameraTurns) {
   const Explanation up = explanation_of(above, level_view());
   EXPECT_EQ(up.reason, SightReason::behind_eye);
   EXPECT_GT(up.remedy.up, 0);
-  // It is seen edge on from every side of its plane.
+  // The panel is seen edge-on from every point of its plane.
   EXPECT_EQ(after_remedy(above, level_view(), up).reason, SightReason::seen);
 }
 
@@ -123,7 +123,7 @@ TEST(Explain, NearerThanNearComesIntoViewWithALesserNear) {
   EXPECT_EQ(why.reason, SightReason::nearer_than_near);
   EXPECT_EQ(sentence(why, scene), "panel is nearer than near: set near to 0.2.");
   expect_seen_after_remedy(scene, level_view(), why);
-  // In parallel projection, behind the eye, too.
+  // In parallel projection, an object behind the eye gets the same explanation.
   const Scene behind = panel_at({0, 0, 3});
   const Explanation parallel = explanation_of(behind, parallel_view());
   EXPECT_EQ(parallel.reason, SightReason::nearer_than_near);
@@ -133,7 +133,7 @@ TEST(Explain, NearerThanNearComesIntoViewWithALesserNear) {
 
 TEST(Explain, WhatReachesToTheEyeIsShownInPart) {
   Scene scene = panel_at({0.05, 0, 0}, 0.4f);
-  scene.instances[0].world_from_mesh[0] = glm::dvec4(0.1, 0, 1, 0);  // from before the eye to behind it
+  scene.instances[0].world_from_mesh[0] = glm::dvec4(0.1, 0, 1, 0);  // from in front of the eye to behind it
   const Explanation why = explanation_of(scene, level_view());
   EXPECT_EQ(why.reason, SightReason::nearer_than_near);
   EXPECT_EQ(why.remedy.value, 0.2);
@@ -210,7 +210,7 @@ TEST(Explain, CountsTrianglesOfMixtures) {
 }
 
 TEST(Explain, CountsWhatIsWhollyInViewByItsAreas) {
-  // Triangles within the picture, of which many have no area, and one a corner that is no number.
+  // Triangles within the picture; many have no area, and one has a vertex that is not finite.
   test::Random random(11);
   const auto corner = [&] { return random.point(1) - glm::vec3(0, 0, 8); };
   Mesh mesh;
@@ -249,7 +249,7 @@ TEST(Explain, WhatIsTurnedAwayIsSeenWithoutCulling) {
   View view = level_view();
   view.culling = Culling::back;
   EXPECT_EQ(explanation_of(scene, view).reason, SightReason::seen);
-  // Mirrored, its front is still its front.
+  // The front of a mirrored object is still its front.
   Scene mirrored = scene;
   mirrored.instances[0].world_from_mesh[0].x = -1;
   EXPECT_EQ(explanation_of(mirrored, view).reason, SightReason::seen);
@@ -285,7 +285,7 @@ TEST(Explain, NothingButHolesIsTransparent) {
   expect_seen_after_remedy(scene, level_view(), why);
   scene.materials[0].base_color.a = 0.6f;
   EXPECT_EQ(explanation_of(scene, level_view()).reason, SightReason::seen);
-  // Too small for a sample: whether it has holes does not matter.
+  // The object is too small for a sample, so its holes do not matter.
   scene.materials[0].base_color.a = 0.4f;
   scene.instances[0].world_from_mesh = panel_at({0.1, 0.05, -99}, 1).instances[0].world_from_mesh;
   scene.instances[0].world_from_mesh[0].x = scene.instances[0].world_from_mesh[1].y = 0.01;
@@ -293,7 +293,7 @@ TEST(Explain, NothingButHolesIsTransparent) {
 }
 
 TEST(Explain, BetweenTheSamplesItsAreaIsTold) {
-  // A unit is ten pixels: half a pixel wide, from a quarter of a pixel past a sample on.
+  // A unit is ten pixels: the panel is half a pixel wide, from a quarter of a pixel past a sample.
   const Scene scene = panel_at({0.1, 0.1, -10}, 0.025f);
   const Explanation why = explanation_of(scene, parallel_view());
   EXPECT_EQ(why.reason, SightReason::no_sample);
@@ -302,7 +302,7 @@ TEST(Explain, BetweenTheSamplesItsAreaIsTold) {
             "panel is between the samples: its 0.25 square pixels cover none: draw 2 times as "
             "many pixels each way.");
   expect_seen_after_remedy(scene, parallel_view(), why);
-  // What would be seen of a box is no more than its silhouette.
+  // A box's visible area is at most its silhouette.
   Scene box;
   test::add_quad(box.meshes.emplace_back(), {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
   box.meshes[0] = test::tessellated_box({0.025f, 0.025f, 0.025f}, 3, 0);
@@ -310,7 +310,7 @@ TEST(Explain, BetweenTheSamplesItsAreaIsTold) {
   EXPECT_NEAR(explanation_of(box, parallel_view()).pixels, 0.25, 1e-6);
 }
 
-// No triangle of a fine mesh holds a circle that is sure to have a sample; all of them together soon have one.
+// No triangle of a fine mesh contains a circle that surely holds a sample; together they soon do.
 TEST(Explain, AFineMeshIsEnlargedUntilItCoversASample) {
   std::size_t told = 0;
   for (std::uint64_t seed = 0; seed < test::seeds(40); ++seed) {
@@ -376,7 +376,7 @@ TEST(Explain, ACopyBehindItsFirstIsHidden) {
   expect_seen_after_remedy(scene, level_view(), why);
 }
 
-/// Follows remedies until nothing more is to be done.
+/// Follows remedies until none is left.
 SightReason reason_in_the_end(const Scene& scene, View view, const Explanation& first) {
   const Surfaces surfaces(scene);
   Explanation why = first;
@@ -432,7 +432,7 @@ bool is_within(const View& view, const glm::dvec3& p) {
   return c.w > 0 && std::abs(c.x) <= c.w && std::abs(c.y) <= c.w && std::abs(c.z) <= c.w;
 }
 
-// The plain reference: points of a triangle are looked at one by one.
+// The plain reference tests points of a triangle one by one.
 TEST(Explain, PlacesOfTrianglesEqualThoseOfTheirPoints) {
   std::size_t in_view = 0, elsewhere = 0;
   for (std::uint64_t seed = 0; seed < test::seeds(400); ++seed) {
@@ -456,7 +456,7 @@ TEST(Explain, PlacesOfTrianglesEqualThoseOfTheirPoints) {
         is_any_within = is_any_within || is_within(view, point);
       }
     SCOPED_TRACE(seed);
-    // Steps may miss a sliver, but not what covers samples.
+    // Steps may miss a sliver, but nothing that covers samples.
     if (is_any_within || why.reason == SightReason::seen) {
       EXPECT_EQ(why.triangles.in_view, 1u);
     }

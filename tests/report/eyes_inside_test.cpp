@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eyes inside: triangles then cross the near plane, reach behind the eye, and run from one's feet to the horizon.
+// Eyes inside the scene: triangles cross the near plane, reach behind the eye, and run from one's feet to the horizon.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -17,13 +17,14 @@
 namespace frontmost::test {
 namespace {
 
-/// Thousands where the variable FRONTMOST_EYES says so.
+/// Number of eyes; the variable FRONTMOST_EYES can raise it to thousands.
 std::uint64_t eyes(std::uint64_t count) {
   const char* const wanted = std::getenv("FRONTMOST_EYES");
   return wanted ? std::strtoull(wanted, nullptr, 10) : seeds(count);
 }
 
-/// From anywhere within the box, anywhere to, 90 or 120 degrees; between planes as the command line fits them.
+/// A view from a random point of the box in a random direction, 90 or 120 degrees wide. Its planes are fitted as by the
+/// command line.
 View eye_within(const Box& box, Random& random, std::uint64_t number) {
   const glm::dvec3 low(box.low), size = glm::dvec3(box.high) - low;
   const double x = random.unit(), y = random.unit(), z = random.unit();
@@ -96,7 +97,7 @@ TEST_P(EyesInModel, EveryMethodSeesTheSame) {
   EXPECT_GT(unexplained(surfaces, eyes(least), 2).covered, 1000u);
 }
 
-/// The mesh, and behind it all of its triangles again, corners turned or reversed.
+/// The mesh, and behind it all of its triangles again, with vertices rotated or reversed.
 Mesh given_again(Mesh mesh, Random& random) {
   constexpr std::array<glm::ivec3, 5> kOrders{{{1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
   const std::size_t count = mesh.triangles.size();
@@ -134,7 +135,7 @@ TEST_P(FacesGivenTwice, ShowTheFirst) {
   EXPECT_GT(covered, 0u);
 }
 
-// The documentation's own eye: 179 samples had wrong depths, the A-buffer's as well.
+// The eye of the documentation, in the street, where depths are hard to get right, for the A-buffer too.
 TEST(EyesInside, TheStreetOfTheCity) {
   const Scene scene = builtin("city");
   const Surfaces surfaces(scene);

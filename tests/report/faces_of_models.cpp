@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // usage: faces_of_models [NAME]
-// Holds the visible areas of models against 64 samples a pixel, and looks for the smallest faces by zooming in on them.
-// Models are those of FRONTMOST_MODELS whose names hold NAME, the built-in ones and random ones. Each is looked at from
-// the outside, from within and from one of its own vertices. The exit status is 0 where nothing is wrong.
+// Compares visible areas of models with 64 samples a pixel, and zooms in on the smallest faces. The models are those of
+// FRONTMOST_MODELS whose names contain NAME, the built-in ones and random ones. Each is seen from outside, from within
+// and from one of its vertices. The exit status is 0 if nothing is wrong.
 //
-// What samples count of a face is wrong by its rim: where a side runs along a row of samples, by up to half a row. Four
-// grids a quarter of a step apart tell how much the counts themselves vary.
+// Sample counts of a face are wrong along its rim, by up to half a row where an edge runs along a row of samples. Four
+// grids a quarter of a step apart show how much the counts themselves vary.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,7 +28,7 @@ constexpr int kAlong = 8;  // 64 samples a pixel
 constexpr int kGrids = 4;
 constexpr std::uint64_t kLargestFile = 60'000'000;
 
-/// The part of a view's picture from `low` to `high`, in pixels, in so many samples.
+/// The part of a view's picture from `low` to `high`, in pixels, with width x height samples.
 View part_of(const View& view, const glm::dvec2& low, const glm::dvec2& high, int width, int height) {
   View part = view;
   const Projection& q = view.projection;
@@ -42,7 +42,7 @@ View part_of(const View& view, const glm::dvec2& low, const glm::dvec2& high, in
   return part;
 }
 
-/// By primitive, how many samples show it, on each of the grids.
+/// For each primitive, the number of samples that show it, on each of the grids.
 std::vector<std::array<int, kGrids>> counts_of(const Surfaces& surfaces, const View& view) {
   std::vector<std::array<int, kGrids>> counts(surfaces.primitive_count(), std::array<int, kGrids>{});
   for (int grid = 0; grid < kGrids; ++grid) {
@@ -55,7 +55,7 @@ std::vector<std::array<int, kGrids>> counts_of(const Surfaces& surfaces, const V
   return counts;
 }
 
-/// The box of a triangle on the screen, within the picture; none where it reaches behind the near plane.
+/// Bounds of a triangle on the screen, within the picture; none if it reaches behind the near plane.
 std::optional<std::pair<glm::dvec2, glm::dvec2>> screen_box(const Surfaces& surfaces, const View& view,
                                                             PrimitiveId id) {
   glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
@@ -102,8 +102,7 @@ void compare_areas(const Surfaces& surfaces, const View& view, const std::vector
     ++tally.wrong_faces;
     std::printf("  face %u: area %.6f, counted %.6f of 64 a pixel\n", id, pixels[id], counted);
   }
-  // Counts of two grids differ from each other by more than either does from the truth, but where few sides run along
-  // their rows.
+  // Counts of two grids differ from each other more than from the truth, unless many edges run along their rows.
   const double most_noise = *std::max_element(noise.begin(), noise.end());
   const bool is_wrong = difference > 1.5 * most_noise + 4;
   tally.wrong_views += is_wrong;
@@ -113,10 +112,10 @@ void compare_areas(const Surfaces& surfaces, const View& view, const std::vector
                 most_noise);
 }
 
-/// The smallest faces must be there in a picture that they fill.
+/// The smallest faces must appear in a picture that they fill.
 void zoom_in(const Surfaces& surfaces, const View& view, std::vector<VisibleFace> faces, Tally& tally) {
   constexpr std::size_t most_faces = 10;
-  // Not square: slivers along a diagonal would run along one of samples.
+  // Not square, as slivers along a diagonal would then follow a diagonal of samples.
   constexpr int width = 512, height = 389;
   const std::size_t count = std::min(faces.size(), most_faces);
   std::partial_sort(faces.begin(), faces.begin() + std::ptrdiff_t(count), faces.end(),
@@ -125,7 +124,7 @@ void zoom_in(const Surfaces& surfaces, const View& view, std::vector<VisibleFace
     const auto box = screen_box(surfaces, view, faces[i].id);
     const glm::dvec2 size = box ? box->second - box->first : glm::dvec2(0);
     const double expected = faces[i].pixels / (size.x * size.y) * width * height;
-    // What is as thin as a sample, or as the steps that corners are snapped to, may fall between them.
+    // Faces as thin as a sample, or as the steps that vertices are snapped to, may fall between samples.
     if (!(std::min(size.x, size.y) > 1e-6) || !(expected > 400)) {
       ++tally.too_thin;
       continue;
@@ -196,8 +195,8 @@ int main(int count, char** arguments) {
   }
   for (const Kind kind : all_kinds) {
     const std::string name = "random kind " + std::to_string(int(kind));
-    // Where all triangles lie in one plane, or nearly, an exact answer takes microseconds a sample: those kinds are
-    // held against every triangle less all others, in visible_faces_test.cpp.
+    // If triangles are all or nearly coplanar, an exact answer takes microseconds a sample. visible_faces_test.cpp
+    // compares those kinds with every triangle less all others.
     if (kind == Kind::coplanar || kind == Kind::sheets || name.find(wanted) == std::string::npos) continue;
     ++models;
     look_at_model(name, scene_of(random_mesh(kind, 400, 1)), tally);

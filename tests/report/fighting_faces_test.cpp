@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Areas at risk against what depth buffers show, and against all pairs looked at one by one.
+// Areas at risk against pictures of depth buffers, and against all pairs examined one by one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ Visible drawn(const Surfaces& surfaces, const View& view, const BufferKind& kind
   return buffer.visible(view);
 }
 
-/// Areas by the pair of faces, or by one face.
+/// Looks up areas by pair of faces, or by one face.
 class AreaLookup {
  public:
   explicit AreaLookup(const FightAreas& fights) : fights_(fights) {
@@ -78,7 +78,7 @@ class AreaLookup {
 class FightsOfEveryKind : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(FightingFaces, FightsOfEveryKind, testing::ValuesIn(all_kinds));
 
-// What the picture of a depth buffer gets wrong, or right by the order of ids alone, was said before.
+// Areas at risk contain every sample that a depth buffer gets wrong, or right only by the order of ids.
 TEST_P(FightsOfEveryKind, HoldEverySampleThatIsWrongOrTied) {
   std::uint64_t wrong = 0, tied = 0;
   for (std::uint64_t seed = 0; seed < seeds(4); ++seed) {
@@ -116,7 +116,7 @@ TEST_P(FightsOfEveryKind, HoldEverySampleThatIsWrongOrTied) {
   }
 }
 
-// The grid and the exact tests for overlap leave out nothing that all pairs of faces would show.
+// The grid and the exact overlap tests miss no pair of faces.
 TEST_P(FightsOfEveryKind, AreThoseOfAllPairs) {
   for (std::uint64_t seed = 0; seed < seeds(6); ++seed) {
     Random random(seed + 170);
@@ -142,7 +142,7 @@ TEST_P(FightsOfEveryKind, AreThoseOfAllPairs) {
   }
 }
 
-/// A square of side 2 before the eye, in the plane z = -distance, its middle moved.
+/// A square of side 2 before the eye, in the plane z = -distance, with its middle at (x, y).
 void add_square(Scene& scene, float distance, float x, float y) {
   Mesh mesh;
   for (const glm::vec2& c : {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(1, 1), glm::vec2(-1, 1)})
@@ -152,7 +152,7 @@ void add_square(Scene& scene, float distance, float x, float y) {
   scene.meshes.push_back(std::move(mesh));
 }
 
-/// A pixel is 1/32 of a unit wide.
+/// A view whose pixels are 1/32 of a unit wide.
 View flat_view() {
   View view;
   view.width = view.height = 128;
@@ -180,7 +180,7 @@ TEST(FightingFaces, ShareWhatIsBeforeBoth) {
 TEST(FightingFaces, OfThreeInOnePlaceAreCountedOnce) {
   Scene scene;
   for (int i = 0; i < 3; ++i) add_square(scene, 10, 0, 0);
-  // All three are one object.
+  // All three squares form one object.
   Scene joined = scene;
   for (int i = 1; i < 3; ++i) {
     const auto first = std::uint32_t(joined.meshes[0].positions.size());
@@ -288,7 +288,7 @@ TEST(FightingFaces, EndWithTheRemediesThatAreGiven) {
 }
 
 TEST(FightingFaces, ThatLieBehindComeForwardByAnOffset) {
-  // The second square lies behind the first, by half a step of the format.
+  // The second square lies half a step of the format behind the first.
   Scene scene;
   add_square(scene, 20, 0, 0);
   const View view = flat_view();
@@ -345,7 +345,7 @@ TEST(FightingFaces, OfThousandsInOnePlaceAreRefused) {
 
 TEST(TooMuch, PairsBehindAShieldAsLargeAsTheyAre) {
   Mesh mesh = turned_triangles(400);
-  for (int i = 0; i < 400; ++i) {  // a disc before them, which hides all but the corners of their rectangles
+  for (int i = 0; i < 400; ++i) {  // a disc in front, which hides all but the corners of their rectangles
     const auto rim = [&](int k) {
       const double turn = 6.283185307179586 * k / 400;
       return glm::vec3(1.01 * std::cos(turn), 1.01 * std::sin(turn), 0.5);

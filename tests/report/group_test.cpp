@@ -12,7 +12,7 @@
 namespace frontmost {
 namespace {
 
-// An order-free summary of all groups, so that two runs can be compared.
+// An order-free summary of all groups, to compare two runs.
 struct Summary {
   std::uint64_t groups = 0, items = 0, hash = 0;
   Summary& operator+=(const Summary& other) {

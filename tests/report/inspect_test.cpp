@@ -26,7 +26,7 @@ MeshReport inspect_mesh(const Mesh& mesh, int threads = 0) {
   return inspect(scene_of(mesh), {.threads = threads}).meshes[0];
 }
 
-// Every corner its own vertex, as STL stores it.
+// A copy where every corner has its own vertex, as STL stores it.
 Mesh soup(const Mesh& mesh) {
   Mesh result;
   for (const glm::uvec3& t : mesh.triangles) {
@@ -140,7 +140,7 @@ TEST(Inspect, NonFiniteTrianglesAreCountedAndLeftOut) {
 TEST(Inspect, CountsPiecesOverCornersAndShellsOverEdges) {
   Mesh mesh;
   append(mesh, bare(box({0, 0, 0}, {1, 1, 1})));
-  append(mesh, bare(box({1, 1, 1}, {2, 2, 2})));  // touches the first in a corner
+  append(mesh, bare(box({1, 1, 1}, {2, 2, 2})));  // touches the first in a vertex
   append(mesh, tetrahedron(), {5, 5, 5});
   for (const Mesh& m : {mesh, soup(mesh)}) {
     const MeshReport report = inspect_mesh(m);
@@ -154,7 +154,7 @@ TEST(Inspect, CountsPiecesOverCornersAndShellsOverEdges) {
 
 TEST(Inspect, MeasuresAreaAndVolumeInTheWorld) {
   Scene scene;
-  Mesh hollow = bare(box({10, 10, 10}, {13, 13, 13}));  // with a hollow of 1, inside out
+  Mesh hollow = bare(box({10, 10, 10}, {13, 13, 13}));  // with a cavity of 1, inside out
   Mesh inner = bare(box({11, 11, 11}, {12, 12, 12}));
   for (glm::uvec3& triangle : inner.triangles) std::swap(triangle.y, triangle.z);
   append(hollow, inner);
@@ -194,7 +194,7 @@ TEST(Inspect, TheTeapotIsFourPiecesWithSixRims) {
   EXPECT_EQ(report.bounds.high.y, 3.15f);
 }
 
-// The same questions answered with maps and sets, over small random soups where everything odd happens at once.
+// Reference answers by maps and sets, over small random soups with all defects at once.
 MeshReport plain_report(const Mesh& mesh) {
   using Point = std::array<float, 3>;
   MeshReport report;
@@ -276,7 +276,7 @@ TEST(Inspect, DoesNotDependOnThreadsOrOnTheOrderOfTriangles) {
 TEST(Inspect, SumsOverInstancesAndMeshes) {
   Scene scene = builtin("cubes");
   scene.instances.push_back({"third", 1, moved({100, 0, 0})});
-  scene.meshes.push_back({});  // stored, but placed nowhere
+  scene.meshes.push_back({});  // stored, but without an instance
   scene.meshes.back().name = "loose";
   scene.meshes.back().positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   scene.meshes.back().triangles = {{0, 1, 2}};
@@ -301,7 +301,7 @@ TEST(Inspect, CountsMaterialsPerTriangle) {
   Scene scene = scene_of(tetrahedron());
   scene.materials.resize(3);
   scene.meshes[0].material_ids = {2, no_index, 2, 0};
-  for (const std::size_t materials : {3, 50}) {  // counted, and sorted where there are more materials than triangles
+  for (const std::size_t materials : {3, 50}) {  // counted, and sorted if there are more materials than triangles
     scene.materials.resize(materials);
     const SceneReport report = inspect(scene);
     const auto& uses = report.meshes[0].materials;

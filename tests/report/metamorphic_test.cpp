@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Changes of scene and view that must not change what is seen, or must change it in a known way: for every method.
+// Changes of scene and view that must not change the visible surfaces, or in a known way: for every method.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,7 +49,7 @@ struct Example {
   View view;
 };
 
-/// Places, eye and planes in steps of 1/1024; some of the kinds, sizes, culling, parallel and perspective in turns.
+/// A random example: vertices, eye and planes in steps of 1/1024; kinds, sizes, culling and projections take turns.
 Example example(std::uint64_t seed) {
   constexpr Kind kinds[] = {Kind::soup, Kind::shared_grid, Kind::coplanar, Kind::sheets, Kind::fan, Kind::through_eye};
   Random random(seed + 900);
@@ -79,7 +79,7 @@ void expect_unchanged(const Change& change) {
 }
 
 TEST(Metamorphic, ScalingByPowersOfTwoChangesNothing) {
-  // Lengths scale exactly, angles and keys (near / distance) not at all.
+  // Lengths scale exactly; angles and keys (near / distance) do not change.
   expect_unchanged([](Example e, std::uint64_t seed) {
     const double by = std::ldexp(1.0, seed % 2 ? 11 : -9);
     for (glm::vec3& p : e.scene.meshes[0].positions) p *= float(by);
@@ -106,7 +106,7 @@ TEST(Metamorphic, OneMeshInPartsIsTheSameTriangles) {
     const Mesh whole = e.scene.meshes[0];
     e.scene.meshes.clear();
     e.scene.instances.clear();
-    // Parts of one to fifty triangles; vertices stay in the first, so every part has all of them.
+    // Parts of one to fifty triangles; vertices stay in the first part, so every part has all of them.
     Random random(seed);
     for (std::size_t first = 0; first < whole.triangles.size();) {
       const std::size_t end = std::min(first + 1 + std::size_t(random.below(50)), whole.triangles.size());
@@ -151,7 +151,7 @@ TEST(Metamorphic, WhatHasNoAreaOrNoPlaceIsNotThere) {
 // -- known changes
 // ------------------------------------------------------------------------------------------------------
 
-/// `turned` seen in pixels that are not turned: `from(x, y)` says where in it each pixel is.
+/// The picture `turned`, rearranged to the untransformed one: `from(x, y)` gives each pixel's place in it.
 template <class From>
 Visible turned_back(const Visible& turned, const View& view, const From& from) {
   Visible back = nothing_visible(view);
@@ -164,8 +164,8 @@ Visible turned_back(const Visible& turned, const View& view, const From& from) {
   return back;
 }
 
-/// Samples on an edge belong to one side of it by a rule that turns over with the picture, and keys round in another
-/// order: exact arithmetic has to find a reason for each difference, and there may be few.
+/// Samples on an edge belong to one side of it by a rule that turns with the picture, and keys round in another order.
+/// Exact arithmetic must find a reason for each difference, and differences must be few.
 void expect_explained(const Scene& scene, const Visible& straight, const Visible& back, std::uint64_t& differing,
                       std::uint64_t& all) {
   const Agreement found = check_agreement(Surfaces(scene), straight, back);
@@ -184,7 +184,7 @@ TEST(Metamorphic, AMirroredWorldIsAMirroredPicture) {
     p.left = -p.right;
     Example mirrored = e;
     for (glm::vec3& position : mirrored.scene.meshes[0].positions) position.x = -position.x;
-    // Front faces are back faces in a mirror.
+    // A mirror exchanges front and back faces.
     if (e.view.culling == Culling::back) mirrored.view.culling = Culling::front;
     if (e.view.culling == Culling::front) mirrored.view.culling = Culling::back;
     for (const Method& method : methods) {
@@ -199,8 +199,7 @@ TEST(Metamorphic, AMirroredWorldIsAMirroredPicture) {
   EXPECT_LT(differing * 100, all) << differing << " of " << all;
 }
 
-/// Every triangle twice, one after the other: a double-sided one with its front on both sides, of others the second
-/// time without an area.
+/// Every triangle twice: the second copy of a double-sided one is reversed, that of any other has no area.
 Scene with_backs(Scene scene) {
   for (Mesh& mesh : scene.meshes) {
     std::vector<glm::uvec3> both;
@@ -217,7 +216,7 @@ Scene with_backs(Scene scene) {
   return scene;
 }
 
-/// Two meshes, one of them twice and the second time mirrored.
+/// Two meshes; the first has a second, mirrored instance.
 Example example_with_sides(std::uint64_t seed) {
   Example made = example(seed);
   made.scene.meshes.push_back(random_mesh(Kind::soup, 30, seed + 50));
@@ -264,7 +263,7 @@ TEST(Metamorphic, CullingByMaterialIsTheSameForAllInstructionSets) {
   }
 }
 
-// What exact methods find of the same triangles.
+// Exact methods also find equal answers for the two scenes.
 TEST(Metamorphic, FacesAndAccountsCullByMaterialAsThePictureDoes) {
   for (std::uint64_t seed = 0; seed < seeds(16); ++seed) {
     SCOPED_TRACE(seed);
@@ -295,7 +294,7 @@ TEST(Metamorphic, FacesAndAccountsCullByMaterialAsThePictureDoes) {
 }
 
 TEST(Metamorphic, ACopyThatIsSeenFromBothSidesIsNoCopyOfAOneSidedTriangle) {
-  // Thousands of the same two triangles, seen from behind: the second has a material with two sides.
+  // Thousands of copies of two triangles, seen from behind; the second one's material is double-sided.
   Mesh mesh;
   for (int i = 0; i < 5000; ++i)
     for (int k = 0; k < 2; ++k) add_triangle(mesh, {-9, -9, 0}, {0, 9, 0}, {9, -9, 0.1f});
@@ -319,7 +318,7 @@ TEST(Metamorphic, ARolledCameraIsATurnedPicture) {
     e.view.height = e.view.width;
     if (e.view.projection.orthographic) e.view.projection = make_orthographic(-1.25, 1.25, -1.25, 1.25, {0.5, 6});
     if (!e.view.projection.orthographic) e.view.projection = make_projection(0.9, 1, e.view.projection.clip);
-    // A quarter to the left: what was right of the camera is above it.
+    // The camera rolls a quarter to the left: its right becomes its up.
     View rolled = e.view;
     rolled.world_from_eye[0] = e.view.world_from_eye[1];
     rolled.world_from_eye[1] = -e.view.world_from_eye[0];
@@ -328,7 +327,7 @@ TEST(Metamorphic, ARolledCameraIsATurnedPicture) {
       const Visible straight = method.see(e.scene, e.view);
       const Visible seen = method.see(e.scene, rolled);
       const int last = e.view.width - 1;
-      // Right in the picture was up: x grows as y falls.
+      // Right in the new picture is up in the old one: x grows as y falls.
       const Visible back = turned_back(seen, e.view, [&](int x, int y) { return glm::ivec2(last - y, x); });
       expect_explained(e.scene, straight, back, differing, all);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models whose state was measured by others.
+// Models whose defects others have measured.
 #include "support/models.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ struct Known {
   const char* file;
   std::uint64_t triangles, pieces;
   Oddities odd;
-  int genus;  // -1: none
+  int genus;  // -1: unknown
 };
 
 class KnownModel : public testing::TestWithParam<Known> {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth precision against closed forms, and against the values that the formats really hold.
+// Depth precision against closed forms, and against the values that the formats hold.
 #include "frontmost/precision.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ double depth_at(const DepthSetup& setup, double distance) {
 }
 
 std::uint32_t stored_at(const DepthSetup& setup, double distance) {
-  // 1 - u above cancels far away, where reversed floats are finest.
+  // 1 - u cancels far away, where reversed floats are finest.
   const auto& [n, f] = setup.clip;
   const double depth =
       setup.reversed && !setup.orthographic ? (n / distance - n / f) / (1 - n / f) : depth_at(setup, distance);
@@ -38,7 +38,7 @@ TEST(ResolvableGap, WorkedExample) {
   EXPECT_NEAR(resolvable_gap(setup, 1), 0.0038975, 1e-6);
 }
 
-// Known to every OpenGL programmer: d^2 / (near 2^n) where far is much farther than near.
+// Known to OpenGL programmers: d^2 / (near 2^n) if far is much farther than near.
 TEST(ResolvableGap, FollowsTheSquareOfTheDistance) {
   for (const bool reversed : {false, true})
     for (const double distance : {0.5, 1.0, 20.0, 900.0}) {
@@ -50,7 +50,7 @@ TEST(ResolvableGap, FollowsTheSquareOfTheDistance) {
   EXPECT_NEAR(resolvable_gap({{0.1, 1000}, DepthFormat::d24}, 1000), 0.5963, 1e-3);
 }
 
-// (2^n - 1) f / (f - n) * n gap / (d (d + gap)) is the difference of stored values that a gap makes: exactly one.
+// A gap changes the stored value by (2^n - 1) f / (f - n) * n gap / (d (d + gap)), which must be exactly one.
 TEST(ResolvableGap, IsOneStepOfTheInteger) {
   for (const DepthFormat format : integers)
     for (const double distance : {0.3, 1.0, 7.0, 60.0}) {
@@ -94,7 +94,7 @@ TEST(ResolvableGap, ParallelDepthIsEven) {
   EXPECT_NEAR(resolvable_gap({{-5, 5}, DepthFormat::d16, false, true}, 0), 10 / 65535.0, 1e-12);
 }
 
-// The promise itself: so much farther away is another stored value, wherever one looks.
+// The promise: a surface farther by the gap has another stored value, at any distance.
 TEST(ResolvableGap, SurfacesAGapApartNeverShareAValue) {
   Random random(3);
   std::size_t tried = 0;
@@ -104,7 +104,7 @@ TEST(ResolvableGap, SurfacesAGapApartNeverShareAValue) {
     const DepthSetup setup{{near, far}, DepthFormat(random.below(4)), random.below(2) == 1};
     const double distance = near * std::exp(double(random.unit()) * std::log(std::min(far / near, 1e5)));
     if (!(distance > near && distance < far)) continue;
-    // Not so fine that the test's own doubles round it away.
+    // The gap must not vanish in the test's own doubles.
     const double gap = std::max(resolvable_gap(setup, distance) * (1 + 1e-9), distance * 1e-12);
     if (!(distance + gap < far)) continue;
     ++tried;
@@ -115,7 +115,7 @@ TEST(ResolvableGap, SurfacesAGapApartNeverShareAValue) {
   EXPECT_GT(tried, 100'000u);
 }
 
-// All values of a format, one after the other: no two neighbours are farther apart than the gap says.
+// Over all values of a format in turn: neighbours are never farther apart than the gap.
 TEST(ResolvableGap, CoversEveryPairOfNeighbouringValues) {
   for (const DepthFormat format : {DepthFormat::d8, DepthFormat::d16})
     for (const bool reversed : {false, true}) {
@@ -133,19 +133,19 @@ TEST(ResolvableGap, CoversEveryPairOfNeighbouringValues) {
     }
 }
 
-// Neighbouring floats, likewise.
+// Neighbouring floats are never farther apart than the gap either.
 TEST(ResolvableGap, CoversNeighbouringFloats) {
   for (const bool reversed : {false, true}) {
     const DepthSetup setup{{0.5, kInfinity}, DepthFormat::f32, reversed};
     Random random(9);
     for (int i = 0; i < 20'000; ++i) {
-      // Below a half the keys, 1 - depth, are coarser than the depths.
+      // Below a half, the keys 1 - depth are coarser than the depths.
       const float depth = random.within(reversed ? 1e-4f : 0.5f, 0.9999f);
       const float next = std::nextafter(depth, reversed ? 0.0f : 2.0f);
       const auto distance = [&](float z) { return 0.5 / (reversed ? double(z) : 1 - double(z)); };
       const double between = distance(next) - distance(depth);
       const double gap = resolvable_gap(setup, distance(depth));
-      // Just above a power of two the spacing halves, or doubles, at the next float.
+      // Just above a power of two, the spacing to the next float halves or doubles.
       ASSERT_GE(gap, between * (1 - 1e-6) - 1e-15);
       ASSERT_LE(gap, between * 2 * (1 + 1e-3) + 1e-15);
     }
@@ -159,7 +159,7 @@ TEST(NearForGap, MeetsTheGapAndNoLessDoes) {
         const DepthSetup setup{{1e-3, far}, format};
         const std::optional<double> near = near_for_gap(setup, distance, gap);
         if (!near) {
-          // Not even a near plane at the surface itself would do.
+          // Even a near plane at the surface itself would not suffice.
           EXPECT_GT(resolvable_gap({{distance, far}, format}, distance), gap);
           continue;
         }

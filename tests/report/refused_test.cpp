@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What reports refuse, word for word, and the picture of fights, colour for colour.
+// Error messages of reports, word for word, and the picture of fights, colour for colour.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -48,7 +48,7 @@ TEST(FightImage, ColoursSayHowFar) {
   const Image image = fight_image(fights_of({0, 1e-9f, 1e-6f, 1e-1f, 5, infinity, 3e-4f, 0}), backdrop);
   ASSERT_EQ(image.channels.size(), 4u);
   for (const float alpha : image.find("A")->floats()) EXPECT_EQ(alpha, 1.0f);
-  // Where nothing fights, the backdrop in dim grey: 0.02 + 0.12 times its luminance.
+  // Where nothing fights, the picture shows the backdrop in dim grey: 0.02 + 0.12 times its luminance.
   EXPECT_NEAR(pixel(image, 0).x, 0.08f, 1e-6);
   EXPECT_EQ(pixel(image, 0).x, pixel(image, 0).z);
   EXPECT_EQ(pixel(image, 0), pixel(image, 7));
@@ -109,7 +109,7 @@ TEST(RefusedReports, DistancesAndGaps) {
   EXPECT_EQ(words([] { (void)near_for_gap({{1, 10}}, 5, 1e-9); }), "none") << "none may do, which is no error";
 }
 
-// Distances of a table: the ends, and 1, 2 and 5 times powers of ten between them, in order and never too many.
+// Distances of a table: the ends and, between them, 1, 2 and 5 times powers of ten, ascending and never too many.
 TEST(RoundDistances, OfAnyPlanes) {
   for (const ClipDistances& clip : {ClipDistances{0.1, 1000},
                                     {1e-30, 1e30},

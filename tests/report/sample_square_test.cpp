@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The square about a sample against rational arithmetic, which cuts and intersects by other means.
+// The square around a sample against rational arithmetic, which cuts and intersects in another way.
 #include "report/sample_square.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 using Polygon = std::vector<RationalVector>;
 
-/// What of a polygon lies where normal.(p - point) >= 0.
+/// The part of a polygon where normal.(p - point) >= 0.
 Polygon cut(const Polygon& polygon, const RationalVector& point, const RationalVector& normal) {
   Polygon result;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -35,7 +35,7 @@ Polygon polygon_of(const std::array<glm::vec3, 3>& corners) {
   return result;
 }
 
-/// What of the triangle lies in the pyramid, or prism, of the square beyond the near plane.
+/// The part of the triangle beyond the near plane, within the pyramid or prism of the square.
 Polygon within(const std::array<glm::vec3, 3>& corners, const SampleSquare& square, const SampleRays& rays) {
   const RationalVector near{rays.eye() + rays.near() * rays.forward()}, forward{rays.forward()};
   Polygon polygon = cut(polygon_of(corners), near, forward);
@@ -51,7 +51,7 @@ Polygon within(const std::array<glm::vec3, 3>& corners, const SampleSquare& squa
   return polygon;
 }
 
-/// The distance at which a ray meets a triangle, strictly inside its edges; negative: it does not.
+/// Distance at which a ray hits a triangle strictly inside its edges; negative if it misses.
 Rational hit(const std::array<glm::vec3, 3>& corners, const SampleRay& ray) {
   const RationalVector a{glm::dvec3(corners[0])}, v{ray.direction};
   const RationalVector p = RationalVector(glm::dvec3(corners[1])) - a, q = RationalVector(glm::dvec3(corners[2])) - a;
@@ -65,7 +65,7 @@ Rational hit(const std::array<glm::vec3, 3>& corners, const SampleRay& ray) {
 
 constexpr double kNear = 0.01, kFar = 1e9;
 
-/// True for triangles that the near and far planes leave alone.
+/// True for triangles between the near and far planes.
 bool is_between_planes(const std::array<glm::vec3, 3>& corners, const SampleRays& rays) {
   return std::all_of(corners.begin(), corners.end(), [&](const glm::vec3& corner) {
     const double depth = glm::dot(rays.forward(), glm::dvec3(corner) - rays.eye());
@@ -73,7 +73,8 @@ bool is_between_planes(const std::array<glm::vec3, 3>& corners, const SampleRays
   });
 }
 
-/// A random place on a triangle, within a few 1/256 pixel; anywhere for one behind the eye or beside the picture.
+/// The square around a random point of a triangle, within a few 1/256 pixel; anywhere if the triangle is behind the eye
+/// or beside the picture.
 SampleSquare square_on(const std::array<glm::vec3, 3>& corners, const View& view, const SampleRays& rays,
                        Random& random) {
   const float to_third = random.unit(), to_second = random.unit();
@@ -126,7 +127,7 @@ TEST_P(SquareOfEveryKind, MeetsAndContainsAsRationalArithmeticSays) {
       }
     }
   }
-  // One seed need not have all of them, nor what reaches behind the eye.
+  // One seed need not have all cases, nor triangles that reach behind the eye.
   if (under_sanitizer || GetParam() == Kind::huge || GetParam() == Kind::through_eye) return;
   EXPECT_GT(missed, 0u);
   EXPECT_GT(contained, GetParam() == Kind::slivers ? 0u : seeds(6));
@@ -170,8 +171,8 @@ std::array<glm::vec3, 3> sheet(float distance) {
   return {glm::vec3(-4, -4, -distance), glm::vec3(4, -4, -distance), glm::vec3(0, 4, -distance)};
 }
 
-// Two sheets that face the eye have keys near / distance. They are told apart when these part by more than what
-// roundings of keys and of the corners' depths amount to; here, to the last bit of the farther sheet's place.
+// Two sheets that face the eye have keys near / distance. They are told apart if their keys differ by more than the
+// rounding errors of keys and of the vertices' depths; here, to the last bit of the farther sheet's place.
 TEST(SampleSquare, TellsSheetsApartFromTheExactResolutionOn) {
   for (const bool orthographic : {false, true}) {
     View view;
@@ -186,7 +187,7 @@ TEST(SampleSquare, TellsSheetsApartFromTheExactResolutionOn) {
       ASSERT_FALSE(is_surely_nearer(back, front, square));
       if (is_surely_nearer(front, back, square)) first_apart = steps;
     }
-    // The corners are 6 from the eye, 3 times their depth. Perspective: 20 + 6 * 3 roundings of 2^-24, so that the gap
+    // The vertices are 6 from the eye, 3 times their depth. Perspective: 20 + 6 * 3 roundings of 2^-24, so the gap
     // exceeds 2 * 38 * 2^-24, 19 steps of 2^-22. Parallel: 20 roundings of the 4 between the planes, 20 steps, and 6 of
     // the distance of 6, 9 steps.
     EXPECT_EQ(first_apart, orthographic ? 30 : 20);

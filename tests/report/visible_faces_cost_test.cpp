@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Visible faces of meshes that are made to take long: the right areas after few steps, or an error after some.
+// Visible faces of meshes made to take long: the right areas after few steps, or an error after some.
 #include <gtest/gtest.h>
 
 #include "frontmost/report.h"
@@ -10,7 +10,7 @@
 namespace frontmost::test {
 namespace {
 
-/// 64 x 64 pixels, 16 for a unit.
+/// A view of 64 x 64 pixels, 16 pixels a unit.
 View parallel_view(const glm::dvec3& from) {
   View view;
   view.width = view.height = 64;
@@ -19,8 +19,8 @@ View parallel_view(const glm::dvec3& from) {
   return view;
 }
 
-/// The areas in pixels by id, found with at most so many questions whether to stop: one in 65,536 steps, and one in
-/// eight cells.
+/// Areas in pixels by id. The search may ask at most `most_questions` times whether to stop: once in 65,536 steps, and
+/// once in eight cells.
 std::vector<double> areas_of(const Mesh& mesh, const View& view, std::size_t most_questions) {
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
@@ -41,7 +41,7 @@ TEST(CostOfVisibleFaces, TurnedTrianglesInOnePlane) {
   const int count = 625;
   const std::vector<double> areas = areas_of(turned_triangles(count), parallel_view({0, 0, 10}), 2500);
   EXPECT_NEAR(areas[0], 256 * 0.75 * std::sqrt(3.0), 1e-4) << "the lowest id is seen whole";
-  // The union is a star of 3 * count tips, of angles of 60 degrees; two neighbours meet between their tips.
+  // The union is a star of 3 * count tips with angles of 60 degrees; neighbouring tips meet in a valley.
   const double half = glm::radians(60.0) / count, valley = 0.5 / std::sin(glm::radians(150.0) - half);
   EXPECT_NEAR(sum_of(areas), 256 * 3 * count * valley * std::sin(half), 1e-4);
 }
@@ -61,7 +61,7 @@ TEST(CostOfVisibleFaces, SheetsCloseBehindEachOther) {
   const double gap = 1e-7, thickness = gap * (count - 1);
   const View view = parallel_view({2, 3, 4});
   const std::vector<double> areas = areas_of(parallel_sheets(count, gap), view, 1500);
-  // A prism, but for steps at its rim of less than a millionth of a pixel.
+  // A prism, except for steps at its rim of less than a millionth of a pixel.
   const auto on_screen = [&](const glm::dvec3& v) {
     return 16.0 * glm::dvec2(glm::dot(v, view.right()), glm::dot(v, view.up()));
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles are seen, and how much of them: against every triangle less all that lie before it, and against what
-// can be worked out on paper.
+// Visible triangles and their visible areas: against every triangle less all in front of it, and against areas computed
+// by hand.
 #include <gmock/gmock.h>
 
 #include <glm/gtc/constants.hpp>
@@ -20,7 +20,7 @@ double sum_of_pixels(const VisibleFaces& seen) {
   return sum;
 }
 
-/// What of each face the answer and the reference say, side by side; 0 where one has none.
+/// Visible areas of each face by the answer and by the reference; 0 for a face that one of them lacks.
 struct BothAreas {
   double pixels[2]{}, units[2]{}, solid_angle[2]{};
 };
@@ -42,10 +42,10 @@ std::map<PrimitiveId, BothAreas> both_areas(const VisibleFaces& seen, const Face
   return both;
 }
 
-/// Small scenes of every kind, so that every triangle can be held against all others.
+/// Small scenes of every kind, so that every triangle can be compared with all others.
 RandomCase small_case(Kind kind, std::uint64_t seed) {
   Random random(seed + 7000);
-  const int most = seed % 20 == 0 ? 150 : 40;  // some have enough for cells that are divided
+  const int most = seed % 20 == 0 ? 150 : 40;  // some have enough for divided cells
   RandomCase made{scene_of(random_mesh(kind, 5 + random.below(most), seed)), {}};
   const int width = 1 + random.below(150), height = 1 + random.below(150);
   made.view = random_view(random, width, height);
@@ -65,8 +65,8 @@ TEST_P(VisibleFacesOfKind, AreWhatIsLeftOfEveryTriangle) {
     const double picture = double(made.view.pixel_count());
     for (const auto& [id, areas] : both_areas(seen, oracle)) {
       EXPECT_NEAR(areas.pixels[0], areas.pixels[1], 1e-9 * picture) << id;
-      if (std::max(areas.pixels[0], areas.pixels[1]) < 1e-9 * picture) continue;  // of a corner a million units away
-      // Where sheets cross at an angle of 2^-24, doubles know the line to 2^-29 of its length.
+      if (std::max(areas.pixels[0], areas.pixels[1]) < 1e-9 * picture) continue;  // has a vertex a million units away
+      // Where sheets cross at an angle of 2^-24, doubles locate the line to 2^-29 of its length.
       const double crossing = GetParam() == Kind::sheets ? std::ldexp(1.0, std::max(0, int(seed % 25) - 16)) : 1;
       EXPECT_NEAR(areas.units[0], areas.units[1], 1e-9 * (areas.units[1] + 1) * crossing) << id;
       EXPECT_NEAR(areas.solid_angle[0], areas.solid_angle[1], 1e-9) << id;
@@ -77,7 +77,7 @@ TEST_P(VisibleFacesOfKind, AreWhatIsLeftOfEveryTriangle) {
 
 INSTANTIATE_TEST_SUITE_P(All, VisibleFacesOfKind, testing::ValuesIn(all_kinds));
 
-/// 64 x 64 pixels, 16 for a unit, from above: z is towards the eye.
+/// A view of 64 x 64 pixels, 16 pixels a unit, from above: z points to the eye.
 View view_from_above() {
   View view;
   view.width = view.height = 64;
@@ -91,11 +91,11 @@ MATCHER_P2(IsFace, id, pixels, "") { return arg.id == PrimitiveId(id) && std::ab
 TEST(VisibleFaces, WhatAnotherCoversIsTakenOff) {
   Mesh mesh;
   add_triangle(mesh, {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0});        // 2 square units, 512 square pixels
-  add_triangle(mesh, {-1.5f, 0, 1}, {1.5f, 0, 1}, {1.5f, 3, 1});  // reaches over the picture: 256 * 2.25 / 2
+  add_triangle(mesh, {-1.5f, 0, 1}, {1.5f, 0, 1}, {1.5f, 3, 1});  // extends beyond the picture: 256 * 2.25 / 2
   add_triangle(mesh, {-0.5f, -0.75f, -1}, {0, -0.75f, -1}, {-0.5f, -0.25f, -1});  // below
   const Scene scene = scene_of(mesh);
   const VisibleFaces seen = visible_faces(Surfaces(scene), view_from_above());
-  // Of the first, the part above y = 0 and below y = x + 1.5 is hidden: half a unit less a corner of 1/16.
+  // The part of the first triangle above y = 0 and below y = x + 1.5 is hidden: half a unit less a corner of 1/16.
   const double hidden = 256 * (0.5 - 0.0625);
   const double second = 256 * (4.5 - 0.5);  // less the corner above y = 2
   EXPECT_THAT(seen.faces, testing::ElementsAre(IsFace(0, 512 - hidden), IsFace(1, second)));
@@ -120,7 +120,7 @@ TEST(VisibleFaces, TheSmallestTriangleIsFound) {
 }
 
 TEST(VisibleFaces, OfOnePlaneTheLowerIdIsSeen) {
-  // Two squares in a plane that no axis is along, each cut along another diagonal, and a copy of the first triangle.
+  // Two squares in a plane oblique to all axes, each cut along another diagonal, and a copy of the first triangle.
   const glm::vec3 a(-1, -1, -0.5f), b(1, -1, 0.25f), c(1, 1, 0.5f), d(-1, 1, -0.25f);
   Mesh mesh;
   add_triangle(mesh, a, b, c);
@@ -129,7 +129,7 @@ TEST(VisibleFaces, OfOnePlaneTheLowerIdIsSeen) {
   add_triangle(mesh, a, c, d);
   add_triangle(mesh, d, a, b);
   const Scene scene = scene_of(mesh);
-  // a + c = b + d: they are in one plane exactly. The second one keeps what the first leaves, and so on.
+  // a + c = b + d, so all are exactly coplanar. The second triangle keeps what the first leaves, and so on.
   EXPECT_THAT(visible_faces(Surfaces(scene), view_from_above()).faces,
               testing::ElementsAre(IsFace(0, 512), IsFace(1, 256), IsFace(3, 256)));
 }
@@ -156,7 +156,7 @@ TEST(VisibleFaces, CullingLeavesOutWhatTurnsAwayAlsoWhereInstancesMirror) {
   View view = view_from_above();
   view.culling = Culling::back;
   EXPECT_NEAR(sum_of_pixels(visible_faces(Surfaces(scene), view)), 1024, 1e-9);
-  scene.instances[0].world_from_mesh[0][0] = -1;  // its front stays where it was: outside stays outside
+  scene.instances[0].world_from_mesh[0][0] = -1;  // its front stays where it was, and its outside stays outside
   EXPECT_NEAR(sum_of_pixels(visible_faces(Surfaces(scene), view)), 1024, 1e-9);
   view.culling = Culling::front;
   EXPECT_THAT(visible_faces(Surfaces(scene), view).faces, testing::IsEmpty());
@@ -168,12 +168,12 @@ TEST(VisibleFaces, CullingLeavesOutWhatTurnsAwayAlsoWhereInstancesMirror) {
 TEST(VisibleFaces, OfManyBeforeAWallFillThePicture) {
   for (std::uint64_t seed = 0; seed < seeds(12); ++seed) {
     SCOPED_TRACE(seed);
-    // Meshes through each other, in cells that are divided once and again; no place of the wall is lost or twice.
+    // Intersecting meshes in cells that are divided repeatedly; no part of the wall is lost or counted twice.
     Scene scene = scene_of(bumpy_ball(20 + 10 * int(seed % 3), seed % 5 == 0 ? 0.0f : 0.3f, seed));
     scene.meshes.push_back(random_mesh(seed % 2 == 0 ? Kind::tiny : Kind::slivers, 300, seed));
     Mesh wall;
     add_square(wall, 4, -3);
-    add_quad(wall, {-9, -8, -3}, {8, -9, 3}, {9, 8, 2}, {-8, 9, -2});  // all over the picture, through the balls
+    add_quad(wall, {-9, -8, -3}, {8, -9, 3}, {9, 8, 2}, {-8, 9, -2});  // across the picture, through the balls
     scene.meshes.push_back(wall);
     scene.instances.push_back({"again", 0, glm::dmat4(0.9)});
     scene.instances[1].world_from_mesh[3] = {0.3, 0.2, 0.1, 1};
@@ -212,7 +212,7 @@ TEST(FacesEverSeen, AreThoseOfAllViewsWithTheirLargestShare) {
   add_square(mesh, 1, 0);
   add_quad(mesh, {0, -1, 1}, {1, -1, 1}, {1, 1, 1}, {0, 1, 1});                           // over its right half
   add_triangle(mesh, {-0.5f, -0.5f, -1}, {0.5f, -0.5f, -1}, {-0.5f, 0.5f, -1});           // below
-  add_triangle(mesh, {-0.1f, -0.1f, -0.5f}, {0.1f, -0.1f, -0.5f}, {-0.1f, 0.1f, -0.5f});  // between: seen by nobody
+  add_triangle(mesh, {-0.1f, -0.1f, -0.5f}, {0.1f, -0.1f, -0.5f}, {-0.1f, 0.1f, -0.5f});  // between: never seen
   add_quad(mesh, {-1, -1, -0.75f}, {1, -1, -0.75f}, {1, 1, -0.75f}, {-1, 1, -0.75f});
   const Scene scene = scene_of(mesh);
   const View above = view_from_above();
@@ -225,7 +225,8 @@ TEST(FacesEverSeen, AreThoseOfAllViewsWithTheirLargestShare) {
   EXPECT_THAT(ids, testing::ElementsAre(0, 1, 2, 3, 4, 6, 7));
   EXPECT_EQ(seen[0].view_count, 2u);
   EXPECT_EQ(seen[0].best_view, 0u);
-  EXPECT_NEAR(seen[0].largest_share + seen[1].largest_share, 1, 1e-12);  // a quarter of one and three of the other
+  EXPECT_NEAR(seen[0].largest_share + seen[1].largest_share, 1, 1e-12);  // a quarter of one and three quarters of the
+                                                                         // other
   EXPECT_EQ(seen[4].view_count, 1u);
   EXPECT_EQ(seen[4].best_view, 1u);
   EXPECT_NEAR(seen[4].largest_share, 1, 1e-12);
@@ -278,7 +279,7 @@ TEST(VisibleFaces, OfNothingThereAreNone) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   add_triangle(mesh, {nan, 0, 0}, {1, 0, 0}, {0, 1, 0});
   add_triangle(mesh, {0, 0, 0}, {1, 0, 0}, {0.5f, 0, 0});   // without area
-  add_triangle(mesh, {0, 0, 0}, {1, 0, 0}, {0.5f, 0, -1});  // seen from its edge
+  add_triangle(mesh, {0, 0, 0}, {1, 0, 0}, {0.5f, 0, -1});  // seen edge-on
   add_triangle(mesh, {0, 0, 30}, {1, 0, 30}, {0, 1, 30});   // behind the eye
   const Scene odd = scene_of(mesh);
   EXPECT_THAT(visible_faces(Surfaces(odd), view_from_above()).faces, testing::IsEmpty());

@@ -12,7 +12,7 @@ namespace {
 
 using Triangle = std::array<glm::dvec3, 3>;
 
-// z of a triangle over (x, y), seen along z; none beside it.
+// z of a triangle at (x, y), seen along z; none beside the triangle.
 std::optional<double> height_at(const Triangle& t, const glm::dvec2& p) {
   const auto area = [](const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -23,7 +23,7 @@ std::optional<double> height_at(const Triangle& t, const glm::dvec2& p) {
   return a * t[0].z + b * t[1].z + c * t[2].z;
 }
 
-// How many points of a fine grid see a over b, and b over a.
+// Number of points of a fine grid where a is over b, and where b is over a.
 std::pair<int, int> who_is_over(const Triangle& a, const Triangle& b) {
   std::pair<int, int> over{0, 0};
   for (int i = -200; i <= 200; ++i)
@@ -72,7 +72,7 @@ TEST(Cubes, AreTwoClosedCubesOfEdgeTwoThatCutEachOther) {
     EXPECT_EQ(test::signed_volume(mesh), 6 * 8.0);
     EXPECT_NEAR(glm::determinant(instance.world_from_mesh), 1, 1e-15);
   }
-  // A corner of each lies inside the other.
+  // A vertex of each lies inside the other.
   for (int inner = 0; inner < 2; ++inner) {
     const glm::dmat4 between = glm::inverse(scene.instances[std::size_t(1 - inner)].world_from_mesh) *
                                scene.instances[std::size_t(inner)].world_from_mesh;

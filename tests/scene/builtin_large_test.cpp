@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The composed scenes: what they promise, and that nothing in them sticks in anything else by mistake.
+// The composed scenes: their promised properties, and no accidental intersections.
 #include <gtest/gtest.h>
 
 #include <set>

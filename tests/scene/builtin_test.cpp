@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every built-in scene must be: valid, named, finite, seen by its cameras, and the same bits everywhere.
+// Every built-in scene is valid, named, finite, seen by its cameras, and the same to the bit everywhere.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -86,8 +86,8 @@ std::uint64_t hash_all(std::uint64_t hash, const std::vector<T>& values) {
   return hash_bytes(hash, values.data(), values.size() * sizeof(T));
 }
 
-// FNV-1a of everything that decides a picture. A changed number here means that every stored picture of that scene is
-// out of date: state it in the commit.
+// FNV-1a of everything that decides a picture. If the number changes, every stored picture of that scene is out of
+// date: state the change in the commit.
 std::uint64_t content_of(const Scene& scene) {
   std::uint64_t hash = 0xCBF29CE484222325u;
   for (const Mesh& mesh : scene.meshes) {

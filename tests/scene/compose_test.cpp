@@ -19,7 +19,7 @@ TEST(Compose, CameraAtPutsTheTargetOnTheAxis) {
 }
 
 TEST(Compose, TurnedIsCounterClockwiseSeenFromAbove) {
-  // From above x points right and z down, so a quarter turn takes x to -z.
+  // Seen from above, x points right and z down, so a quarter turn takes x to -z.
   const glm::dvec4 x = turned(1, 4) * glm::dvec4(1, 0, 0, 1);
   EXPECT_EQ(x, glm::dvec4(0, 0, -1, 1));
   EXPECT_EQ(tilted(1, 4) * glm::dvec4(0, 1, 0, 1), glm::dvec4(0, 0, 1, 1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the zero of a scene lies: near zero where it was, far away among the points, and exact.
+// The origin of a scene: zero for scenes near zero, amid the points for far ones, and exact.
 #include "scene/origin.h"
 
 #include <gtest/gtest.h>
@@ -23,10 +23,10 @@ glm::dvec3 origin_of(std::initializer_list<glm::dvec3> points) {
 TEST(Origin, IsZeroForModelsThatLieNear) {
   EXPECT_EQ(origin_of({}), glm::dvec3(0));
   EXPECT_EQ(origin_of({{0, 0, 0}, {1, 1, 1}}), glm::dvec3(0));
-  EXPECT_EQ(origin_of({{100, 0, 0}, {101, 1, 1}}), glm::dvec3(0));       // 100 sizes away, but at 100 only
+  EXPECT_EQ(origin_of({{100, 0, 0}, {101, 1, 1}}), glm::dvec3(0));       // 100 sizes away, but only at 100
   EXPECT_EQ(origin_of({{4000, 0, 0}, {5000, 1, 1}}), glm::dvec3(0));     // four sizes away
   EXPECT_EQ(origin_of({{5.4e6, 0, 0}, {-5.4e6, 1, 1}}), glm::dvec3(0));  // around zero
-  EXPECT_EQ(origin_of({{2000, 0, 0}, {2001, 1000, 0}}), glm::dvec3(0));  // size is that of the longest axis
+  EXPECT_EQ(origin_of({{2000, 0, 0}, {2001, 1000, 0}}), glm::dvec3(0));  // the size is that of the longest axis
 }
 
 TEST(Origin, IsTheRoundestNumberNearModelsThatLieFar) {
@@ -58,7 +58,7 @@ TEST(Origin, IsTakenFromFloatsWithoutRounding) {
     const double origin = search.origin().x;
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     if (origin == 0) {
-      // Near, or so far that floats see one point.
+      // Distances are near, or so far that floats see one point.
       const double distance = std::min(std::abs(*low), std::abs(*high)), size = double(*high) - double(*low);
       ASSERT_FALSE(size > 0 && distance > 4 * size && (distance > 1024 || distance > 128 * size)) << away;
       continue;
@@ -97,7 +97,7 @@ TEST(Origin, OfASceneMovesInstancesCamerasAndLights) {
   EXPECT_EQ(glm::dvec3(scene.instances[0].world_from_mesh[3]), glm::dvec3(0, 3, 0));
   EXPECT_EQ(glm::dvec3(scene.cameras[0].world_from_eye[3]), glm::dvec3(0, 3, 5));
   EXPECT_EQ(glm::dvec3(scene.lights[0].world_from_light[3]), glm::dvec3(0, 10, 0));
-  EXPECT_EQ(fitting_origin(scene), glm::dvec3(1e8, 0, -1e8));  // it is told in the coordinates of the file
+  EXPECT_EQ(fitting_origin(scene), glm::dvec3(1e8, 0, -1e8));  // in the coordinates of the file
   set_origin(scene, {1, 2, 3});
   EXPECT_EQ(glm::dvec3(scene.instances[0].world_from_mesh[3]), glm::dvec3(1e8 - 1, 1, -1e8 - 3));
   EXPECT_EQ(fitting_origin(cube_at({3, 0, 0})), glm::dvec3(0));

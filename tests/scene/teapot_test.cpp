@@ -16,12 +16,12 @@ TEST(TeapotPatches, AreNewellsInNumberAndExtent) {
   glm::dvec3 low(9), high(-9);
   for (const BezierPatch& patch : patches)
     for (const glm::dvec3& p : patch.points) low = glm::min(low, p), high = glm::max(high, p);
-  // The hull of the published points, with height for y.
+  // The bounds of the published points, with height along y.
   EXPECT_EQ(low, glm::dvec3(-3, 0, -2));
   EXPECT_EQ(high, glm::dvec3(3.525, 3.15, 2));
 }
 
-// A few of the published points, by patch and place: corners of the rim, the body's belly, handle and spout.
+// A few of the published points, by patch and index: corners of the rim, the body's belly, handle and spout.
 TEST(TeapotPatches, HoldPublishedPoints) {
   const std::vector<BezierPatch> patches = teapot_patches();
   EXPECT_EQ(patches[0].points[0], glm::dvec3(1.4, 2.4, 0));
@@ -78,7 +78,7 @@ TEST_P(Teapot, IsFourPiecesWithSixRimsAndNoCracks) {
   const Mesh mesh = teapot(n);
   EXPECT_EQ(mesh.triangles.size(), std::size_t(32 * 2 * n * n - 2 * 4 * n));  // a pole costs a triangle a column
   EXPECT_TRUE(test::is_oriented_manifold(mesh));
-  // Open where the rim and the lid end (four quarters) and at both ends of handle and spout (two halves each).
+  // The mesh is open at the ends of rim and lid (four quarters) and at both ends of handle and spout (two halves each).
   EXPECT_EQ(test::boundary_count(mesh), 2 * 4 * n + 4 * 2 * n);
   // Body: disc, lid: disc, handle and spout: tubes.
   EXPECT_EQ(test::euler_characteristic(mesh), 1 + 1 + 0 + 0);

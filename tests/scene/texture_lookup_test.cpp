@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where texture coordinates lead: wrapping, neighbours and turning, with known answers and hostile numbers.
+// Lookup by texture coordinates: wrapping, neighbours and rotation, with known answers and hostile numbers.
 #include "scene/texture_lookup.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ TEST(TextureLookup, AbsurdCoordinatesAreTheCorner) {
   for (const Wrap wrap : all_wraps) EXPECT_GT(wrapped(999999.5f, wrap), 0.0f) << "large, but not absurd";
 }
 
-// Whatever the coordinate, what is looked up lies in the texture: nobody checks again.
+// Any coordinate leads to a texel inside the texture, as no later code checks again.
 TEST(TextureLookup, TexelsAreAlwaysThere) {
   Random random(1);
   for (int i = 0; i < 20'000; ++i) {
@@ -60,7 +60,7 @@ TEST(TextureLookup, TexelsAreAlwaysThere) {
 }
 
 TEST(TextureLookup, NeighboursOfTheEnds) {
-  // At the very start of four texels, the first half belongs to the texel before.
+  // At the very start of four texels, half of the weight belongs to the texel before.
   const TexelPair repeated = texel_pair(0.0f, 4, Wrap::repeat);
   EXPECT_EQ(repeated.first, 3);
   EXPECT_EQ(repeated.second, 0);
@@ -72,7 +72,7 @@ TEST(TextureLookup, NeighboursOfTheEnds) {
     EXPECT_EQ(end.first, 3);
     EXPECT_EQ(end.second, 3);
   }
-  // In the middle of a texel it alone counts.
+  // In the middle of a texel only that texel counts.
   for (const Wrap wrap : all_wraps) {
     const TexelPair middle = texel_pair(0.375f, 4, wrap);
     EXPECT_EQ(middle.first, 1);
@@ -92,7 +92,8 @@ TEST(TextureLookup, RepeatsAndMirrorsByPeriods) {
   }
 }
 
-// KHR_texture_transform: translation * rotation * scale, the rotation counter-clockwise in a space whose v goes down.
+// KHR_texture_transform: translation * rotation * scale, where the rotation is counter-clockwise in a space with v
+// down.
 TEST(TexcoordTransform, IsThatOfTheExtension) {
   EXPECT_EQ(TexcoordTransform(TextureUse{}).place({0.25f, 0.75f}), glm::vec2(0.25f, 0.75f));
   TextureUse use;
@@ -103,13 +104,13 @@ TEST(TexcoordTransform, IsThatOfTheExtension) {
   use.offset = {0, 0};
   use.scale = {1, 1};
   use.rotation = 1.57079632679f;
-  // Its matrix is (cos, sin; -sin, cos): u = 1 leads to (0, -1), v = 1 to (1, 0).
+  // The extension's matrix is (cos, sin; -sin, cos): u = 1 leads to (0, -1), v = 1 to (1, 0).
   const glm::vec2 across = TexcoordTransform(use).place({1, 0}), down = TexcoordTransform(use).place({0, 1});
   EXPECT_NEAR(across.x, 0, 1e-6);
   EXPECT_NEAR(across.y, -1, 1e-6);
   EXPECT_NEAR(down.x, 1, 1e-6);
   EXPECT_NEAR(down.y, 0, 1e-6);
-  // Scaled first, turned then.
+  // The scale acts first, the rotation second.
   use.scale = {3, 1};
   EXPECT_NEAR(TexcoordTransform(use).place({1, 0}).y, -3, 1e-6);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often each edge of a mesh is used, the slow and plain way.
+// Number of uses of each edge of a mesh, by brute force.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ inline int boundary_count(const Mesh& mesh) {
                            [](const auto& e) { return e.second.forward + e.second.backward == 1; }));
 }
 
-// Every edge at most once each way: a surface, and wound the same way all over.
+// True if every edge is used at most once in each direction: a surface with consistent winding.
 inline bool is_oriented_manifold(const Mesh& mesh) {
   const Edges edges = edges_of(mesh);
   return std::all_of(edges.begin(), edges.end(),
@@ -47,7 +47,7 @@ inline int euler_characteristic(const Mesh& mesh) {
   return int(used.size()) - int(edges_of(mesh).size()) + int(mesh.triangles.size());
 }
 
-// Six times the enclosed volume; positive when faces look outwards.
+// Six times the enclosed volume; positive if faces look outwards.
 inline double signed_volume(const Mesh& mesh) {
   double sum = 0;
   for (const glm::uvec3& t : mesh.triangles) {
@@ -57,7 +57,7 @@ inline double signed_volume(const Mesh& mesh) {
   return sum;
 }
 
-// The smallest cosine between a corner's normal and its triangle's own: below 0 a normal looks inwards.
+// The smallest cosine between a corner's normal and its triangle's own; below 0 a normal looks inwards.
 inline double worst_normal(const Mesh& mesh) {
   double worst = 1;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene may not be, and that the message names the place; what it may be although it is odd.
+// Invalid scenes are refused with a message that names the place; odd but valid scenes are accepted.
 #include "scene/validate.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace frontmost {
 namespace {
 
-/// Two triangles with everything that has numbers, all of them right.
+/// Two triangles with every field that holds numbers, all valid.
 Scene good_scene() {
   Scene scene;
   scene.name = "part.glb";
@@ -114,15 +114,15 @@ TEST(Validate, OddScenesAreFine) {
   scene.meshes[0].positions[2] = glm::vec3(std::numeric_limits<float>::quiet_NaN());
   scene.meshes[0].triangles[1] = {0, 0, 0};
   scene.meshes[0].material_ids = {no_index, 1};
-  scene.meshes[0].texcoords.values.resize(9);  // more than positions: the rest is never asked for
+  scene.meshes[0].texcoords.values.resize(9);  // more than positions: the rest is never used
   scene.textures[0] = {};
-  scene.meshes.emplace_back();  // without triangles, and placed
+  scene.meshes.emplace_back();  // without triangles, but with an instance
   scene.instances.push_back({"empty", 1, glm::dmat4(0)});
   EXPECT_EQ(complaint(scene), "none");
 }
 
 TEST(Validate, MoreTrianglesThanIdsAreALimit) {
-  // 2^16 - 1 instances of 2^16 + 1 triangles are 2^32 - 1: as many as there are ids, and one of those means "none".
+  // 2^16 - 1 instances of 2^16 + 1 triangles have 2^32 - 1 triangles, which would use up the id that means "none".
   Scene scene;
   scene.name = "crowd";
   scene.meshes.resize(1);

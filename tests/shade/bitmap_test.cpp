@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture in bytes is that in floats, converted.
+// The picture in bytes equals the converted picture in floats.
 #include <gtest/gtest.h>
 
 #include "frontmost/pictures.h"
@@ -25,7 +25,7 @@ TEST(ShadeBitmap, IsTheImageInBytes) {
   for (const char* name : {"gallery", "cubes"}) {
     const Scene scene = builtin(name);
     const Surfaces surfaces(scene);
-    View view = frame(surfaces, 131, 77);  // tiles that are not whole
+    View view = frame(surfaces, 131, 77);  // the picture has partial tiles
     view.samples = 4;
     const Visible visible = zbuffer(surfaces, view);
     for (const Shading shading : {Shading::lit, Shading::flat, Shading::depth, Shading::ids})
@@ -45,7 +45,7 @@ TEST(ShadeBitmap, OfPixelsIsThatOfPlanes) {
     const Scene scene = builtin(name);
     for (const int samples : {1, 2, 4, 16})
       for (const Shading shading : {Shading::lit, Shading::flat, Shading::normals, Shading::ids, Shading::uv}) {
-        const Surfaces surfaces(scene);  // anew, so that the z-buffer draws without clusters
+        const Surfaces surfaces(scene);  // a new object, so that the z-buffer draws without clusters
         View view = frame(surfaces, 131, 77);
         view.samples = samples;
         const Visible visible = zbuffer(surfaces, view);

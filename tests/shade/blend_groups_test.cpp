@@ -86,7 +86,7 @@ TEST(BlendGroups, PaintTheSame) {
                  height = double(1 + below(3));
       tiles.push_back(box(x, y, width, height, colors[below(5)]));
     }
-    // Consecutive ones of one colour are a shape.
+    // Consecutive polygons of one colour form a shape.
     ColoredOrder colored;
     colored.view = front_view();
     for (std::size_t i = 0; i < count; ++i) {

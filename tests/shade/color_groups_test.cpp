@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours by their cells: the same as one by one.
+// Colours grouped by cells give the same result as colours one by one.
 #include "figures/coloring/color_groups.h"
 
 #include <gtest/gtest.h>

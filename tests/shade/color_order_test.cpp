@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures of small scenes whose colours are known.
+// Figures of small scenes with known colours.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,10 +15,10 @@ namespace {
 
 using namespace test;
 
-/// 16 pixels to the unit.
+/// Area of the square, at 16 pixels a unit.
 constexpr double kSquare = 32 * 32;
 
-/// Hidden or not.
+/// All parts of an order, visible or hidden.
 VisibleParts all_parts(const PaintOrder& order) { return visible_parts(order, Occluders::none()); }
 FigureOptions merging() {
   FigureOptions options;
@@ -46,7 +46,7 @@ double polygon_area(const ColoredOrder& figure, const PaintPolygon& polygon) {
   }
   return twice / 2;
 }
-/// Square pixels by red.
+/// Areas in square pixels, by the red value.
 std::map<int, double> areas_by_red(const ColoredOrder& figure) {
   std::map<int, double> areas;
   for (const ColoredShape& shape : figure.shapes)
@@ -54,7 +54,7 @@ std::map<int, double> areas_by_red(const ColoredOrder& figure) {
   return areas;
 }
 
-/// Of the polygons that lie over a point.
+/// Ids of the polygons that cover a point.
 std::vector<PrimitiveId> ids_over(const ColoredOrder& figure, const glm::dvec2& at) {
   std::vector<PrimitiveId> ids;
   for (const PaintPolygon& polygon : figure.polygons) {
@@ -107,7 +107,7 @@ TEST(ColorOrder, CutsAlongTheBordersOfTexels) {
   const Scene scene = textured_square(texture_of(2, 2, {kDark, kBright, kBright, kDark}));
   const ColoredOrder figure = figure_of(scene, coloring(Shading::flat));
   const std::map<int, double> areas = areas_by_red(figure);
-  // Beside borders textures are smoothed over a pixel: what lies there may have a colour between.
+  // Textures are smoothed over a pixel beside borders, where a colour in between may occur.
   EXPECT_NEAR(areas.at(20), kSquare / 2, 8);
   EXPECT_NEAR(areas.at(230), kSquare / 2, 8);
   EXPECT_LE(figure.polygons.size(), 20u);
@@ -132,7 +132,7 @@ TEST(ColorOrder, PiecesFillTheirPolygonAndDifferByNoMoreThanTheTolerance) {
   EXPECT_EQ(figure_of(scene, coloring(Shading::flat, 255)).polygons.size(), 2u);
 }
 
-/// Whether a point is within a shape of one ring, by crossings.
+/// Whether a point is inside a shape of one ring, by edge crossings.
 bool holds(const Figure& figure, std::size_t shape, const glm::dvec2& at) {
   const FigureRing& ring = figure.rings[figure.shapes[shape].first_ring];
   bool is_within = false;
@@ -144,7 +144,7 @@ bool holds(const Figure& figure, std::size_t shape, const glm::dvec2& at) {
   return is_within;
 }
 
-/// Painted one over the other, pieces with traps look as those without: what is too much lies under later ones.
+/// Pieces with traps look like pieces without: the traps lie under pieces painted later.
 TEST(ColorOrder, TrapsOfPiecesAreHidden) {
   Mesh mesh = square();
   mesh.colors.values = {{0.3, 0.3, 0.3, 1}, {1, 1, 1, 1}, {1, 0.3, 0.3, 1}, {0.3, 0.3, 1, 1}};
@@ -156,7 +156,7 @@ TEST(ColorOrder, TrapsOfPiecesAreHidden) {
   int painted = 0, far = 0;
   for (std::size_t i = 0; i < figure.shapes.size(); ++i) with_traps += test::area_of(figure, i);
   EXPECT_GT(with_traps, kSquare * 1.3);
-  // Of slivers beside cuts, which are narrower than a pixel, colours are less near to the picture's.
+  // In slivers beside cuts, narrower than a pixel, colours deviate more from the picture's.
   const Surfaces surfaces(scene);
   const View view = front_view();
   const Image picture = shade(surfaces, zbuffer(surfaces, view), options.shade);
@@ -178,7 +178,7 @@ TEST(ColorOrder, TrapsOfPiecesAreHidden) {
   EXPECT_LE(far, 9);
 }
 
-/// Bands that are narrower than a trap: it goes on under the next ones.
+/// Bands narrower than a trap: the trap continues under the next ones.
 TEST(ColorOrder, TrapsReachUnderMoreThanOnePiece) {
   Mesh mesh = square();
   mesh.colors.values = {{0, 0, 0, 1}, {1, 1, 1, 1}, {1, 1, 1, 1}, {0, 0, 0, 1}};
@@ -264,7 +264,7 @@ TEST(ColorOrder, ShadowsAreDrawn) {
   }
 }
 
-/// Cut by the near plane it is a hundred million pixels wide: as many samples would never end.
+/// Cut by the near plane, the ground is a hundred million pixels wide: as many samples would never end.
 TEST(ColorOrder, LeavesOutWhatLiesBesideThePicture) {
   Mesh ground;
   ground.positions = {{-900, -1, -900}, {900, -1, -900}, {0, -1, 900}};

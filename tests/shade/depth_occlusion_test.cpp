@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ambient occlusion on the depth map: planes and corners that can be worked out on paper, and pictures with it.
+// Ambient occlusion on the depth map: planes and corners computed by hand, and pictures with it.
 #include "shade/occlusion/depth_occlusion.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 using shading::DepthOcclusion;
 using shading::FragmentBatch;
 
-/// The sides of an octant that meet in zero: x = 0, y = 0 and z = 0, each from there to `size`.
+/// The faces x = 0, y = 0 and z = 0 of an octant, each from 0 to `size`.
 Scene octant(int sides, float size) {
   Scene scene;
   for (int side = 0; side < sides; ++side) {
@@ -39,7 +39,8 @@ View looking_into(const glm::dvec3& at, const glm::dvec3& from, double width, bo
   return view.looking(from, at, {0, 1, 0});
 }
 
-/// What is left of the surroundings at points of a plane that are in the picture, beyond `radius` of nothing.
+/// The unoccluded share of the surroundings at points of a plane within the picture; surfaces beyond `radius` do not
+/// count.
 std::vector<float> free_sky(const Visible& visible, std::span<const glm::dvec3> points, const glm::dvec3& normal,
                             double radius, Isa isa = Isa::best) {
   const View& view = visible.view;
@@ -69,7 +70,7 @@ float free_sky_at(const Scene& scene, const View& view, const glm::dvec3& point,
   return free_sky(zbuffer(surfaces, view), {&point, 1}, {0, 0, 1}, radius)[0];
 }
 
-// The floor is z = 0. However it is looked at, nothing is above it.
+// The floor z = 0 is unoccluded from any viewpoint, as nothing is above it.
 TEST(DepthOcclusion, APlaneIsFree) {
   const Scene floor = octant(3, 10);
   Scene alone;
@@ -81,8 +82,8 @@ TEST(DepthOcclusion, APlaneIsFree) {
             << from.x << " " << radius;
 }
 
-/// By directions over the hemisphere: the part, weighted by the cosine, that a wall at this distance leaves when what
-/// it hides counts by 1 - t * t, with t in units of the radius.
+/// Cosine-weighted share of the hemisphere that a wall at this distance leaves free; hidden directions count 1 - t * t,
+/// with t in units of the radius.
 double left_by_wall(double distance) {
   constexpr int n = 1000;
   double hidden = 0;
@@ -96,10 +97,10 @@ double left_by_wall(double distance) {
 }
 
 // A wall x = 0 on the floor, seen from across. Near the edge it hides half of the sky. A rise that counts less is
-// lower, which is not the same as a part of a rise: so farther away the answer is near the integral, not equal to it.
+// treated as a lower one, so farther away the answer is only close to the integral.
 TEST(DepthOcclusion, AWallHidesHalfOfTheSkyAtItsFoot) {
   Scene corner = octant(3, 20);
-  corner.instances.erase(corner.instances.begin() + 1);  // without y = 0
+  corner.instances.erase(corner.instances.begin() + 1);  // removes y = 0
   for (const bool orthographic : {false, true}) {
     const View view = looking_into({0, 10, 0}, {5, 10, 5}, 4, orthographic);
     for (const double d : {0.015, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8})
@@ -115,8 +116,8 @@ TEST(DepthOcclusion, TwoWallsLeaveAQuarterInTheirCorner) {
   }
 }
 
-// Seen from inside, a room is free in the middle of its floor where the radius is less than to its walls, and dark in
-// its corners.
+// Inside a room, the middle of the floor is unoccluded if the radius is less than the distance to the walls; the
+// corners are dark.
 TEST(DepthOcclusion, ARoomIsDarkInItsCorners) {
   Scene room = octant(3, 4);
   const glm::dmat4 opposite = glm::rotate(glm::dmat4(1), 3.14159265358979, glm::dvec3(0, 0, 1));
@@ -149,7 +150,7 @@ TEST(DepthOcclusion, EveryInstructionSetGivesTheSameBits) {
   }
 }
 
-/// A picture's pixel, summed over its colours.
+/// The sum of a pixel's colour channels.
 float brightness(const Image& image, int x, int y) {
   const std::size_t i = std::size_t(y * image.width + x);
   return image.channels[0].floats()[i] + image.channels[1].floats()[i] + image.channels[2].floats()[i];
@@ -182,7 +183,7 @@ TEST(DepthOcclusion, DarkensAPictureWhereSomethingIsNear) {
   }
 }
 
-// Panes are looked through: the corner behind them is as dark as without them.
+// Panes are ignored: the corner behind them is as dark as without them.
 TEST(DepthOcclusion, IsThatOfWhatIsOpaque) {
   const Scene corner = octant(3, 20);
   Scene behind_glass = corner;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures made by one call: what is seen and nothing else, in the colours of the picture, whole.
+// Figures by one call: only the visible parts, in the picture's colours, and complete.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ TEST(DrawFigure, ShowsWhatIsSeenAlone) {
   const Visible visible = zbuffer(surfaces, view);
   const auto covered = std::count_if(visible.primitives.begin(), visible.primitives.end(),
                                      [](PrimitiveId id) { return id != no_primitive; });
-  // What traps take under neighbours comes on top of it: 4 pixels along each side.
+  // Traps under neighbours add 4 pixels along each edge.
   EXPECT_GE(painted_area(seen), 0.99 * double(covered));
   EXPECT_LT(painted_area(seen), 1.35 * double(covered));
   EXPECT_GT(painted_area(all), 1.5 * double(covered));

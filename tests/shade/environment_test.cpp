@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Environments: what is made of a picture of all directions, held against sums over all of them.
+// Environments: data derived from a picture of all directions, against sums over all directions.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ Image picture_of(int width, const std::function<glm::vec3(const glm::dvec3&)>& l
   return picture;
 }
 
-/// A dim surrounding with a bright lamp of some degrees, and a floor of another colour.
+/// A dim surrounding with a bright lamp some degrees wide, and a floor of another colour.
 glm::vec3 lamp(const glm::dvec3& d) {
   const double c = glm::dot(d, glm::normalize(glm::dvec3(0.6, 0.5, -0.7)));
   const glm::vec3 around = d.y < 0 ? glm::vec3(0.3f, 0.2f, 0.1f) : glm::vec3(0.2f, 0.3f, 0.5f);
@@ -46,7 +46,7 @@ std::vector<glm::dvec3> directions(int count) {
   return all;
 }
 
-/// What Environment::radiance() is said to be, by a sum over evenly spread directions.
+/// The definition of Environment::radiance(), by a sum over evenly spread directions.
 glm::dvec3 mirrored(const std::function<glm::vec3(const glm::dvec3&)>& light, const glm::dvec3& towards,
                     double roughness) {
   static const std::vector<glm::dvec3> all = directions(60'000);
@@ -81,7 +81,7 @@ TEST(Environment, DirectionsHaveAnyLengthAndRoughnessesAreLimited) {
     EXPECT_NEAR(studio.radiance(towards * length, 0.3f).x, light.x, 1e-5f) << length;
   for (const float roughness : {nan, -1.0f}) EXPECT_EQ(studio.radiance(towards, roughness), studio.radiance(towards));
   EXPECT_EQ(studio.radiance(towards, 1e30f), studio.radiance(towards, 1));
-  // No direction at all is against the rules, but reads nothing that is not there.
+  // A direction that is not finite violates the contract, but must not read out of bounds.
   (void)studio.radiance({nan, 0, 0}, 0.3f);
   (void)studio.radiance(glm::vec3(0), 0.3f);
 }
@@ -127,7 +127,7 @@ TEST(Environment, MattSurfacesSendBackTheSumOverTheCosine) {
   }
 }
 
-/// All light of a map, by solid angle.
+/// Total light of a map, weighted by solid angle.
 double whole_light(const shading::OctahedralMap& map) {
   double sum = 0;
   for (int y = 0; y < map.size(); ++y)
@@ -150,7 +150,7 @@ TEST(Environment, ASunOfOnePixelIsInEveryLevel) {
 }
 
 TEST(Environment, NothingIsLostAcrossTheFoldsOfTheOctahedron) {
-  // Neighbouring directions have neighbouring colours, in all levels, wherever the square is folded or cut.
+  // Neighbouring directions have similar colours, in all levels, wherever the square is folded or cut.
   const Environment environment(picture_of(256, [](const glm::dvec3& d) { return glm::vec3(d * 0.5 + 0.5); }));
   for (const glm::dvec3& d : directions(3000))
     for (const float roughness : {0.0f, 0.3f, 1.0f}) {
@@ -236,7 +236,7 @@ TEST(Environment, RefusesWhatIsNoEnvironment) {
   }
   Image empty;
   EXPECT_THROW(Environment{empty}, Error);
-  // The smallest and the brightest that are good.
+  // The dimmest and the brightest valid values.
   Image least{2, 1, {}};
   for (const char* name : {"R", "G", "B"}) least.channels.push_back({name, Buffer<float>(2, max_environment_value)});
   const Environment environment(std::move(least));

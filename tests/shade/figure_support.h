@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures made by hand, and the areas of what becomes of them.
+// Figures made by hand, and areas of the resulting shapes.
 #pragma once
 
 #include "figures/colored_order.h"
@@ -8,14 +8,14 @@
 
 namespace frontmost::test {
 
-/// The colours of the first picture of these surfaces.
+/// Colours of a figure of these surfaces.
 inline ColoredOrder color_order(const Surfaces& surfaces, const Visible& visible, const VisibleParts& parts,
                                 const FigureOptions& options = {}, const Execution& execution = {}) {
   shading::PreparedScene scene(surfaces);
   return frontmost::color_order(scene, {.visible = &visible}, parts, options, execution);
 }
 
-/// A polygon of a figure made by hand, counter-clockwise as it is seen.
+/// A polygon of a figure made by hand, counter-clockwise as seen.
 struct Tile {
   std::vector<glm::dvec2> corners;
   glm::u8vec4 color{0};
@@ -26,7 +26,7 @@ inline Tile box(double x, double y, double width, double height, const glm::u8ve
   return {{{x, y}, {x, y + height}, {x + width, y + height}, {x + width, y}}, color};
 }
 
-/// Each a shape by itself.
+/// An order of tiles, each a shape of its own.
 inline ColoredOrder order_of(const std::vector<Tile>& tiles) {
   ColoredOrder colored;
   colored.view = front_view();
@@ -37,7 +37,7 @@ inline ColoredOrder order_of(const std::vector<Tile>& tiles) {
   return colored;
 }
 
-/// Without traps: nothing hides.
+/// The figure without traps, as nothing hides.
 inline Figure bare(const ColoredOrder& colored) { return outlined(colored, 1, Occluders::none()); }
 inline double area_of(const Figure& figure, const FigureRing& ring) {
   double twice = 0;
@@ -48,7 +48,7 @@ inline double area_of(const Figure& figure, const FigureRing& ring) {
   }
   return twice / 2;
 }
-/// Holes turn the other way.
+/// Area of a shape; its holes turn the other way.
 inline double area_of(const Figure& figure, std::size_t shape) {
   double area = 0;
   for (std::uint32_t i = 0; i < figure.shapes[shape].ring_count; ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From ids to set-up triangles to fragments: attributes, instances, and which primitives are large.
+// From ids through triangle set-up to fragments: attributes, instances, and the choice of large primitives.
 #include "shade/geometry/geometry.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TriangleSetup set_up_one(const TriangleSource& source, PrimitiveId id, const glm
   return setups[0];
 }
 
-/// Everything that a TriangleSource borrows.
+/// Owns everything that a TriangleSource borrows.
 struct World {
   Scene scene;
   Surfaces surfaces;
@@ -103,7 +103,7 @@ TEST(LargePrimitives, CoverThreePixelsInARowOrAroundACorner) {
   EXPECT_FALSE(is_large({{3, 3}, {4, 3}}));
   EXPECT_FALSE(is_large({{3, 3}, {3, 4}}));
   EXPECT_FALSE(is_large({{3, 3}, {4, 4}, {5, 5}}));
-  EXPECT_FALSE(is_large({{7, 3}, {0, 4}, {1, 4}}));  // rows do not run on into the next
+  EXPECT_FALSE(is_large({{7, 3}, {0, 4}, {1, 4}}));  // rows do not continue into the next
   EXPECT_TRUE(is_large({{3, 3}, {4, 3}, {5, 3}}));
   EXPECT_TRUE(is_large({{0, 0}, {0, 1}, {0, 2}}));
   EXPECT_TRUE(is_large({{3, 3}, {2, 4}, {3, 4}}));
@@ -120,7 +120,7 @@ TEST(TriangleSource, MeshesWithoutNormalsAreSmoothOnlyWhereLarge) {
   const TriangleSetup large = world.set_up(0);
   EXPECT_TRUE(large.is_smooth);
   EXPECT_NEAR(large.normal[1].x, 0.0f, 0.02f);  // on the ridge: straight up
-  EXPECT_LT(large.normal[0].x, -0.2f);          // at the eaves: the facet's own
+  EXPECT_LT(large.normal[0].x, -0.2f);          // at the eaves: the face's own normal
   const TriangleSource flat(world.store, front_view(), nullptr);
   const TriangleSetup setup = set_up_one(flat, 0, {32, 32});
   EXPECT_FALSE(setup.is_smooth);
@@ -129,8 +129,8 @@ TEST(TriangleSource, MeshesWithoutNormalsAreSmoothOnlyWhereLarge) {
 
 TEST(TriangleSource, NormalsOfAMeshAreTurnedTogetherToTheViewer) {
   Mesh mesh = square();
-  mesh.normals.values.assign(4, glm::vec3(0.6f, 0, -0.8f));  // the winding says front, the normals back
-  mesh.normals.values[1] = {1, 0, 0.1f};                     // one leans the other way
+  mesh.normals.values.assign(4, glm::vec3(0.6f, 0, -0.8f));  // the winding faces the eye, the normals face away
+  mesh.normals.values[1] = {1, 0, 0.1f};                     // one leans to the eye
   const TriangleSetup setup = World(scene_of(mesh)).set_up(0);
   EXPECT_LT(glm::length(setup.normal[0] - glm::vec3(-0.6f, 0, 0.8f)), 1e-6f);
   EXPECT_LT(setup.normal[1].z, 0.0f);
@@ -217,7 +217,7 @@ TEST(InterpolateGeometry, AgreesWithTheFormulaOneByOne) {
       ASSERT_EQ(g.texcoord.dy.at(i), change.dy);
       ASSERT_EQ(glm::vec4(g.color.at(i), g.alpha[i]), interpolate(t.color, b.weight));
       ASSERT_EQ(g.plane_normal.at(i), t.plane_normal);
-      // Normals that spread apart mean a bulge: the lifted point is before the flat one.
+      // Diverging normals mean a bulge: the lifted point is in front of the flat one.
       ASSERT_GT(g.smooth_position.at(i).z, point.z);
     }
   }

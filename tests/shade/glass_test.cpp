@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures through glass: what is behind is tinted channel by channel, in true order, and what glass mirrors is added.
+// Pictures through glass: glass tints the surfaces behind by channel, in depth order, and adds its reflection.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-/// Mirrored seen from straight ahead, by an index of refraction of 1.5.
+/// Reflected share at normal incidence, for an index of refraction of 1.5.
 constexpr float kMirrored = 0.04f;
 
 Material unlit(const glm::vec3& color) {
@@ -30,7 +30,7 @@ Material glass(const glm::vec3& tint, float transmission = 1) {
   return material;
 }
 
-/// Squares of these materials one behind the other, the first in front.
+/// Squares of these materials one behind the other, the first one nearest.
 Scene panes(const std::vector<Material>& materials) {
   Scene scene;
   scene.name = "panes";
@@ -61,7 +61,7 @@ void expect_near(const glm::vec4& color, const glm::vec3& wanted, float toleranc
 TEST(Glass, TintsWhatIsBehindByItsBaseColour) {
   const glm::vec3 tint{0.9f, 0.5f, 0.1f}, behind{0.2f, 0.6f, 0.8f};
   expect_near(middle_of(panes({glass(tint), unlit(behind)}), flat), tint * behind, 1e-5f);
-  // Half of it stays below the surface, as of matt paint.
+  // Half of the light is scattered back as by matt paint.
   expect_near(middle_of(panes({glass(tint, 0.5f), unlit(behind)}), flat), 0.5f * tint * behind + 0.5f * tint, 1e-5f);
   // Metal lets nothing through.
   Material metal = glass(tint);
@@ -72,7 +72,7 @@ TEST(Glass, TintsWhatIsBehindByItsBaseColour) {
 TEST(Glass, TwoPanesTintTwiceInWhateverOrder) {
   const glm::vec3 first{0.9f, 0.5f, 0.25f}, second{0.5f, 1, 0.75f}, behind{0.8f};
   expect_near(middle_of(panes({glass(first), glass(second), unlit(behind)}), flat), first * second * behind, 1e-5f);
-  // What is between them is tinted by the first alone.
+  // A surface between two panes is tinted by the first pane only.
   Material half = colored({0, 1, 0, 0.5f});
   half.alpha = Material::Alpha::blend;
   half.unlit = true;
@@ -80,7 +80,7 @@ TEST(Glass, TwoPanesTintTwiceInWhateverOrder) {
   expect_near(middle_of(panes({glass(first), half, glass(second), unlit(behind)}), flat), between, 1e-5f);
 }
 
-// Whatever the light does on the glass, the difference of what is behind comes through it by what is not mirrored.
+// Whatever light falls on the glass, a change behind it shows through by the share that is not reflected.
 TEST(Glass, LitGlassLetsThroughWhatItDoesNotMirror) {
   const glm::vec3 tint{0.9f, 0.5f, 0.1f};
   const glm::vec4 dark = middle_of(panes({glass(tint), unlit(glm::vec3(0))}), lit);
@@ -96,7 +96,7 @@ TEST(Glass, HighlightsAreThoseOfABlackSurface) {
   const glm::vec4 of_black = middle_of(panes({black}), lit);
   EXPECT_GT(of_black.x, 0.005f);
   expect_near(middle_of(panes({clear, unlit(glm::vec3(0))}), lit), glm::vec3(of_black), 2e-5f);
-  // And are seen before nothing at all, where a transparent picture keeps them.
+  // Highlights are visible without anything behind, and a transparent picture keeps them.
   ShadeOptions over_nothing = lit;
   over_nothing.background = std::nullopt;
   const glm::vec4 alone = middle_of(panes({clear}), over_nothing);
@@ -104,7 +104,7 @@ TEST(Glass, HighlightsAreThoseOfABlackSurface) {
   EXPECT_NEAR(alone.a, kMirrored, 1e-5f);
 }
 
-// Before an environment of one colour everything looks as before a background of that colour.
+// An environment of one colour gives the same picture as a background of that colour.
 TEST(Glass, TintsAShownEnvironmentAsItTintsABackground) {
   const float grey = 0.5f, radiance = std::pow((grey + 0.055f) / 1.055f, 2.4f);
   Image picture{4, 2, {}};
@@ -151,7 +151,7 @@ TEST(Glass, AVolumeTakesLightByBeersLaw) {
   scene.instances[0].world_from_mesh = glm::dmat4(3);
   scene.instances[0].world_from_mesh[3] = {0, 0, 0, 1};
   expect_near(middle_of(scene, flat), left(1.5f), 1e-5f);
-  // The texture of the thickness is in green.
+  // The thickness texture uses the green channel.
   scene.textures.push_back(texture_of(1, 1, {{0, 51, 255, 0}}));
   scene.materials[0].volume.thickness_texture.texture = 0;
   expect_near(middle_of(scene, flat), left(0.3f), 1e-5f);
@@ -161,7 +161,7 @@ TEST(Glass, OutOfAVolumeLightComesAsItIs) {
   Material jade = glass({0.5f, 0.9f, 0.5f});
   jade.volume.thickness = 1;
   Scene scene = panes({jade, jade, unlit(glm::vec3(1))});
-  // The second pane is turned round: the way out.
+  // The second pane is reversed, so that it is the back of the volume.
   scene.instances[1].world_from_mesh[0][0] = -1;
   scene.meshes[1].triangles = {{0, 2, 1}, {0, 3, 2}};
   scene.instances[1].world_from_mesh[0][0] = 1;
@@ -169,7 +169,7 @@ TEST(Glass, OutOfAVolumeLightComesAsItIs) {
   const glm::vec4 with_back = middle_of(scene, lit);
   scene.instances.erase(scene.instances.begin() + 1);
   expect_near(with_back, glm::vec3(middle_of(scene, lit)), 1e-6f, "it mirrors nothing");
-  // Thin walls tint on either side.
+  // A thin wall tints on both sides.
   Scene thin = panes({glass({0.5f, 0.9f, 0.5f}), unlit(glm::vec3(1))});
   thin.meshes[0].triangles = {{0, 2, 1}, {0, 3, 2}};
   expect_near(middle_of(thin, flat), glm::vec3(0.5f, 0.9f, 0.5f), 1e-5f);
@@ -206,7 +206,7 @@ TEST(Glass, SamplesInstructionSetsAndThreadsAgree) {
     EXPECT_EQ(content_hash(shade(surfaces, visible, {}, {.threads = 3, .isa = isa})), hash) << name(isa);
 }
 
-// Numbers that nobody should write: pictures of them are pictures.
+// Invalid numbers still give a picture.
 TEST(Glass, HostileNumbersMakeAPicture) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), huge = 1e38f;
   for (const float odd : {nan, -huge, -1.0f, 0.0f, huge, std::numeric_limits<float>::infinity()}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shadows of a scene's own lights: where they fall, by maps and by rays, and that maps stay as long as they fit.
+// Shadows of a scene's own lights: their places by maps and by rays, and maps that are reused as long as they fit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ Light light_towards(Light::Kind kind, const glm::dvec3& place, const glm::dvec3&
   return light;
 }
 
-/// A floor of side 4, over whose middle a square of side 1 floats.
+/// A floor of side 4, with a square of side 1 floating over its middle.
 Scene floor_and_roof(const std::vector<Light>& lights) {
   Scene scene = scene_of(square(), colored({0.8f, 0.8f, 0.8f, 1}));
   scene.instances[0].world_from_mesh = glm::dmat4(2.0);
@@ -43,7 +43,7 @@ Image picture(const Scene& scene, const View& view, Shadows shadows, Lights ligh
   return shade(surfaces, zbuffer(surfaces, view), {.light = {.shadows = shadows, .lights = lights}});
 }
 
-/// How far outside of the roof the way from a point of the floor to the light passes; negative: through it.
+/// Distance by which the line from a floor point to the light misses the roof; negative if it passes through.
 double beside_roof(const Light& light, const glm::dvec2& point) {
   const glm::dvec3 at(point, 0);
   const glm::dvec3 way = light.kind == Light::Kind::sun ? glm::dvec3(light.world_from_light[2])
@@ -52,8 +52,8 @@ double beside_roof(const Light& light, const glm::dvec2& point) {
   return std::max(std::abs(hit.x), std::abs(hit.y)) - 0.5;
 }
 
-// A roof whose back the lights see throws a shadow where its material is double-sided; and always where culling does
-// not ask the material.
+// A roof whose back faces the lights throws a shadow if its material is double-sided, or if culling ignores the
+// material.
 TEST(LampShadows, PassThroughTheBacksOfOneSidedMaterialsWhereTheEyeDoes) {
   const Light sun = light_towards(Light::Kind::sun, {0, 0, 0}, {1, 0.5, -1.4}, 2);
   const Light spot = light_towards(Light::Kind::spot, {-1.5, 1, 2.5}, {0, 0, 0}, 12);
@@ -69,7 +69,7 @@ TEST(LampShadows, PassThroughTheBacksOfOneSidedMaterialsWhereTheEyeDoes) {
         scene.meshes[1].material_ids = {1};
         scene.materials.push_back(scene.materials[0]);
         View view = front_view(128);
-        // The mean of the floor, of which the roof hides the same part wherever it is drawn.
+        // Mean brightness of the floor; the roof hides the same part of the floor in all pictures.
         const auto brightness = [&](Culling culling, bool is_double_sided, Shadows kind) {
           scene.materials[1].double_sided = is_double_sided;
           view.culling = culling;
@@ -120,8 +120,8 @@ TEST(LampShadows, FallWhereTheRoofStandsBeforeTheLight) {
             continue;
           }
           const double outside = beside_roof(light, point);
-          if (std::abs(outside) < 0.07) continue;  // the soft edge, and the bias
-          if (lit.x - dark.x < 0.01f) continue;    // beyond the cone
+          if (std::abs(outside) < 0.07) continue;  // too close to the soft edge, or within the bias
+          if (lit.x - dark.x < 0.01f) continue;    // outside the cone
           ASSERT_EQ(is, outside > 0 ? lit : dark) << x << ", " << y << ", kind " << int(light.kind);
           (outside > 0 ? in_light : in_shadow) += 1;
         }
@@ -191,14 +191,14 @@ TEST(LampShadows, NothingIsSeenAndGlassThrowsNone) {
   }
 }
 
-// ---- Maps that stay ----
+// ---- Maps that are reused ----
 
 struct Flight {
   Scene scene = builtin("city");
   Surfaces surfaces;
 
   Flight() : surfaces(lit(scene)) {}
-  /// A step forward and a little turn for every picture.
+  /// A step forward and a small turn for every picture.
   [[nodiscard]] View view(int i) const {
     View view = frame(surfaces, 160, 120);
     view.world_from_eye = look_at(glm::dvec3(8 + 0.15 * i, 3, 25), {60 + 0.1 * i, 10, 5}, {0, 1, 0});

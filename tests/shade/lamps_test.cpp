@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What arrives of lamps, on fragments made by hand, and what pictures make of the lights of a scene: both against the
-// extension's formulas, one sample at a time, in doubles.
+// Light of lamps on fragments made by hand, and lights of a scene in pictures. The reference evaluates the extension's
+// formulas one sample at a time, in doubles.
 #include "shade/light/lamps.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ namespace {
 
 using namespace test;
 
-/// A light at a place that shines along a direction.
+/// A light at a place that points along a direction.
 Light light_at_place(Light::Kind kind, const glm::dvec3& place, const glm::dvec3& along, double intensity) {
   Light light;
   light.kind = kind;
@@ -31,7 +31,7 @@ Light light_at_place(Light::Kind kind, const glm::dvec3& place, const glm::dvec3
   return light;
 }
 
-/// Lux at a point that faces the light, by the extension; and the unit way to it.
+/// Illuminance in lux at a point facing the light, by the extension, and the unit direction to the light.
 struct Arriving {
   double lux;
   glm::dvec3 to_light;
@@ -52,8 +52,8 @@ Arriving arriving_at(const Light& light, const glm::dvec3& point) {
   return {lux, to / distance};
 }
 
-/// The radiance that glTF's metallic-roughness surface (appendix B, with Fresnel on the matt part and the roughness
-/// that is shown) sends towards v.
+/// The radiance towards v from glTF's metallic-roughness surface: appendix B, with Fresnel on the matt part and the
+/// roughness as rendered.
 glm::dvec3 sent_back(const Material& m, const glm::dvec3& n, const glm::dvec3& v, const Arriving& from) {
   const glm::dvec3 l = from.to_light, h = glm::normalize(l + v), base(m.base_color);
   const double n_l = std::max(glm::dot(n, l), 0.0), n_v = std::max(glm::dot(n, v), 1e-3), n_h = glm::dot(n, h);
@@ -71,7 +71,7 @@ glm::dvec3 sent_back(const Material& m, const glm::dvec3& n, const glm::dvec3& v
   return sum;
 }
 
-/// A sun, points with and without a range, and spots with and without a soft edge, each in a colour of its own.
+/// A sun, point lights with and without a range, and spots with and without a soft edge, each with its own colour.
 std::vector<Light> all_kinds() {
   std::vector<Light> lights = {light_at_place(Light::Kind::sun, {0, 0, 0}, {1, -0.5, -2}, 0.4),
                                light_at_place(Light::Kind::point, {-1.5, 1, 0.7}, {0, 0, -1}, 0.5),
@@ -150,7 +150,7 @@ TEST(Lamps, AWhiteMattSurfaceSendsBackLuxByPi) {
   white.roughness = 1;
   Material black = colored({0, 0, 0, 1});
   black.roughness = 1;
-  // Without the highlight, which black has as well; Fresnel leaves 0.96 of the matt part.
+  // The highlight, which a black surface shows too, is subtracted; Fresnel leaves 0.96 of the matt part.
   for (const Light& light : {light_at_place(Light::Kind::sun, {0, 0, 0}, {0, 0, -1}, 2),
                              light_at_place(Light::Kind::point, {0, 0, 3}, {0, 0, -1}, 18),
                              light_at_place(Light::Kind::spot, {0, 0, 3}, {0, 0, -1}, 18)}) {
@@ -178,7 +178,7 @@ TEST(Lamps, KeyFileBothAndNoneAreWhatTheirNamesSay) {
   for (int y = 0; y < view.height; ++y)
     for (int x = 0; x < view.width; ++x) {
       ASSERT_EQ(color_at(key, x, y), color_at(bare_key, x, y)) << "the file's lights count unasked";
-      // The key light's box is mirrored too, so what the file adds to it is compared.
+      // The key light's box is mirrored too, so the test compares the difference that the file's lights make.
       const glm::vec4 by_file = color_at(file, x, y) - color_at(none, x, y);
       const glm::vec4 added = color_at(both, x, y) - color_at(key, x, y);
       for (int k = 0; k < 3; ++k) ASSERT_TRUE(color_at(both, x, y)[k] >= 1 || std::abs(by_file[k] - added[k]) < 1e-5f);
@@ -186,7 +186,7 @@ TEST(Lamps, KeyFileBothAndNoneAreWhatTheirNamesSay) {
   EXPECT_NE(color_at(key, 24, 24), color_at(none, 24, 24));
 }
 
-/// Fragments strewn about the origin of the world, from the eye.
+/// Fragments at random points about the world's origin, with the direction from the eye.
 std::unique_ptr<FragmentBatch> strewn(int count, double spread, const glm::dvec3& eye, std::mt19937& random) {
   std::uniform_real_distribution<double> both(-spread, spread);
   auto batch = std::make_unique<FragmentBatch>();
@@ -212,7 +212,7 @@ TEST(Lamps, WhatArrivesIsTheExtensionsFormulaOnEveryInstructionSet) {
     for (int i = 0; i < batch->coverage.count; ++i) {
       const Arriving arriving = arriving_at(*near.source, glm::dvec3(batch->geometry.position.at(i)) + eye);
       const double part = arriving.lux / near.source->intensity;
-      // A cone without a soft edge is a thousandth of a cosine wide, which floats tell to a thousandth.
+      // A cone without a soft edge is a thousandth of a cosine wide, which floats resolve to a thousandth.
       ASSERT_NEAR(expected->part[i], part, (1e-5 + 1e-6 * double(near.lamp.cone_scale)) * (1 + part));
       ASSERT_LT(glm::distance(glm::dvec3(expected->to_lamp.at(i)), arriving.to_light), 1e-5);
       lit += part > 0;
@@ -277,7 +277,7 @@ TEST(Lamps, DarkOnesDoNotCountAndTooManyAreRefused) {
   lights.push_back(lights[0]);
   EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { counting.set(nullptr, lights, glm::dvec3(0)); }),
             "shade: 4097 lights are more than 4096");
-  // They are no error where only the key light counts.
+  // These lights are no error if only the key light counts.
   const Scene scene = lit_floor(lights, {});
   const Surfaces surfaces(scene);
   const Visible visible = zbuffer(surfaces, front_view());

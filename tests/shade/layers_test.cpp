@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layers: single ones, and all of them as a deep image, which laid over each other are the picture again.
+// Single layers, and all layers as a deep image, which composite to the picture again.
 #include "shade/layers/layers.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 using namespace test;
 
-/// Samples laid over each other, nearest first, as programs flatten deep images.
+/// Composites samples, nearest first, as programs flatten deep images.
 glm::dvec4 flattened(const DeepImage& image, std::size_t pixel) {
   const char* const names[] = {"R", "G", "B", "A"};
   glm::dvec4 sum(0);
@@ -90,8 +90,8 @@ TEST(DeepImage, FlattensToThePicture) {
 }
 
 TEST(DeepImage, NeighboursAlongAnEdgeCloseIt) {
-  // Two halves of a square, cut along its diagonal: every pixel within is hidden wholly, though no fragment hides one
-  // on the diagonal by itself.
+  // Two halves of a square, cut along its diagonal. Every pixel inside is hidden wholly, though on the diagonal no
+  // fragment alone hides one.
   const Scene scene = scene_of(square(), colored({1, 1, 1, 1}));
   const Surfaces surfaces(scene);
   View view = front_view(63, 4);
@@ -107,7 +107,7 @@ TEST(DeepImage, NeighboursAlongAnEdgeCloseIt) {
 }
 
 TEST(DeepImage, ShownPartsAreThoseOfEverySubSample) {
-  // Two crossing fragments, half transparent: left of the middle the second is nearer.
+  // Two crossing fragments, half transparent: left of the middle, the second one is nearer.
   const std::vector<glm::ivec2> samples = {{64, 128}, {192, 128}};
   std::vector<Fragment> fragments(3);
   fragments[0] = {3, 0, 0.5f, 0.2f, 0, 1};
@@ -123,8 +123,8 @@ TEST(DeepImage, ShownPartsAreThoseOfEverySubSample) {
   EXPECT_FLOAT_EQ(parts[2], 0.25f / 2);
 }
 
-// Sheets that all cross within a pixel are in one order on its left and in the opposite one on its right. Each took its
-// place among those before it: 300,000 then take minutes.
+// Sheets that all cross within a pixel have opposite orders at its left and right. Insertion one by one would take
+// minutes for 300,000 sheets.
 TEST(DeepImage, ManyThatChangePlacesAreSorted) {
   const std::size_t count = under_sanitizer ? 3'000 : 300'000;
   const float alpha = 1e-5f;
@@ -193,7 +193,7 @@ TEST(SeeThrough, LayersLaidOverEachOtherAreThePicture) {
 }
 
 TEST(SeeThrough, WhatNextToNothingPassesToIsNotMissed) {
-  // Of 60 sheets of opacity 0.5 the last twenty let through less than 2^-40 of themselves.
+  // In a stack of 60 sheets of opacity 0.5, the last twenty contribute less than 2^-40 each.
   Scene scene = scene_of(square(), colored({1, 0.25f, 0, 1}));
   for (int i = 1; i < 60; ++i) {
     scene.instances.push_back(scene.instances[0]);
@@ -217,7 +217,7 @@ TEST(SeeThrough, WhatNextToNothingPassesToIsNotMissed) {
 }
 
 TEST(SeeThrough, AlwaysGivesOpaqueScenesTheSubSamplesOfTheABuffer) {
-  // The left edge at 16.3 of 64: of 8 columns of sub-samples in pixel 16, those at 5/16 and beyond are covered.
+  // The left edge is at 16.3 of 64: of the 8 columns of sub-samples in pixel 16, those from 5/16 on are covered.
   Scene scene = scene_of(square(), colored({1, 0, 0, 1}));
   scene.instances[0].world_from_mesh[3] = {0.3 / 16, 0, 0, 1};
   const Surfaces surfaces(scene);
@@ -230,7 +230,7 @@ TEST(SeeThrough, AlwaysGivesOpaqueScenesTheSubSamplesOfTheABuffer) {
 }
 
 struct Difference {
-  float farthest = 0;      ///< of any channel
+  float farthest = 0;      ///< largest difference of any channel
   std::size_t pixels = 0;  ///< that differ by more than rounding
 };
 
@@ -246,7 +246,7 @@ Difference difference_of(const Image& a, const Image& b) {
   return found;
 }
 
-/// The pictures with layers in every tile, and with layers where something can be seen through.
+/// Pictures with layers in every tile, and with layers only in tiles with translucent surfaces.
 struct Pictures {
   Image everywhere, where_needed;
 
@@ -269,8 +269,8 @@ TEST(SeeThrough, TilesOfWhatIsOpaqueNeedNoLayers) {
       SCOPED_TRACE(testing::Message() << samples << " samples, shading " << int(shading));
       const Pictures pictures(surfaces, zbuffer(surfaces, view), options);
       const Difference difference = pictures.difference();
-      // The A-buffer shades a fragment at the middle of what it covers of a pixel, also where something hides part of
-      // it.
+      // The A-buffer shades a fragment at the middle of its covered part of the pixel, even if something hides part of
+      // that.
       EXPECT_LT(difference.farthest, samples == 1 ? plane_rounding : 0.1f);
       EXPECT_LT(difference.pixels, samples == 1 ? 1 : view.pixel_count() / 50);
       if (samples > 1) {
@@ -281,7 +281,7 @@ TEST(SeeThrough, TilesOfWhatIsOpaqueNeedNoLayers) {
     }
 }
 
-/// A blue wall, and before it a red pane far thinner than a pixel is wide.
+/// A blue wall behind a red pane far narrower than a pixel.
 Scene wall_behind_sliver(double middle, double width) {
   Scene scene = layered_scene(Material::Alpha::blend, {1, 0, 0, 0.25f});
   glm::dmat4& place = scene.instances[0].world_from_mesh;

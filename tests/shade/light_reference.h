@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One fragment at a time, in doubles, by the formulas of glTF 2.0 (appendix B: metallic-roughness, GGX, Smith's
-// correlated masking, Schlick's Fresnel): what the kernels of light are held against. A further term of a material is
-// one more function of a SeenSurface, and one more line of direct_light() and of surrounding_light().
+// The reference for the light kernels: one fragment at a time, in doubles, by the formulas of glTF 2.0 (appendix B:
+// metallic-roughness, GGX, Smith's correlated masking, Schlick's Fresnel). A new term of a material needs one more
+// function of a SeenSurface, and one more line in direct_light() and in surrounding_light().
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ inline void set(shading::FragmentBatch& batch, int i, const Surface& s) {
   batch.shadow[i] = s.shadow;
 }
 
-/// All passes, the key light being the one direct light.
+/// Runs all passes, with the key light as the only direct light.
 inline void light_batch(const shading::Lighting& lighting, shading::FragmentBatch& batch, Isa isa = Isa::best) {
   shading::begin_light(batch);
   if (lighting.key.is_on()) shading::add_direct_light(lighting.key, batch, isa);
@@ -41,7 +41,7 @@ inline void light_batch(const shading::Lighting& lighting, shading::FragmentBatc
   shading::finish_light(lighting, batch, isa);
 }
 
-/// What the kernels make of it.
+/// Colour of the surface by the kernels.
 inline glm::vec3 lit(const Surface& surface, const shading::Lighting& lighting = {}, Isa isa = Isa::best) {
   const auto batch = std::make_unique<shading::FragmentBatch>();
   batch->coverage.count = 1;
@@ -50,7 +50,7 @@ inline glm::vec3 lit(const Surface& surface, const shading::Lighting& lighting =
   return batch->light.at(0);
 }
 
-/// A surface as it is seen, in doubles.
+/// A surface and its view direction, in doubles.
 struct SeenSurface {
   explicit SeenSurface(const Surface& s)
       : normal(glm::normalize(glm::dvec3(s.normal))),
@@ -71,20 +71,20 @@ inline double masking(double n_l, double n_v, double alpha2) {
          (n_l * std::sqrt(n_v * n_v * (1 - alpha2) + alpha2) + n_v * std::sqrt(n_l * n_l * (1 - alpha2) + alpha2));
 }
 
-/// Light from one direction. The key light's rim is soft: it never meets a surface smoother than 0.09.
+/// Light from one direction. The key light's rim is soft: its roughness is at least 0.09.
 inline glm::dvec3 direct_light(const Surface& s, const shading::DirectLight& light) {
   const SeenSurface sight(s);
   const glm::dvec3 l(light.to_light), h = glm::normalize(l + sight.to_viewer);
   const double n_l = glm::dot(sight.normal, l), n_h = glm::dot(sight.normal, h), v_h = glm::dot(sight.to_viewer, h);
   if (n_l <= 0) return glm::dvec3(0);
   const double alpha2 = std::pow(std::max(double(s.roughness), 0.09), 4), t = n_h * n_h * (alpha2 - 1) + 1;
-  // Lights are given as what a white matt surface sends back, which is pi times less than they are.
+  // Lights are given as the radiance that a white matt surface reflects, which is pi times less.
   const double lobe = alpha2 / (t * t) * masking(n_l, sight.n_v, alpha2);
   const glm::dvec3 fresnel = sight.f0 + (1.0 - sight.f0) * fifth_power(1 - std::abs(v_h));
   return glm::dvec3(light.color) * n_l * double(s.shadow) * ((1.0 - fresnel) * sight.matt + fresnel * lobe);
 }
 
-/// What a surface mirrors of light that is 1 everywhere, if it mirrors everything; and Schlick's part of it.
+/// Share of uniform light that a perfect mirror of this roughness reflects, and Schlick's part of it.
 inline glm::dvec2 mirrored_parts(double n_v, double roughness) {
   const double alpha2 = std::pow(std::max(roughness, 1e-3), 4);
   const glm::dvec3 v(std::sqrt(1 - n_v * n_v), 0, n_v);
@@ -103,7 +103,7 @@ inline glm::dvec2 mirrored_parts(double n_v, double roughness) {
   return sum / double(tilts * turns);
 }
 
-/// Light from all around, by the split sum, with what is mirrored more than once.
+/// Light from all around by the split sum, including multiple reflections.
 inline glm::dvec3 surrounding_light(const Surface& s, const Environment& environment,
                                     const glm::mat3& world_from_environment) {
   const SeenSurface sight(s);

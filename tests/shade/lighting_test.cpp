@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light by itself, on fragments made by hand.
+// The light alone, on fragments made by hand.
 #include "shade/light/lighting.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ const Environment& studio() {
   return environment;
 }
 
-/// The default light of a camera that looks along -z.
+/// The default light of a camera looking along -z.
 Lighting default_light(const LightOptions& options = {}) { return lighting_for(View(), Axis::y, options, studio()); }
 
 Lighting only_studio() {
@@ -37,7 +37,7 @@ Lighting only_studio() {
   return lighting;
 }
 
-/// Given light of one colour from all around, and no other.
+/// Uniform surrounding light of one colour, and no other light.
 Lighting furnace(float light = 1) {
   Lighting lighting;
   Image picture{64, 32, {}};
@@ -49,7 +49,7 @@ Lighting furnace(float light = 1) {
   return lighting;
 }
 
-/// Without a surrounding, as the default is.
+/// Only the key light, without surroundings.
 Lighting only_key() {
   Lighting lighting;
   lighting.key.color = glm::vec3(1);
@@ -73,7 +73,7 @@ TEST(Lighting, KeyLightStandsUpperLeftAndBeforeTheModel) {
 }
 
 TEST(Lighting, MattLightFollowsTheCosine) {
-  // Fresnel takes a few per cent from the matt part; a black surface has what is left of the highlight.
+  // Fresnel takes a few per cent from the matt part; a black surface shows the rest of the highlight.
   for (const float degrees : {0.0f, 30.0f, 60.0f, 80.0f}) {
     Surface white{.normal = tilted(degrees)}, black = white;
     black.base = glm::vec3(0);
@@ -142,7 +142,7 @@ TEST(Lighting, EveryKindOfEnvironmentIsTurnedByItsAngleAboutUp) {
     const glm::mat3 &a = straight.around.world_from_environment, &b = turned.around.world_from_environment;
     EXPECT_EQ(a[1], up);
     EXPECT_EQ(b[1], up);
-    // Counter-clockwise from above: what was ahead is now to the left.
+    // Counter-clockwise from above: the direction ahead becomes left.
     EXPECT_NEAR(glm::dot(-b[2], -a[0]), 1, 1e-6);
     EXPECT_NEAR(glm::determinant(b), 1, 1e-6);
   }
@@ -160,7 +160,7 @@ TEST(Lighting, LookingStraightDownTheStudioIsAheadWhereThePictureHasItsTop) {
 }
 
 TEST(Lighting, InAFurnaceEverySurfaceVanishes) {
-  // White furnace: what mirrors or scatters all light sends back what it gets, at every angle and roughness.
+  // White furnace: a surface that absorbs nothing reflects all incoming light, at every angle and roughness.
   const Lighting lighting = furnace(0.5f);
   for (int degrees = 0; degrees < 90; degrees += 6)
     for (float roughness = 0; roughness <= 1.0f; roughness += 0.03125f)
@@ -214,7 +214,7 @@ TEST(Lighting, ExposureDoublesLightByTheStopBeforeAnythingIsCut) {
   EXPECT_EQ(lit(unlit, default_light({.exposure = 5, .tone_mapping = ToneMapping::aces})).x, 0.3f);
 }
 
-/// Light that is emitted, as a picture shows it.
+/// Emitted light as a picture shows it.
 glm::vec3 mapped(ToneMapping mapping, const glm::vec3& light) {
   Lighting lighting;
   lighting.key.color = glm::vec3(0);
@@ -223,7 +223,7 @@ glm::vec3 mapped(ToneMapping mapping, const glm::vec3& light) {
 }
 
 TEST(Lighting, ToneMappersAreThoseThatWerePublished) {
-  // Khronos: 0.04 is taken off; up to 0.8 nothing else happens, and the greatest channel never reaches 1.
+  // Khronos' tone mapping subtracts 0.04. Values up to 0.8 change no further, and the greatest channel never reaches 1.
   const glm::vec3 plain = mapped(ToneMapping::khronos, {0.8f, 0.5f, 0.1f});
   EXPECT_NEAR(plain.x, 0.76f, 1e-6f);
   EXPECT_NEAR(plain.y, 0.46f, 1e-6f);
@@ -231,7 +231,8 @@ TEST(Lighting, ToneMappersAreThoseThatWerePublished) {
   const glm::vec3 dark = mapped(ToneMapping::khronos, {0.3f, 0.2f, 0.04f});
   EXPECT_NEAR(dark.z, 6.25f * 0.04f * 0.04f, 1e-6f);
   EXPECT_NEAR(dark.x, 0.27f, 1e-6f);
-  const glm::vec3 bright = mapped(ToneMapping::khronos, {4.04f, 2.04f, 1.04f});  // by the published lines, on paper
+  const glm::vec3 bright = mapped(ToneMapping::khronos, {4.04f, 2.04f, 1.04f});  // by the published lines, computed by
+                                                                                 // hand
   const float peak = 1 - 0.24f * 0.24f / (4 + 0.24f - 0.76f), faded = 1 - 1 / (0.15f * (4 - peak) + 1);
   EXPECT_NEAR(bright.x, peak, 1e-5f);
   EXPECT_NEAR(bright.y, peak / 2 + (peak - peak / 2) * faded, 1e-5f);
@@ -269,8 +270,8 @@ TEST(Lighting, HighlightIsBrightestInTheMirrorDirectionAndNarrowerOnSmootherSurf
 }
 
 TEST(Lighting, GgxSendsNoMoreLightThanItGets) {
-  // The light that a white metal sends to a viewer straight above, over all directions of the key light: by
-  // reciprocity its albedo. Cosine-weighted quadrature of the same lobe.
+  // Light that white metal reflects to a viewer straight above, integrated over all directions of the key light: its
+  // albedo, by reciprocity. Cosine-weighted quadrature of the same lobe.
   for (const float roughness : {0.3f, 0.5f, 0.8f, 1.0f}) {
     constexpr int steps = 400;
     double albedo = 0;
@@ -280,7 +281,8 @@ TEST(Lighting, GgxSendsNoMoreLightThanItGets) {
       lighting.key.color = glm::vec3(1e-3f);
       lighting.key.to_light = {float(std::sin(angle)), 0, float(std::cos(angle))};
       const Surface metal{.metallic = 1, .roughness = roughness};
-      // The key's unit: what a white matt surface sends back, so the sum over the hemisphere is 2 sin(angle) d angle.
+      // In the key light's unit, the reflection of a white matt surface, the hemisphere's weight is 2 sin(angle) d
+      // angle.
       albedo += double(lit(metal, lighting).x) / 1e-3 * 2 * std::sin(angle) * 1.5707963 / steps;
     }
     EXPECT_LT(albedo, 1.02) << roughness;
@@ -338,7 +340,8 @@ TEST(Lighting, AnyInputGivesColoursBetweenZeroAndOne) {
 }
 
 TEST(Lighting, AFragmentsColourDoesNotDependOnItsPlaceInTheBatchNorOnTheInstructionSet) {
-  // The loop takes several at a time, how many depends on the machine, and its rest one by one: all must round alike.
+  // The loop processes several fragments at a time, depending on the machine, and the rest one by one. All must round
+  // alike.
   std::mt19937 random(test::noted_seed(11));
   std::uniform_real_distribution<float> unit(0, 1), both(-1, 1);
   std::vector<Surface> surfaces;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layers of materials against their formulas, one fragment at a time in doubles: KHR_materials_ior, _specular, _sheen
-// and _clearcoat over glTF 2.0's metallic-roughness (appendix B), in one light from one direction.
+// Material layers against their formulas, one fragment at a time in doubles: KHR_materials_ior, _specular, _sheen and
+// _clearcoat over glTF 2.0's metallic-roughness (appendix B), under one directional light.
 #include "shade/material/material_layers.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using namespace test;
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// One fragment, and what its material says.
+/// One fragment and its material parameters.
 struct Sample {
   glm::dvec3 normal, coat_normal, to_viewer, to_light, base;
   double metallic, roughness;
@@ -34,7 +34,7 @@ struct Sample {
 double positive(double v) { return std::max(v, 0.0); }
 double fifth(double c) { return std::pow(1 - std::clamp(c, 0.0, 1.0), 5); }
 
-/// Distribution times visibility of Trowbridge and Reitz, with Smith's correlated masking.
+/// Trowbridge-Reitz distribution times visibility, with Smith's correlated masking.
 double ggx(const glm::dvec3& n, const glm::dvec3& v, const glm::dvec3& l, double roughness) {
   const glm::dvec3 h = glm::normalize(v + l);
   const double a2 = std::pow(roughness, 4), nh = positive(glm::dot(n, h));
@@ -49,7 +49,7 @@ double sheen_lobe(double nl, double nv, double nh, double roughness) {
   return d / (4 * (nl + nv - nl * nv));
 }
 
-/// By the sum over directions of light.
+/// Albedo of the sheen by a sum over light directions.
 double sheen_albedo_of(double nv, double roughness) {
   constexpr int steps = 120;
   const double across = std::sqrt(1 - nv * nv);
@@ -63,7 +63,7 @@ double sheen_albedo_of(double nv, double roughness) {
   return std::min(sum / (steps * steps), 1.0);
 }
 
-/// Of a light that a white matt surface sends back as 1.
+/// Reflected radiance for a light that a white matt surface reflects as 1.
 glm::dvec3 sent_back(const Sample& s) {
   const glm::dvec3 h = glm::normalize(s.to_viewer + s.to_light);
   const double vh = glm::dot(s.to_viewer, h), nl = positive(glm::dot(s.normal, s.to_light));
@@ -99,7 +99,7 @@ glm::dvec3 random_direction(Random& random, double least_z) {
 
 glm::dvec3 random_color(Random& random) { return glm::abs(glm::dvec3(random.point(1))); }
 
-/// Layers are there or not, by bits of `kind`.
+/// A random sample; the bits of `kind` select its layers.
 Sample random_sample(Random& random, int kind) {
   Sample s{};
   s.normal = {0, 0, 1};
@@ -131,13 +131,13 @@ Sample random_sample(Random& random, int kind) {
   return s;
 }
 
-/// A triangle before the eye, which the fragments are of.
+/// Set-up of a single triangle in front of the eye, to which all fragments belong.
 const std::vector<TriangleSetup> one_setup(1);
 
-/// What is to be asked for, for a roughness to be shown.
+/// Parameter value that yields this rendered roughness.
 float as_given(double roughness) { return float(roughness); }
 
-/// Fills a fragment through the door that pictures take.
+/// Fills a fragment through the interface that pictures use.
 void fill(const Sample& s, int i, FragmentBatch& batch) {
   batch.geometry.normal.set(i, glm::vec3(s.normal));
   batch.geometry.to_viewer.set(i, glm::vec3(s.to_viewer));
@@ -182,18 +182,19 @@ TEST(MaterialLayers, AreTheFormulasOfTheirExtensions) {
       batch->coverage.count = 1;
       fill(s, 0, *batch);
       light_once(s.to_light, *batch, Isa::best);
-      // The formula of appendix B has the mirrored part of every channel taken off: kept for materials without layers.
+      // Materials without layers keep the formula of appendix B, which subtracts the mirrored part of every channel;
+      // partly metallic ones are skipped.
       if (kind % 2 == 0 && s.metallic > 0 && s.metallic < 1) continue;
       const glm::dvec3 wanted = sent_back(s), found(batch->light.at(0));
-      // As bright as a picture can show.
+      // Values are compared up to 1, the brightest that a picture can show.
       for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(std::min(wanted[c], 1.0) - std::min(found[c], 1.0)));
     }
     EXPECT_LT(worst, 1.0 / 255) << kind;
   }
 }
 
-// White furnace: what mirrors or scatters all light sends back what it gets. The varnish is smooth: what it keeps from
-// below is that of the view, and of a rough one would be a mean over views.
+// White furnace: surfaces that absorb nothing reflect all incoming light. The varnish is smooth, so its loss depends on
+// the view direction alone; for a rough one it would be a mean over directions.
 TEST(MaterialLayers, InAFurnaceEverySurfaceVanishes) {
   Image picture{64, 32, {}};
   for (const char* name : {"R", "G", "B"}) picture.channels.push_back({name, Buffer<float>(64 * 32, 0.5f)});
@@ -218,7 +219,7 @@ TEST(MaterialLayers, InAFurnaceEverySurfaceVanishes) {
   }
 }
 
-// What one fragment of a batch has costs the others nothing, to the bit.
+// Layers of one fragment in a batch do not change the others, to the bit.
 TEST(MaterialLayers, OthersInTheBatchStayWhatTheyAre) {
   Random random(77);
   const auto mixed = std::make_unique<FragmentBatch>(), plain = std::make_unique<FragmentBatch>();
@@ -264,7 +265,7 @@ TEST(MaterialLayers, TheTableOfSheenIsTheSumOverDirections) {
   }
 }
 
-/// The picture's middle, of a square with the material.
+/// The middle pixel of a picture of a square with the material.
 glm::vec4 shown(const Material& material, std::vector<Texture> textures = {}) {
   Scene scene = scene_of(square(), material);
   scene.textures = std::move(textures);
@@ -303,7 +304,7 @@ TEST(MaterialLayers, TexturesMultiplyTheirFactors) {
   expect_same(a, b);
 }
 
-// A metal of the colour 3 would mirror more light than arrives, again and again, and come out black.
+// A metal of colour 3 would reflect more light than arrives, repeatedly, and come out black.
 TEST(MaterialLayers, NumbersOutOfRangeCountAsTheNearestInRange) {
   const std::vector<Texture> textures{texture_of(1, 1, {{102, 102, 102, 255}})};
   const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -321,7 +322,7 @@ TEST(MaterialLayers, NumbersOutOfRangeCountAsTheNearestInRange) {
   EXPECT_EQ(shown(m), shown(colored({1, 0.5f, 1, 1})));
 }
 
-// By glTF 2.0 colours of vertices are 0 to 1.
+// In glTF 2.0, vertex colours are 0 to 1.
 TEST(MaterialLayers, ColoursOfVerticesAreZeroToOne) {
   const auto shown_with = [](const glm::vec4& color) {
     Material metal = colored(glm::vec4(1));
@@ -336,7 +337,7 @@ TEST(MaterialLayers, ColoursOfVerticesAreZeroToOne) {
 }
 
 TEST(MaterialLayers, AVarnishIsSmoothOverBumpsUnlessItHasItsOwn) {
-  // Turned far to the left.
+  // The normal map turns the normal far to the left.
   const std::vector<Texture> bumps{texture_of(1, 1, {{38, 128, 218, 255}})};
   Material bumpy = colored({0, 0, 0, 1});
   bumpy.roughness = 1;

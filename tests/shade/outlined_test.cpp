@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes of figures: what is joined, what stays apart, and that nothing is lost.
+// Shapes of figures: some are joined, others stay apart, and nothing is lost.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,18 +50,19 @@ TEST(MergeNeighbours, LeavesHolesOpen) {
 
 TEST(MergeNeighbours, LeavesApartWhatDoesNotTouchOrHasAnotherColour) {
   EXPECT_EQ(merge_neighbours(order_of({box(0, 0, 1, 1), box(1.1, 0, 1, 1)})).shapes.size(), 2u);
-  EXPECT_EQ(merge_neighbours(order_of({box(0, 0, 1, 1), box(1, 1, 1, 1)})).shapes.size(), 2u);  // at a corner
+  EXPECT_EQ(merge_neighbours(order_of({box(0, 0, 1, 1), box(1, 1, 1, 1)})).shapes.size(), 2u);  // they touch at a
+                                                                                                // corner
   EXPECT_EQ(merge_neighbours(order_of({box(0, 0, 1, 1), box(1, 0, 1, 1, kBlue)})).shapes.size(), 2u);
   EXPECT_EQ(merge_neighbours(order_of({box(0, 0, 1, 1), box(1, 0, 1, 1, kGlass)})).shapes.size(), 2u);
 }
 
 TEST(MergeNeighbours, KeepsTheOrderOfWhatCovers) {
-  // The blue one covers the first red one, so that the reds may not be painted together after it.
+  // The blue tile covers the first red one, so the reds may not be painted together after it.
   const ColoredOrder merged =
       merge_neighbours(order_of({box(0, 0, 2, 2), box(1, 1, 0.5, 0.5, kBlue), box(2, 0, 2, 2)}));
   ASSERT_EQ(merged.shapes.size(), 3u);
   EXPECT_EQ(merged.shapes[1].color, kBlue);
-  // Here it covers none: both become one, in the place of the later.
+  // The blue tile covers no red one: both become one shape, in the place of the later.
   const ColoredOrder free = merge_neighbours(order_of({box(0, 0, 2, 2), box(5, 1, 1, 1, kBlue), box(2, 0, 2, 2)}));
   EXPECT_EQ(free.shapes_of_polygons(), (std::vector<std::uint32_t>{0, 1, 1}));
   EXPECT_EQ(free.shapes[0].color, kBlue);
@@ -99,7 +100,7 @@ TEST(Outlined, TrapsReachUnderLaterShapesAlone) {
   EXPECT_GT(area_of(figure, 0), 64 + 3);
   EXPECT_LT(area_of(figure, 0), 64 + 8);
   EXPECT_NEAR(area_of(figure, 2), 32, 1e-9);
-  // As one shape the blue ones need none between them, and the red one has its own still.
+  // Joined into one shape, the blue tiles need no trap between them; the red one still has its own.
   const Figure merged = outlined(merge_neighbours(tiles), 1);
   ASSERT_EQ(merged.shapes.size(), 2u);
   EXPECT_GT(area_of(merged, 0), 64 + 3);
@@ -108,10 +109,10 @@ TEST(Outlined, TrapsReachUnderLaterShapesAlone) {
 
 TEST(Outlined, OfNothingIsEmpty) { EXPECT_TRUE(bare({}).shapes.empty()); }
 
-/// A box beside another that ends half way: what is left of its side has a trap there.
+/// A box beside another that ends half way: the rest of its edge has a trap there.
 TEST(Outlined, PartsOfSidesHaveTraps) {
   const Figure figure = outlined(order_of({box(0, 0, 8, 8), box(8, 0, 8, 4, kBlue)}), 1);
-  // Narrower by half of its height at the outline, and by all of it where it ends beside what is open.
+  // The trap is narrower by half of its height at the outline, and by all of it where it ends beside an open part.
   EXPECT_NEAR(area_of(figure, 0), 64 + 4 - 0.25 - 0.5, 1e-9);
 }
 
@@ -120,7 +121,7 @@ TEST(SideNet, GivesEveryRingOnceWhateverWayOutlinesTouch) {
   const auto add = [&](std::vector<glm::dvec2> corners, std::uint32_t number) {
     net.add(std::span<const glm::dvec2>(corners), number);
   };
-  // A bow tie: two triangles that share a corner alone, and a third that shares a side with the first.
+  // A bow tie: two triangles share only a vertex; a third shares an edge with the first.
   add({{0, 0}, {0, 2}, {1, 1}}, 0);
   add({{2, 0}, {1, 1}, {2, 2}}, 1);
   add({{0, 0}, {-1, 1}, {0, 2}}, 2);

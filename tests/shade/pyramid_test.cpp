@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures with their mip levels, and what is seen when they are looked up: against a reference that takes one fragment
-// at a time, in doubles.
+// Textures with mip levels, and the values of lookups: against a reference for one fragment at a time, in doubles.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,12 +18,12 @@ namespace {
 
 using test::Random;
 
-/// Where a fragment looks, and how far that moves from pixel to pixel, in texture coordinates.
+/// Position of a lookup, and its change from pixel to pixel, in texture coordinates.
 struct Footprint {
   glm::vec2 texcoord{0}, dx{0}, dy{0};
 };
 
-/// Looks up all footprints at once, sampled_at_once at most.
+/// Looks up all footprints in one batch, at most sampled_at_once of them.
 std::vector<glm::vec4> samples(const Pyramid& pyramid, const std::vector<Footprint>& footprints,
                                const TexcoordTransform& transform = TexcoordTransform(TextureUse{}),
                                Isa isa = Isa::best) {
@@ -42,7 +41,7 @@ std::vector<glm::vec4> samples(const Pyramid& pyramid, const std::vector<Footpri
 }
 
 glm::vec4 sample(const Pyramid& pyramid, const Footprint& footprint) { return samples(pyramid, {footprint})[0]; }
-/// So far away that all texels are one.
+/// Looked up from so far away that the whole texture is one texel.
 glm::vec4 average(const Pyramid& pyramid) { return sample(pyramid, {{0.5f, 0.5f}, {1e6f, 0}, {0, 1e6f}}); }
 
 Texture constant(int width, int height, const glm::u8vec4& value) {
@@ -53,7 +52,7 @@ Texture constant(int width, int height, const glm::u8vec4& value) {
   return texture;
 }
 
-/// Squares of one texel, black and white.
+/// Squares of one texel, alternately black and white.
 Texture checker(int size) {
   Texture texture = constant(size, size, glm::u8vec4(255));
   for (int y = 0; y < size; ++y)
@@ -62,7 +61,7 @@ Texture checker(int size) {
   return texture;
 }
 
-/// Red, green / blue, white: which corner is where.
+/// A texture with red, green / blue, white, to tell its corners apart.
 Texture corners() {
   Texture texture = constant(2, 2, glm::u8vec4(255));
   texture.pixels = {{255, 0, 0, 255}, {0, 255, 0, 255}, {0, 0, 255, 255}, {255, 255, 255, 255}};
@@ -119,7 +118,7 @@ TEST(Pyramid, ACheckerFarAwayIsHalfTheLightNotHalfTheByte) {
   EXPECT_NEAR(sample(numbers, far).r, 0.5f, 0.003f);
 }
 
-/// Of four opaque texels, one channel, by the definition.
+/// Mean of four opaque texels in one channel, by the definition.
 std::uint8_t mean_of(const std::array<std::uint8_t, 4>& bytes, Encoding encoding) {
   if (encoding == Encoding::linear) return std::uint8_t((bytes[0] + bytes[1] + bytes[2] + bytes[3] + 2) / 4);
   return srgb8_of_linear(0.25f * ((linear_of_srgb8(bytes[0]) + linear_of_srgb8(bytes[1])) +
@@ -153,7 +152,7 @@ TEST(Pyramid, FourOpaqueTexelsMakeTheirMeanWhateverIsBesideThem) {
 }
 
 TEST(Pyramid, ASlantedFootprintStaysSharpAcrossItsShortSide) {
-  // Stripes along v: a footprint that is long in v only must still tell them apart.
+  // Stripes along v: a footprint that is long only in v must still tell them apart.
   Texture texture = constant(64, 64, {0, 0, 0, 255});
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; x += 2) texture.pixels[std::size_t(y * 64 + x)] = {255, 255, 255, 255};
@@ -212,7 +211,7 @@ TEST(Pyramid, NoCoordinateLeadsOutOfTheTexture) {
   EXPECT_EQ(sample(Pyramid(Texture{}, Encoding::srgb), {{0.5f, 0.5f}, {1, 0}, {0, 1}}), glm::vec4(1));
 }
 
-/// One fragment at a time, in doubles.
+/// The reference: one fragment at a time, in doubles.
 class Reference {
  public:
   explicit Reference(const Pyramid& pyramid) : pyramid_(pyramid) {}
@@ -372,7 +371,7 @@ TEST(TexcoordTransform, FollowsTheTextureTransformExtension) {
   EXPECT_NEAR(moved.place({0.1f, 0.2f}).y, 0.85f, 1e-6f);
   EXPECT_EQ(moved.step({1, 0}), glm::vec2(2, 0));
   EXPECT_EQ(moved.step({0, 1}), glm::vec2(0, 3));
-  // A quarter turn counter-clockwise, v down: u leads to -v.
+  // A quarter turn counter-clockwise with v down: u becomes -v.
   TextureUse turned;
   turned.rotation = 1.57079632679f;
   const glm::vec2 uv = TexcoordTransform(turned).place({1, 0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shadows by rays: where they fall, that nothing shadows itself, and how far the map is from them.
+// Shadows by rays: their places, no self-shadowing, and the distance of shadow maps from them.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -36,7 +36,7 @@ std::size_t differing(const Image& a, const Image& b) {
   return count;
 }
 
-/// A small square before a large one.
+/// A small square in front of a large one.
 Scene roof_and_floor(double height) {
   Scene scene = scene_of(square());
   scene.instances[0].world_from_mesh = glm::dmat4(2.0);
@@ -77,13 +77,13 @@ TEST(RayShadows, EdgesHaveAsManyShadesAsSamples) {
       const auto same = [&](float other) { return std::abs(other - difference) < 1e-4f; };
       if (std::none_of(shades.begin(), shades.end(), same)) shades.push_back(difference);
     }
-  // 0 to 4 of four samples in shadow, and pixels that show roof and floor.
+  // 0 to 4 of four samples are in shadow, and some pixels show roof and floor.
   EXPECT_GE(shades.size(), 5u);
   EXPECT_LE(shades.size(), 12u);
 }
 
 TEST(RayShadows, AConvexSolidShowsNoShadow) {
-  // Flat faces and smooth ones, whatever the angle: what faces the light is lit, the rest is dark without it.
+  // Flat and smooth faces at all angles: faces towards the light are lit, and others are dark without it.
   for (const char* name : {"cubes", "spheres"}) {
     Scene whole = builtin(name);
     Scene scene;
@@ -101,7 +101,7 @@ TEST(RayShadows, AConvexSolidShowsNoShadow) {
   }
 }
 
-// A second ball about the first keeps all light away for certain, so nothing may change within.
+// A second ball around the first surely blocks all light, so it must not change anything inside.
 TEST(RayShadows, NoLightComesThroughTheWallOfAHollowBall) {
   Scene alone = scene_of(sphere(12)), within = scene_of(sphere(12));
   within.instances.push_back({"outer", 0, glm::scale(glm::dmat4(1.0), glm::dvec3(3))});
@@ -131,7 +131,7 @@ TEST(RayShadows, TheSameForAnyThreadsInstructionSetAndIndex) {
 }
 
 TEST(RayShadows, GlassThrowsNoneAndIsNotKnownByIds) {
-  // The glass comes first, so that the numbers of what throws shadows are not those of what is shaded.
+  // The glass comes first, so that shadow casters have other numbers than shaded triangles.
   Scene scene = roof_and_floor(0.6);
   std::swap(scene.instances[0], scene.instances[1]);
   scene.meshes.push_back(scene.meshes[0]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of scans: colours that can be worked out, and those of a Visible where both mean the same.
+// Pictures of scans: colours computed by hand, and colours of a Visible where both mean the same.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double half_turn = 3.14159265358979323846;
 
-/// A wall of one colour at z = -1, wide enough for everything ahead.
+/// A wall of one colour at z = -1, wide enough to fill the view ahead.
 Scene wall(const glm::vec4& color) {
   Mesh mesh;
   add_triangle(mesh, {-1000, -1000, -1}, {1000, -1000, -1}, {0, 2000, -1});
@@ -40,7 +40,8 @@ void expect_color(const Image& image, int x, int y, const glm::vec4& expected, f
   for (int k = 0; k < 4; ++k) EXPECT_NEAR(color[k], expected[k], tolerance) << "channel " << k;
 }
 
-/// The middle looks at the wall straight on; pixel 6 at 60 degrees; the corners lie beyond the circle.
+/// A fisheye of 9 x 9: the middle looks straight at the wall, pixel 6 at 60 degrees; the corners are outside the
+/// circle.
 const RayCamera kNine{Fisheye{9, 9, half_turn}};
 
 TEST(ShadeScan, FlatNormalsAndTheBackground) {
@@ -70,7 +71,7 @@ TEST(ShadeScan, ObjectsHaveTheColoursOfOtherPictures) {
   expect_color(of.picture({.shading = Shading::ids}), 4, 4, color_at(other, 4, 4));
 }
 
-/// A room of six textured sides with a textured ball in it, whose corners have normals and colours of their own.
+/// A room with six textured sides and a textured ball in it, whose vertices have normals and colours.
 Scene furnished_room() {
   Scene scene;
   Texture ramp;
@@ -130,7 +131,7 @@ float shown(float linear) {
   return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
 }
 
-/// Where a point is on the screen of a perspective view, if the pixels around see what it is on.
+/// Screen position of a point in a perspective view, if the pixels around show its triangle.
 std::optional<glm::dvec2> seen_at(const Visible& visible, const glm::dvec3& point, PrimitiveId id) {
   const View& view = visible.view;
   const glm::dvec4 eye = glm::inverse(view.world_from_eye) * glm::dvec4(point, 1);
@@ -159,7 +160,7 @@ struct PictureDifference {
   double mean = 0, most = 0;
 };
 
-/// Of the colours at the same points, in steps of 8 bits, away from edges.
+/// Difference of colours at the same points, in steps of 8 bits, away from edges.
 PictureDifference difference(const Scanned& of, const Image& around, const Visible& visible, const Image& flat) {
   PictureDifference result;
   const RangeScan& scan = of.scan;
@@ -200,14 +201,14 @@ TEST(ShadeScan, AgreesWithAPinholesPictureOfTheSamePose) {
           difference(of, of.picture(options), visible, shade(of.surfaces, visible, options));
       EXPECT_GT(found.count, 30'000);
       EXPECT_LT(found.mean, 0.6);
-      // Edges of shadows run through triangles; elsewhere there are none.
+      // Edges of shadows cross triangles; other edges do not.
       if (options.shading != Shading::lit || options.light.shadows == Shadows::off) {
         EXPECT_LT(found.most, 5);
       }
     }
 }
 
-/// What a colorist is given, by pixel.
+/// Texture footprint that a colorist receives for a pixel.
 struct Footprint {
   glm::vec2 texcoord{kNan}, dx{0}, dy{0};
 };
@@ -300,13 +301,13 @@ TEST(ShadeScan, SamplesAreTheMeanOfTheirRays) {
 }
 
 TEST(ShadeScan, WhatIsSeenThroughLiesOverWhatIsBehind) {
-  // From (0, 0, 10) the green glass at z = 0 is before the blue square at z = -1.
+  // From (0, 0, 10), the green glass at z = 0 is in front of the blue square at z = -1.
   const glm::vec4 green(0, 1, 0, 0.25f);
   const RayCamera camera{Fisheye{15, 15, 0.5}, look_at({0, 0, 10}, {0, 0, 0}, {0, 1, 0}), 4};
   const Scanned of(layered_scene(Material::Alpha::blend, green), camera);
   const ShadeOptions flat{.shading = Shading::flat};
   expect_color(of.picture(flat), 7, 7, {0, 0.25f, 0.75f, 1});
-  // A quarter of three quarters is the page behind both.
+  // The page behind both contributes a quarter of three quarters.
   ShadeOptions faint = flat;
   faint.opacity = 0.5f;
   expect_color(of.picture(faint), 7, 7,
@@ -314,7 +315,7 @@ TEST(ShadeScan, WhatIsSeenThroughLiesOverWhatIsBehind) {
   ShadeOptions front = flat;
   front.layers.see_through = SeeThrough::never;
   expect_color(of.picture(front), 7, 7, {0.75f, 1, 0.75f, 1});
-  // The same without an index of the caller's.
+  // Without the caller's index, the picture is the same.
   const Image own = shade(of.surfaces, of.scan, flat);
   EXPECT_EQ(content_hash(own), content_hash(of.picture(flat)));
 }

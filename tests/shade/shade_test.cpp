@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole pictures of small scenes whose colours are known.
+// Whole pictures of small scenes with known colours.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -42,7 +42,7 @@ TEST(Shade, AnEmptySceneIsAllBackground) {
 }
 
 TEST(Shade, EdgesArePremultipliedCoverage) {
-  // The square's left edge at x = 16.5 of 64: with four samples a pixel has columns of one sample each.
+  // The square's left edge is at x = 16.5 of 64: with four samples, each column of a pixel has one sample.
   Scene scene = scene_of(square(), colored({1, 0, 0, 1}));
   scene.instances[0].world_from_mesh[3] = {0.5 / 16, 0, 0, 1};
   const Image image = picture(scene, front_view(64, 4), {.shading = Shading::flat, .background = std::nullopt});
@@ -132,12 +132,12 @@ TEST(Shade, WithoutAMaterialColoursOfTheMeshAreNotDimmed) {
   EXPECT_LT(grey.r, 0.7f) << "a mesh without colours shows its form on a white page";
   scene.meshes[0].colors.values.assign(4, glm::vec4(1, 0.5f, 0.25f, 1));
   EXPECT_EQ(color_at(picture(scene, front_view(), with(Shading::flat)), 32, 32), glm::vec4(1, 0.5f, 0.25f, 1));
-  // In all but its base colour it is made of the same.
+  // The default material equals this one except for the base colour.
   Material white = colored(glm::vec4(1));
   white.roughness = 0.5f;
   EXPECT_EQ(color_at(picture(scene, front_view()), 32, 32),
             color_at(picture(scene_of(scene.meshes[0], white), front_view()), 32, 32));
-  // Of two meshes the one with colours alone.
+  // With two meshes, only the one with vertex colours keeps them.
   scene.meshes.push_back(square());
   scene.instances.push_back({"beside", 1, glm::dmat4(1)});
   scene.instances[0].world_from_mesh[3] = {-1, 0, 0, 1};
@@ -176,14 +176,14 @@ TEST(Shade, BothSidesOfASurfaceAreLitAlikeAndMirroringDoesNotTurnNormals) {
   scene.instances[0].world_from_mesh = glm::dmat4(1);
   scene.instances[0].world_from_mesh[0] = {-1, 0, 0, 0};  // mirrored sideways
   EXPECT_EQ(color_at(picture(scene, front_view()), 32, 32), front);
-  scene.instances[0].world_from_mesh[2] = {0, 0, -1, 0};  // half a turn: its back is seen
+  scene.instances[0].world_from_mesh[2] = {0, 0, -1, 0};  // a half turn: the back is visible
   EXPECT_EQ(color_at(picture(scene, front_view()), 32, 32), front);
 }
 
 TEST(Shade, NormalsFollowAStretchedInstance) {
   Scene scene = scene_of(square());
   scene.meshes[0].normals.values.assign(4, glm::normalize(glm::vec3(1, 0, 1)));
-  scene.instances[0].world_from_mesh[0] = {2, 0, 0, 0};  // twice as wide: the normal leans half as much
+  scene.instances[0].world_from_mesh[0] = {2, 0, 0, 0};  // twice as wide: the normal leans half as far
   const Surfaces surfaces(scene);
   const Image normals = normal_image(surfaces, zbuffer(surfaces, front_view()));
   const auto centre = std::size_t(32 * 64 + 32);
@@ -264,7 +264,7 @@ TEST(Shade, AWhiteMattSurfaceThatFacesTheLightIsJustBelowOne) {
   EXPECT_LT(brightest, 1.0f);
 }
 
-/// A small square floats before a large one, towards the key light: upper left and front.
+/// A small square floats in front of a large one, towards the key light: upper left and front.
 Scene shadow_scene() {
   Scene scene = scene_of(square());
   scene.instances[0].world_from_mesh = glm::dmat4(2.0);
@@ -365,7 +365,7 @@ TEST(Shade, MaskedTexelsAreHolesAndBlendedOnesLetTheBackgroundThrough) {
   };
   EXPECT_EQ(alpha_with(Material::Alpha::opaque), glm::vec4(1, 0, 0, 1));
   EXPECT_EQ(alpha_with(Material::Alpha::mask), glm::vec4(0));
-  // Alpha is what does not shine through: 1 - (1 - 0.4), in floats.
+  // Alpha is the share that is not let through: 1 - (1 - 0.4), in floats.
   EXPECT_EQ(alpha_with(Material::Alpha::blend), glm::vec4(0.4f, 0, 0, 1.0f - (1.0f - 0.4f)));
 }
 
@@ -404,7 +404,7 @@ TEST(Shade, OpacityShowsWhatOpaqueSurfacesHide) {
 
 TEST(Shade, EdgesOfSeeThroughSurfacesBlendSampleBySample) {
   Scene scene = layered_scene(Material::Alpha::blend, {1, 0, 0, 0.5f});
-  scene.instances[0].world_from_mesh[3] = {0.5 / 16, 0, 0, 1};   // half of pixel 16 is see-through, half is only blue
+  scene.instances[0].world_from_mesh[3] = {0.5 / 16, 0, 0, 1};   // half of pixel 16 is glass, half only blue
   scene.instances[1].world_from_mesh[3] = {0.5 / 16, 0, -1, 1};  // half of pixel 8 is blue, half is background
   const Image image = picture(scene, front_view(64, 4), {.shading = Shading::flat, .background = std::nullopt});
   EXPECT_EQ(color_at(image, 16, 32), glm::vec4(0.25f, 0, 0.75f, 1));
@@ -416,7 +416,7 @@ TEST(Shade, MeshesOfMixedMaterialsAreTakenApart) {
   glass.alpha = Material::Alpha::blend;
   Scene scene = scene_of(square(), glass);
   scene.materials.push_back(colored({0, 1, 0, 1}));
-  // A second square a step behind, in the same mesh, with corners of its own.
+  // A second square a step behind, in the same mesh, with vertices of its own.
   Mesh& mesh = scene.meshes[0];
   for (int i = 0; i < 4; ++i) mesh.positions.push_back(mesh.positions[std::size_t(i)] - glm::vec3(0, 0, 1));
   mesh.triangles.insert(mesh.triangles.end(), {{4, 5, 6}, {4, 6, 7}});

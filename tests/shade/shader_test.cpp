@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shader, the object: pictures that share what was made ready are those that the functions give, and ask for no memory.
+// The Shader object: pictures that share prepared data equal those of the functions, and allocate no memory.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -11,7 +11,7 @@
 namespace frontmost::test {
 namespace {
 
-/// Textures, a mesh without normals, one with, and holes.
+/// A scene with textures, a mesh without normals, a mesh with normals, and holes.
 Scene scene_of_everything(Material::Alpha alpha) {
   std::vector<glm::u8vec4> texels;
   for (int i = 0; i < 64; ++i) texels.push_back({i * 4, 255 - i * 3, 90, i % 5 == 0 ? 40 : 255});
@@ -36,7 +36,7 @@ Scene scene_of_everything(Material::Alpha alpha) {
   return scene;
 }
 
-/// Views from all around, of two sizes and two numbers of samples.
+/// Views from all around, with two sizes and two numbers of samples.
 View view_of_flight(const Surfaces& surfaces, int i, int samples = 1) {
   View view = frame(surfaces, i % 5 == 4 ? 100 : 160, 120, {.samples = samples});
   const glm::dvec3 middle = surfaces.bounds().centre(), from = view.eye() - middle;
@@ -197,7 +197,7 @@ TEST(Shader, RefusesWhatItCannotReadBeforeItAsksForMemory) {
   expect_same(good, shader.take_bitmap());
   EXPECT_TRUE(shader.take_bitmap().rgba.empty());
   EXPECT_EQ(shader.take_bitmap().width, 0);
-  // What it takes is what key_light_view() gives.
+  // The light's picture must use the view of key_light_view().
   const Visible light = zbuffer(surfaces, *key_light_view(visible, surfaces.bounds()));
   expect_same(good, shader.shade_bitmap({.visible = &visible, .seen_by_light = &light}));
 }

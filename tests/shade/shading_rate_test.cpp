@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of which two by two pixels share colours, beside those of which every pixel has its own.
+// Pictures where two by two pixels share colours, against pictures where every pixel has its own.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ View odd_view(const Surfaces& surfaces, int samples) {
   return view;
 }
 
-/// What the samples of a pixel see, if that is one primitive.
+/// The primitive that all samples of a pixel show; no_primitive if they show several.
 PrimitiveId only_primitive(const Visible& visible, int x, int y) {
   const PrimitiveId first = visible.primitives[visible.index(x, y)];
   for (int s = 1; s < visible.view.samples; ++s)
@@ -36,7 +36,7 @@ PrimitiveId only_primitive(const Visible& visible, int x, int y) {
   return first;
 }
 
-/// The pixel whose colour the one at (x, y) is to have.
+/// The pixel whose colour the one at (x, y) takes.
 glm::ivec2 leader_of(const Visible& visible, int x, int y) {
   const PrimitiveId own = only_primitive(visible, x, y);
   if (own == no_primitive) return {x, y};
@@ -50,7 +50,7 @@ glm::ivec2 leader_of(const Visible& visible, int x, int y) {
 
 struct Compared {
   std::size_t shared = 0;
-  float farthest = 0;  ///< of any channel from what it is to be
+  float farthest = 0;  ///< largest difference of any channel from its expected value
 };
 
 Compared compare_with_leaders(const Visible& visible, const Image& coarse, const Image& fine) {
@@ -82,7 +82,7 @@ TEST(ShadingRate, PixelsOfABlockHaveTheColourOfTheFirstThatShowsTheirPrimitive) 
       }
 }
 
-/// How far the colour of a pixel that one primitive covers is from those of all pixels of its block that it covers.
+/// How far the colour of a pixel with one primitive is from the nearest colour of that primitive's pixels in its block.
 float distance_to_block(const Visible& visible, const Image& coarse, const Image& fine, int x, int y) {
   float nearest = 1;
   for (int j = y / 2 * 2; j <= y; ++j)
@@ -95,7 +95,7 @@ float distance_to_block(const Visible& visible, const Image& coarse, const Image
 }
 
 TEST(ShadingRate, LayersOfWholePixelsAreSharedWithWholePixelsAlone) {
-  // Nothing is before anything else, so that a primitive shows wherever it covers a sample.
+  // No surface is in front of another, so a primitive shows wherever it covers a sample.
   Mesh mesh = square();
   mesh.colors.values = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}, {1, 1, 1, 1}};
   Scene scene = scene_of(std::move(mesh), colored({1, 1, 1, 1}));
@@ -127,7 +127,7 @@ TEST(ShadingRate, RaysOfShadowsAreCastFromTheFirstPixel) {
   EXPECT_LT(compare_with_leaders(visible, coarse, fine).farthest, plane_rounding);
 }
 
-/// Three squares before each other, the two in front of glass, with colours that change from pixel to pixel.
+/// Three squares one behind the other, the front two of glass, with colours that change from pixel to pixel.
 Scene panes() {
   Scene scene;
   scene.up = Axis::y;
@@ -144,7 +144,7 @@ Scene panes() {
   return scene;
 }
 
-/// The fragments of one pixel of a deep image, nearest first.
+/// Fragments of one pixel of a deep image, nearest first.
 struct DeepPixel {
   const DeepImage& image;
   std::size_t begin, end;
@@ -162,7 +162,7 @@ struct DeepPixel {
   [[nodiscard]] float value(std::string_view name, std::size_t k) const { return channel(name).floats()[begin + k]; }
 };
 
-/// The k-th of a pixel, or of the first one in its block whose k-th is of the same primitive.
+/// The k-th fragment of a pixel, or that of the first pixel in its block whose k-th has the same primitive.
 std::pair<DeepPixel, std::size_t> shared_layer(const DeepImage& deep, int x, int y, std::size_t k) {
   const DeepPixel own(deep, x, y);
   for (const glm::ivec2 at : {glm::ivec2(0, 0), glm::ivec2(1, 0), glm::ivec2(0, 1)}) {
@@ -174,7 +174,7 @@ std::pair<DeepPixel, std::size_t> shared_layer(const DeepImage& deep, int x, int
   return {own, k};
 }
 
-/// What a pixel shows of its layers laid over each other, each with the colour that it is to have.
+/// A pixel's composited layers, each with the colour that it should have.
 glm::vec4 laid_over(const DeepImage& deep, int x, int y, std::size_t& shared) {
   const DeepPixel own(deep, x, y);
   glm::vec4 sum(0);
@@ -186,7 +186,7 @@ glm::vec4 laid_over(const DeepImage& deep, int x, int y, std::size_t& shared) {
   return sum;
 }
 
-/// Whether two images of odd sizes are the same but for what pixels share.
+/// Compares two images of odd sizes, allowing for shared colours.
 void expect_shared_layers(const Surfaces& surfaces, const View& view, std::size_t least_shared) {
   const ShadeOptions options{.background = std::nullopt, .light = {.shadows = Shadows::off}};
   const Visible visible = zbuffer(surfaces, view);
@@ -211,7 +211,7 @@ TEST(ShadingRate, LayersAreSharedWhereTheyAreAsManyDeep) {
   expect_shared_layers(surfaces, view, 2000);
 }
 
-/// Tinted glass before a wall whose colour changes from pixel to pixel.
+/// Tinted glass in front of a wall whose colour changes from pixel to pixel.
 Scene tinted() {
   Scene scene = panes();
   scene.instances.resize(2);
@@ -232,7 +232,7 @@ TEST(ShadingRate, TintedGlassIsShared) {
           .shading = shading, .light = {.shadows = Shadows::off}, .layers = {.see_through = SeeThrough::always}};
       const Image fine = shade(surfaces, visible, options);
       const Image coarse = shade(surfaces, visible, with_rate(options, ShadingRate::each_2x2));
-      // Colours change slowly from pixel to pixel; those of other triangles, and of edges, are farther away.
+      // Colours change slowly from pixel to pixel; those of other triangles and of edges are farther away.
       float farthest = 0;
       for (int y = 0; y < view.height; ++y)
         for (int x = 0; x < view.width; ++x) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shadows against rays: what the map says of a point must be what a ray to the light says, but for a soft edge.
+// Shadow maps against rays: at each point, the map must agree with a ray to the light, except at a soft edge.
 #include "shade/shadow/shadow_map.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-/// A floor of side 4 at z = 0 and a square of side 1 that floats above its middle, seen from above.
+/// A floor of side 4 at z = 0, and a square of side 1 floating above its middle, seen from above.
 Scene floor_and_roof(double height) {
   Scene scene = scene_of(square());
   scene.instances[0].world_from_mesh = glm::dmat4(2.0);
@@ -30,7 +30,7 @@ struct Shadowed {
   Scene scene;
   Surfaces surfaces;
   Visible visible;
-  Visible planes;  ///< of the map
+  Visible planes;  ///< borrowed by the map
   ShadowMap map;
 
   Shadowed(Scene s, const glm::dvec3& to_light, const View& view = front_view(256), const Execution& execution = {})
@@ -53,7 +53,7 @@ TEST(ShadowMap, AgreesWithRaysAwayFromTheEdge) {
       for (double y = -1.8; y < 1.8; y += 0.07) {
         const glm::dvec2 hit = glm::dvec2(x, y) + height / to_light.z * glm::dvec2(to_light);
         const double outside = std::max(std::abs(hit.x), std::abs(hit.y)) - 0.5;
-        if (std::abs(outside) < 0.06) continue;  // the soft edge, and the bias
+        if (std::abs(outside) < 0.06) continue;  // too close to the soft edge, or within the bias
         ASSERT_EQ(shadowed.at({x, y, 0}), outside > 0 ? 1.0f : 0.0f) << x << ", " << y;
         in_shadow += outside < 0;
       }
@@ -86,7 +86,7 @@ TEST(ShadowMap, TheRoofIsLit) {
 }
 
 TEST(ShadowMap, WhatIsNotInThePictureStillThrowsItsShadow) {
-  // The view sees a corner of the floor only; the roof stands outside of it, towards the light.
+  // The view shows only a corner of the floor; the roof is outside of the view, towards the light.
   View view = front_view(256);
   view.projection = make_orthographic(0.6, 1.4, -0.4, 0.4, {1, 20});
   const double height = 0.4;
@@ -95,7 +95,7 @@ TEST(ShadowMap, WhatIsNotInThePictureStillThrowsItsShadow) {
   EXPECT_EQ(shadowed.at({0.9, 0, 0.39}), 1.0f);
 }
 
-// As from the front, with the light overhead: the picture's up says nothing of how to turn the map.
+// A view from the front with the light overhead: the picture's up does not determine the rotation of the map.
 TEST(ShadowMap, IsThereForALightStraightAboveOrBelowThePicture) {
   for (const double side : {1.0, -1.0}) {
     View front = front_view(256);
@@ -131,7 +131,7 @@ TEST(ShadowMap, DoesNotDependOnThreads) {
   for (double x = -1; x < 1; x += 0.01) ASSERT_EQ(one.at({x, 0.3 * x, 0}), many.at({x, 0.3 * x, 0})) << x;
 }
 
-/// The tent over the texels around a point, one by one in doubles.
+/// The tent filter over the texels around a point, one by one in doubles.
 double filtered_one_by_one(const ShadowGrid& grid, const glm::vec3& position, const glm::vec3& normal) {
   const double x = glm::dot(grid.texel_x, position) + grid.at_eye.x,
                y = glm::dot(grid.texel_y, position) + grid.at_eye.y;

@@ -31,7 +31,7 @@ Mesh box() {
   return mesh;
 }
 
-/// An open tube about z with flat sides.
+/// An open tube about z with flat faces.
 Mesh tube(int sides) {
   Mesh mesh;
   const auto at = [&](int i, float z) {
@@ -80,13 +80,13 @@ TEST(SmoothNormals, ATubeIsRound) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
       const glm::vec3& p = mesh.positions[mesh.triangles[t][int(k)]];
-      // Whichever way its quads are split: the angle weighs two triangles as much as one.
+      // The quads may be split either way: weighting by angle makes two triangles count as much as one.
       EXPECT_LT(glm::length(normal_at(normals, t, k) - glm::vec3(p.x, p.y, 0)), 5e-3f);
     }
 }
 
 TEST(SmoothNormals, TheCreaseAngleDecides) {
-  // Tubes turn by 360 / sides degrees from side to side.
+  // Adjacent faces of a tube differ by 360 / sides degrees.
   for (const auto& [sides, is_round] : {std::pair(8, false), std::pair(10, true)}) {
     const Mesh mesh = tube(sides);
     const glm::vec3 n = normal_at(smooth_normals(mesh, all), 0, 0);
@@ -128,7 +128,7 @@ TEST(SmoothNormals, HostileMeshesAreSafe) {
   const PackedCornerNormals normals = smooth_normals(mesh, all);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(glm::length(normal_at(normals, t, k)), 1.0f, 1e-5f);
-  // The bad ones do not spoil their neighbours.
+  // Bad vertices do not spoil their neighbours.
   EXPECT_LT(glm::length(normal_at(normals, 0, 0) - glm::vec3(p.x, p.y, 0)), 5e-3f);
   EXPECT_EQ(smooth_normals(Mesh{}, all).size(), 0u);
 }

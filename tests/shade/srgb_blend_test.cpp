@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures blended as light and as viewers of figures blend, with numbers that can be worked out on paper.
+// Pictures blended as light, and as viewers of figures blend, with numbers computed by hand.
 #include <gtest/gtest.h>
 
 #include "frontmost/frontmost.h"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr glm::vec4 kHalfRed{1, 0, 0, 0.5f};
 
-/// The middle, where red is before blue, and the corner, where red is before the background.
+/// The middle, where red covers blue, and a corner, where red covers the background.
 struct Shown {
   glm::ivec4 over_blue, over_background;
 };
@@ -20,7 +20,7 @@ glm::ivec4 pixel_of(const Bitmap& bitmap, int x, int y) {
   return {p[0], p[1], p[2], p[3]};
 }
 
-/// A half-transparent red square of side 2 before a blue one of side 1.
+/// A half-transparent red square of side 2 in front of a blue one of side 1.
 Scene red_before_blue() {
   Scene scene = layered_scene(Material::Alpha::blend, kHalfRed);
   scene.instances[1].world_from_mesh = glm::dmat4(0.5);
@@ -51,7 +51,7 @@ TEST(SrgbBlend, HalfARedIsWhatViewersMakeOfIt) {
   }
 }
 
-// Over nothing there is nothing to blend with.
+// Without a background there is nothing to blend with.
 TEST(SrgbBlend, ATransparentBackgroundKeepsColourAndAlpha) {
   for (const Blend blend : {Blend::linear, Blend::srgb}) {
     const Shown found = shown({.shading = Shading::flat, .background = std::nullopt, .pixels = {.blend = blend}});
@@ -59,7 +59,7 @@ TEST(SrgbBlend, ATransparentBackgroundKeepsColourAndAlpha) {
   }
 }
 
-// The red shapes of a figure, laid over white by hand, are the picture.
+// The red shapes of a figure, blended over white by hand, equal the picture.
 TEST(SrgbBlend, PicturesAreWhatFiguresAre) {
   const Scene scene = red_before_blue();
   const Surfaces surfaces(scene);
@@ -76,7 +76,7 @@ TEST(SrgbBlend, PicturesAreWhatFiguresAre) {
   EXPECT_GT(reds, 0);
 }
 
-// What is opaque keeps its colours, to the step.
+// Opaque surfaces keep their colours, to the step.
 TEST(SrgbBlend, OpaqueColoursStayWhatTheyAre) {
   const Scene scene = builtin("teapot");
   const Surfaces surfaces(scene);
@@ -86,12 +86,12 @@ TEST(SrgbBlend, OpaqueColoursStayWhatTheyAre) {
   for (std::size_t i = 0; i < one.rgba.size(); ++i) EXPECT_NEAR(one.rgba[i], other.rgba[i], 1);
 }
 
-// Rims are averaged in the same numbers: between black and white in the middle of the bytes.
+// Rims are averaged in the same values: between black and white, the middle of the bytes.
 TEST(SrgbBlend, RimsAreAsWellBlended) {
   const Scene scene = scene_of(square(), colored({0, 0, 0, 1}));
   const Surfaces surfaces(scene);
   View view = front_view(64, 16);
-  view.projection = make_orthographic(-2 + 2.0 / 64, 2 + 2.0 / 64, -2, 2, {1, 20});  // half a pixel to the left
+  view.projection = make_orthographic(-2 + 2.0 / 64, 2 + 2.0 / 64, -2, 2, {1, 20});  // shifted half a pixel to the left
   const Visible visible = zbuffer(surfaces, view);
   const auto rim = [&](Blend blend) {
     return pixel_of(shade_bitmap(surfaces, visible, {.shading = Shading::flat, .pixels = {.blend = blend}}), 15, 32).r;

@@ -31,7 +31,7 @@ inline Scene scene_of(Mesh mesh, const Material& material) {
   return scene;
 }
 
-/// A see-through square before a larger opaque blue one.
+/// A see-through square in front of a larger opaque blue one.
 inline Scene layered_scene(Material::Alpha alpha, const glm::vec4& front) {
   Material see_through = colored(front);
   see_through.alpha = alpha;
@@ -44,7 +44,7 @@ inline Scene layered_scene(Material::Alpha alpha, const glm::vec4& front) {
   return scene;
 }
 
-/// Looks at the origin from (0, 0, 10); the picture is 4 x 4 units in parallel projection.
+/// Looks at the origin from (0, 0, 10), in parallel projection; the picture is 4 x 4 units.
 inline View front_view(int size = 64, int samples = 1) {
   View view;
   view.width = view.height = size;
@@ -62,8 +62,8 @@ inline Texture texture_of(int width, int height, std::vector<glm::u8vec4> pixels
   return texture;
 }
 
-/// A triangle's planes are rounded about the first of its pixels that is shaded: colours differ by less than this where
-/// that is another one.
+/// Allowed difference of colours. A triangle's planes are rounded about its first shaded pixel, so colours differ by
+/// less than this if that is another pixel.
 inline constexpr float plane_rounding = 2e-5f;
 
 inline glm::vec4 color_at(const Image& image, int x, int y) {

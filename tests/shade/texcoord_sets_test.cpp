@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Further sets of texture coordinates: a model whose sets are exchanged, and whose textures name the other set, makes
-// the same pictures to the bit.
+// Further sets of texture coordinates: if a model's sets are exchanged and its textures name the other set, the
+// pictures are the same to the bit.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -34,8 +34,8 @@ std::vector<glm::vec2> random_texcoords(std::size_t count, Random& random) {
   return values;
 }
 
-/// Triangles of three materials: opaque with every texture, cut out, and blended. All textures use the set `used`, but
-/// for the emissive one, which uses `other`; sets that are not used hold nonsense, colours are those of vertices.
+/// Triangles of three materials: opaque with every texture, cut out, and blended. All textures use the set `used`,
+/// except the emissive one, which uses `other`. Unused sets hold nonsense; colours are by vertex.
 Scene scene_with_sets(std::uint32_t used, std::uint32_t other) {
   Random random(5);
   Mesh mesh = random_mesh(Kind::soup, 60, 3);
@@ -65,7 +65,7 @@ Scene scene_with_sets(std::uint32_t used, std::uint32_t other) {
   return scene;
 }
 
-/// Everything that looks textures up, one after the other.
+/// Results of everything that looks up textures, one after the other.
 std::vector<float> everything(const Scene& scene) {
   const Surfaces surfaces(scene);
   View view = frame(surfaces, 70, 50);
@@ -101,7 +101,7 @@ TEST(TexcoordSets, ExchangedSetsMakeTheSamePictures) {
     ASSERT_EQ(exchanged.size(), first.size()) << used;
     EXPECT_EQ(std::memcmp(exchanged.data(), first.data(), first.size() * sizeof(float)), 0) << used;
   }
-  // The test can tell sets apart.
+  // The comparison can tell sets apart.
   Scene wrong = scene_with_sets(1, 0);
   for (Material& material : wrong.materials) material.base_color_texture.set = 0;
   EXPECT_NE(everything(wrong), first);

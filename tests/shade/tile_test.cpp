@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which fragments a tile finds, and how their colours are summed.
+// Fragments that a tile finds, and the sums of their colours.
 #include "shade/tile.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;
 
-/// A Visible of `count` tiny triangles' ids, as no method would make it.
+/// A made-up Visible with ids of `count` tiny triangles.
 struct Fake {
   Scene scene;
   Surfaces surfaces;
@@ -44,7 +44,7 @@ struct Seen {
   glm::vec2 screen;
 };
 
-/// All fragments of a picture by pixel, and the sums that the tiles gave.
+/// All fragments of a picture by pixel, and the tiles' sums.
 std::map<std::pair<int, int>, std::vector<Seen>> fragments(const Fake& fake) {
   std::map<std::pair<int, int>, std::vector<Seen>> result;
   const TriangleStore store(fake.surfaces);
@@ -74,7 +74,7 @@ TEST(Tile, EverySampleBelongsToExactlyOneFragment) {
   std::mt19937 random(test::noted_seed(5));
   for (const int samples : {1, 2, 4, 8, 16}) {
     Fake fake(3000, 131, 21, samples);
-    // Long runs, salt, and nothing, in turn; more triangles in a tile than its table holds.
+    // Long runs, salt noise and emptiness in turn; a tile has more triangles than its table holds.
     for (PrimitiveId& id : fake.visible.primitives) {
       const auto draw = random() % 4;
       id = draw == 0 ? no_primitive : draw == 1 ? 7 : PrimitiveId(random() % 3000);

@@ -15,7 +15,7 @@ namespace {
 
 using test::kNan;
 
-/// 200 x 100 pixels; the eye at the origin looks down -z, one unit at distance 1 spans 50 pixels.
+/// A view of 200 x 100 pixels from the origin along -z; one unit at distance 1 spans 50 pixels.
 View view_at_origin() {
   View view;
   view.width = 200;
@@ -33,11 +33,11 @@ TriangleSetup set_up(const View& view, const std::array<glm::vec3, 3>& corners, 
 }
 
 // The worked example of the literature: a segment from (-4, 2) to (2, 5) in (x, distance), seen from the origin. Half
-// way across the picture plane the distance is not the mean of the ends.
+// way across the picture plane, the distance is not the mean of the ends.
 TEST(TriangleSetup, DepthOfTheWorkedExampleIsInterpolatedByItsReciprocal) {
   const std::array<glm::vec3, 3> corners{{{-4, 0, -2}, {2, 0, -5}, {2, 1, -5}}};
   const View view = view_at_origin();
-  // The point of the segment at distance 4: t = 2/3, x = 0.
+  // The segment's point at distance 4: t = 2/3, x = 0.
   const glm::vec2 p = screen_of({0, 0, -4});
   const TriangleSetup setup = set_up(view, corners, p);
   const Barycentric b = barycentric(setup, p.x, p.y);
@@ -122,7 +122,8 @@ TEST(TriangleSetup, DegenerateAndEdgeOnTrianglesGiveTheirMiddle) {
   }
 }
 
-// u and v along a quad that reaches far away: the derivative must be that of the perspective map, not of its chord.
+// u and v along a quad that extends far away: the gradient must be the derivative of the perspective map, not its
+// chord.
 TEST(TriangleSetup, TextureGradientsAreTheDerivativesOfThePerspectiveMap) {
   const std::array<glm::vec3, 3> corners{{{-2, -1, -1.5f}, {2, -1, -1.5f}, {2, -1, -30}}};
   const std::array<glm::vec2, 3> texcoord{{{0, 0}, {4, 0}, {4, 28.5f}}};  // u = x + 2, v = distance - 1.5

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dimensions of parts of known sizes: which numbers there are, each once, and that nothing lies on them.
+// Dimensions of parts of known sizes: the expected numbers, each once, and nothing drawn over them.
 #include "sheets/dimensions/dimensions.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ using namespace detail;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// A box from the origin, without lids where holes are.
+/// A box from the origin; faces with holes have no lids.
 void add_box(Mesh& mesh, const glm::vec3& size) {
   const auto corner = [&](int i) { return glm::vec3(i & 1 ? size.x : 0, i & 2 ? size.y : 0, i & 4 ? size.z : 0); };
   const int faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
@@ -30,7 +30,7 @@ void add_box(Mesh& mesh, const glm::vec3& size) {
   }
 }
 
-/// A peg along z with lids.
+/// A peg along z, with lids.
 void add_peg(Mesh& mesh, const glm::vec3& foot, float radius, float height, int sides = 36) {
   const auto at = [&](int k, float z) {
     const double angle = 2 * std::numbers::pi * (k % sides) / sides + 0.03;
@@ -44,7 +44,8 @@ void add_peg(Mesh& mesh, const glm::vec3& foot, float radius, float height, int 
   }
 }
 
-/// A ring of square section, 10 high, with bevels at the bore as wide as high: one of 45 degrees, or rounded by six.
+/// A ring of square section, 10 high, with a bevel at each end of the bore as wide as high: at 45 degrees, or rounded
+/// in six steps.
 void add_ring(Mesh& mesh, const glm::dvec3& foot, double bore, double bevel, bool is_rounded) {
   constexpr int sides = 36;
   std::vector<glm::dvec2> profile = {{bore + 5, 0}};
@@ -67,7 +68,7 @@ void add_ring(Mesh& mesh, const glm::dvec3& foot, double bore, double bevel, boo
     }
 }
 
-/// Views of a scene one below the other at full scale on a large page.
+/// Views of a scene at full scale, one below the other on a large page.
 class DimensionsTest : public testing::Test {
  protected:
   void draw(std::initializer_list<NamedView> directions) {
@@ -106,7 +107,7 @@ class DimensionsTest : public testing::Test {
   std::vector<Drawing> drawings_;
 };
 
-/// Arrowheads are the closed paths among the lines.
+/// Number of arrowheads, which are the closed paths among the lines.
 std::size_t arrows_of(const Dimensions& all) {
   std::size_t count = 0;
   if (!all.layer.groups.empty())
@@ -123,7 +124,7 @@ TEST(DimensionText, HasNoTrailingZeros) {
   EXPECT_EQ(dimension_text(0.266, 2), "0.266");
   EXPECT_EQ(dimension_text(0.0123456, 2), "0.0123");
   EXPECT_EQ(dimension_text(0, 2), "0");
-  // Two sides of one size are not 1.87 and 1.88.
+  // Two equal sides must not become 1.87 and 1.88.
   EXPECT_EQ(dimension_text(1.8749999, 2), "1.875");
   EXPECT_EQ(dimension_text(1.8750001, 2), "1.875");
   EXPECT_EQ(dimension_text(1234.5678, 0), "1235");
@@ -144,7 +145,7 @@ TEST_F(DimensionsTest, ABoxHasThree) {
   EXPECT_EQ(all.count, 3u);
   EXPECT_EQ(all.left_out, 0u);
   EXPECT_EQ(arrows_of(all), 6u);
-  // 40, 30 and 20 take two figures each.
+  // 40, 30 and 20 have two digits each.
   PageGroup expected;
   for (const char* const number : {"40", "30", "20"}) add_text(expected, number, {0, 0});
   ASSERT_EQ(all.layer.groups.size(), 2u);
@@ -169,7 +170,7 @@ TEST_F(DimensionsTest, StandTenMillimetresFromWhatTheyMeasure) {
     return ElementsAre(testing::DoubleNear(a, 1e-4), testing::DoubleNear(b, 1e-4), testing::DoubleNear(c, 1e-4),
                        testing::DoubleNear(d, 1e-4));
   };
-  // Extension lines from 1 mm below the corners to 2 mm beyond the dimension line, and that.
+  // The extension lines run from 1 mm below the corners to 2 mm beyond the dimension line; the latter is checked too.
   EXPECT_THAT(straight, testing::IsSupersetOf({near(0, 1, 0, 12), near(40, 1, 40, 12), near(0, 10, 40, 10)}));
   EXPECT_THAT(straight, testing::Contains(near(-10, 0, -10, -30)));
   EXPECT_GT(high.x - low.x, 39.9);
@@ -188,7 +189,7 @@ TEST_F(DimensionsTest, NumbersAreInTheUnitOfTheDrawing) {
 
 TEST_F(DimensionsTest, OfOneCylinderAreItsDiameterAndItsLength) {
   Mesh mesh;
-  add_peg(mesh, {0, 0, 0}, 10, 50, 37);  // no corner lies where it is widest
+  add_peg(mesh, {0, 0, 0}, 10, 50, 37);  // no vertex lies at its widest point
   scene_ = scene_of(mesh);
   draw({NamedView::front, NamedView::top, NamedView::left});
   const Dimensions all = dimensioned();
@@ -232,7 +233,7 @@ TEST_F(DimensionsTest, WhatIsNotDrawnIsCounted) {
   Mesh mesh;
   add_box(mesh, {100, 60, 20});
   add_peg(mesh, {20, 30, 5}, 6, 8);
-  add_peg(mesh, {20, 30, 15}, 6, 2);  // the same once more
+  add_peg(mesh, {20, 30, 15}, 6, 2);  // the same dimension again
   add_peg(mesh, {60, 30, 5}, 3, 8);
   scene_ = scene_of(mesh);
   draw({NamedView::front, NamedView::top});
@@ -249,7 +250,7 @@ TEST_F(DimensionsTest, CylindersOfFewSidesAreCounted) {
   Mesh mesh;
   add_box(mesh, {100, 60, 20});
   add_peg(mesh, {20, 30, 20}, 6, 8, 12);
-  add_peg(mesh, {20, 30, 28}, 6, 2, 12);  // the same once more
+  add_peg(mesh, {20, 30, 28}, 6, 2, 12);  // the same dimension again
   add_peg(mesh, {60, 30, 20}, 3, 8, 8);
   add_peg(mesh, {80, 30, 20}, 3, 8, 6);
   scene_ = scene_of(mesh);

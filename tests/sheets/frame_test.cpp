@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames and title blocks: ISO 5457's sizes on every paper, and fields that hold what they are told.
+// Frames and title blocks: ISO 5457's sizes on every paper, and fields with the given texts.
 #include <set>
 
 #include "io/drawings/sample_page.h"
@@ -13,7 +13,7 @@ using namespace detail;
 
 struct SheetZones {
   glm::dvec2 size;
-  int columns, rows;  // of zones, as the standard's table has them
+  int columns, rows;  // number of zones, from the standard's table
 };
 constexpr SheetZones sheets[] = {
     {{841, 1189}, 16, 24}, {{1189, 841}, 24, 16}, {{594, 841}, 12, 16}, {{841, 594}, 16, 12}, {{420, 594}, 8, 12},
@@ -71,7 +71,7 @@ TEST(Frame, ZonesAreFiftyMillimetresFromTheMiddleAndNamed) {
       ends[from.x == to.x ? 0 : 1].insert(from.x == to.x ? from.x : from.y);
     }
     for (const int axis : {0, 1}) {
-      // All that part zones, but the one in the middle, and the frame's two corners.
+      // All lines that separate zones, except the middle one, plus the frame's two corners.
       EXPECT_EQ(int(ends[axis].size()), (axis == 0 ? sheet.columns : sheet.rows)) << sheet.size.x << ' ' << axis;
       for (const double at : ends[axis])
         EXPECT_TRUE(at == space.low[axis] || at == space.high[axis] ||
@@ -142,7 +142,7 @@ TEST(TitleBlockDrawing, TextStaysInItsField) {
       if (group.name == "title block: text")
         for (const glm::dvec2& p : group.points) {
           const glm::dvec2 q = p - corner;
-          // Nothing lies on the field's sides.
+          // No point lies on the field's borders.
           for (const double x : {left, right}) EXPECT_FALSE(std::abs(q.x - x) < 0.3 && q.y > top && q.y < bottom);
           found += q.x > left && q.x < right && q.y > top && q.y < bottom;
         }
@@ -163,7 +163,7 @@ TEST(TitleBlockDrawing, TheConeStandsWhereItsProjectionPutsIt) {
     ASSERT_EQ(symbol.paths.size(), 3u);
     const glm::dvec2 *const cone = symbol.points.data(), *const ring = cone + symbol.paths[1].first;
     EXPECT_EQ(cone[0].x < ring->x, is_first);
-    EXPECT_LT(cone[3].y - cone[0].y, cone[2].y - cone[1].y);  // its narrow end is on the left: both rings are seen
+    EXPECT_LT(cone[3].y - cone[0].y, cone[2].y - cone[1].y);  // its narrow end is on the left: both rings are visible
     EXPECT_LT(cone[0].x, cone[1].x);
     EXPECT_EQ(symbol.bulges[symbol.paths[2].first], 1);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lettering: where texts stand and how large, and that every letter keeps to its width.
+// Lettering: position and size of texts, and every letter within its width.
 #include <map>
 #include <numbers>
 
@@ -10,7 +10,7 @@
 namespace frontmost::test {
 namespace {
 
-/// What paths cover, arcs by points on them.
+/// Bounds of paths; arcs are represented by points on them.
 struct Extent {
   glm::dvec2 low{1e9}, high{-1e9};
   void include(const glm::dvec2& p) {
@@ -50,14 +50,14 @@ std::string utf8(char32_t code) {
 TEST(Lettering, CapitalsReachFromTheirPlaceToTheirHeight) {
   const PageGroup group = lettered("H", {20, 30}, {10});
   EXPECT_EQ(group.pen.width, 1);
-  const Extent extent = extent_of(group);  // of the middle of a pen of 1 mm
+  const Extent extent = extent_of(group);  // for the centre line of a pen of 1 mm
   EXPECT_NEAR(extent.low.x, 20.5, 1e-12);
   EXPECT_NEAR(extent.high.y, 29.5, 1e-12);
   EXPECT_NEAR(extent.low.y, 20.5, 1e-12);
   EXPECT_NEAR(extent.high.x + 0.5 - 20, text_width("H", 10), 1e-12);
   EXPECT_NEAR(extent_of(lettered("x", {0, 0}, {10})).low.y, -6.5, 1e-12);
   EXPECT_NEAR(extent_of(lettered("p", {0, 0}, {10})).high.y, 2.5, 1e-12);
-  EXPECT_NEAR(extent_of(lettered("O", {0, 0}, {10})).low.y, -9.5, 1e-12);  // of an arc
+  EXPECT_NEAR(extent_of(lettered("O", {0, 0}, {10})).low.y, -9.5, 1e-12);  // the lowest point is on an arc
 }
 
 TEST(Lettering, WidthsAddUpWithTwoWidthsOfThePenBetween) {
@@ -85,7 +85,7 @@ TEST(Lettering, TurnsCounterClockwiseForWhoReads) {
   const PageGroup level = lettered("R9"), up = lettered("R9", {50, 60}, {3.5, std::numbers::pi / 2});
   ASSERT_EQ(level.points.size(), up.points.size());
   EXPECT_EQ(level.bulges, up.bulges);
-  for (std::size_t i = 0; i < up.points.size(); ++i)  // what ran to the right runs upwards
+  for (std::size_t i = 0; i < up.points.size(); ++i)  // text to the right becomes text upwards
     EXPECT_LT(glm::distance(up.points[i], glm::dvec2(50 + level.points[i].y, 60 - level.points[i].x)), 1e-12);
 }
 
@@ -105,14 +105,14 @@ TEST(Lettering, EveryLetterOfLatin1IsThereAndNoOtherOne) {
   const std::string box = shape_of("\xE6\xBC\xA2");
   EXPECT_EQ(lettered("\xE6\xBC\xA2").paths.size(), 1u);
   for (char32_t code = 0x21; code <= 0xFF; ++code) {
-    if ((code >= 0x7F && code <= 0xA0) || code == 0xAD) continue;  // control characters, and hyphens told before
+    if ((code >= 0x7F && code <= 0xA0) || code == 0xAD) continue;  // control characters, and hyphens checked above
     const std::string shape = shape_of(utf8(code));
     EXPECT_NE(shape, box) << unsigned(code);
     EXPECT_FALSE(shape.empty()) << unsigned(code);
     const auto [known, is_new] = shapes.try_emplace(shape, code);
     EXPECT_TRUE(is_new) << unsigned(code) << " looks like " << unsigned(known->second);
   }
-  // What is no text is a box for each, and never left out.
+  // Characters without a shape become a box each, and are never left out.
   for (const char* const odd : {"\n", "\x1b", "\x7f", "\xff", "\xc3"}) EXPECT_EQ(shape_of(odd), box) << odd;
   EXPECT_EQ(lettered(std::string(3, '\0')).paths.size(), 3u);
 }
@@ -128,7 +128,7 @@ TEST(Lettering, NoLetterLeavesItsWidthOrItsLine) {
     EXPECT_LE(extent.high.y, 3 - 0.5) << text;
     EXPECT_TRUE(group.bulges.size() == group.points.size());
   };
-  for (char32_t code = 1; code < 0x800; ++code) check(utf8(code));  // accents of Central Europe among them
+  for (char32_t code = 1; code < 0x800; ++code) check(utf8(code));  // includes the accents of Central Europe
   for (const char* const text : {"\xE2\x8C\x80", "\xE2\x82\xAC", "\xE2\x89\xA4", "\xE2\x80\x9E", "\xE2\x80\xA6"})
     check(text);
 }
@@ -140,7 +140,7 @@ TEST(Lettering, IsOfLinesAndArcsInEveryFormat) {
       << saved(page, PageFormat::svg);
   EXPECT_NE(operators_of(saved(page, PageFormat::pdf)).find(" c\n"), std::string::npos);
   EXPECT_NE(saved(page, PageFormat::dxf).find("42\n1\n"), std::string::npos);
-  // Behind lines that have no arcs yet.
+  // The text follows lines that have no arcs yet.
   PageGroup mixed{"", {}};
   mixed.add(std::vector<glm::dvec2>{{1, 1}, {2, 3}}, false);
   add_text(mixed, "S", {5, 5});

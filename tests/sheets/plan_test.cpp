@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scale of sheets, how they lie, and that views keep clear of title blocks.
+// Scale and orientation of sheets, and views clear of title blocks.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -40,7 +40,7 @@ TEST(PlanSheet, NoViewReachesTheTitleBlockAndNoLargerStandardScaleWould) {
       is_beside |= to.y > block.y + 0.001;
     }
     beside += is_beside;
-    // All of it at the next scale has no room even as far from the block as can be, on neither side of the paper.
+    // At the next scale the views would not fit even as far from the block as possible, in either orientation.
     const double next = standard_scale(plan.scale * 2.6);
     ASSERT_GT(next, plan.scale);
     const glm::dvec2 upright = options.page->size;
@@ -50,11 +50,11 @@ TEST(PlanSheet, NoViewReachesTheTitleBlockAndNoLargerStandardScaleWould) {
       EXPECT_FALSE(fits && layout.leaves_free(page - glm::dvec2(200, 56), next, low)) << round;
     }
   }
-  EXPECT_GT(beside, 10);  // views use the room beside the block too
+  EXPECT_GT(beside, 10);  // views use the space beside the block too
 }
 
 TEST(PlanSheet, PapersLieAsStandardsHaveThemWhereTheScaleIsTheSame) {
-  // Squares of 10 mm in a row or in a column.
+  // Views are squares of 10 mm, in a row or in a column.
   const auto is_upright = [](int columns, int rows, std::optional<double> scale, const char* paper) {
     SheetOptions options;
     options.title_block.emplace();
@@ -70,7 +70,7 @@ TEST(PlanSheet, PapersLieAsStandardsHaveThemWhereTheScaleIsTheSame) {
   EXPECT_FALSE(is_upright(1, 1, 5, "a3"));
   EXPECT_TRUE(is_upright(1, 2, 5, nullptr));  // A4
   EXPECT_FALSE(is_upright(1, 1, {}, "a2"));
-  // Where the scale is larger on the other side it turns, and where there is no room otherwise.
+  // The page turns if the scale is larger that way, or if there is no room otherwise.
   EXPECT_TRUE(is_upright(1, 2, {}, "a2"));
   EXPECT_TRUE(is_upright(1, 3, 10, "a3"));
   EXPECT_FALSE(is_upright(3, 1, 7, "a4"));

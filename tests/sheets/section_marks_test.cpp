@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cutting lines and the names of sections have the parts that ISO 128-3 asks for, at their places.
+// Cutting lines and section names have the parts that ISO 128-3 requires, at their places.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using namespace detail;
 SectionMarks one_line(const CuttingLine& line) { return draw_section_marks(std::span(&line, 1), {}); }
 
 TEST(SectionMarks, ALineHasThickEndsArrowsAndLettersOnTheViewersSide) {
-  // Upright, and its section looks to the right: the arrows stand on the left.
+  // The line is upright and its section looks to the right: the arrows are on the left.
   const SectionMarks marks = one_line({{50, 20}, {50, 80}, {1, 0}, "A"});
   ASSERT_EQ(marks.layer.groups.size(), 4u);
   const PageGroup &thin = marks.layer.groups[0], &thick = marks.layer.groups[1], &arrows = marks.layer.groups[2];

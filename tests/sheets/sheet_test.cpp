@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole sheets by one call: sizes that can be worked out, what a sheet tells of itself, and what it refuses.
+// Whole sheets by one call: sizes computed by hand, reported facts, and refused calls.
 #include <gmock/gmock.h>
 
 #include <limits>
@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 using V = NamedView;
 
-/// 40 wide, 30 deep and 20 high, z up.
+/// A block 40 wide, 30 deep and 20 high, z up.
 Scene block(const glm::vec3& size = {40, 30, 20}) {
   Mesh mesh;
   const auto corner = [&](int i) { return glm::vec3(i & 1 ? size.x : 0, i & 2 ? size.y : 0, i & 4 ? size.z : 0); };
@@ -34,7 +34,7 @@ class SheetOfBlock : public testing::Test {
  protected:
   [[nodiscard]] Sheet drawn(const SheetOptions& options) const { return draw_sheet(surfaces_, options); }
 
-  /// What a view covers, in millimetres of the page.
+  /// Bounds of a view, in millimetres of the page.
   [[nodiscard]] static DrawingBounds box_of(const DrawnView& view) {
     const DrawingBounds box = bounds_of(view.drawing, view.shows_hidden);
     return {view.placed.on_page(box.low), view.placed.on_page(box.high)};
@@ -68,13 +68,13 @@ TEST_F(SheetOfBlock, AViewAloneIsInMillimetresWithDashes) {
   const View view = frame(surfaces_, 800, 600, {.direction = V::iso, .orthographic = true});
   const Sheet plain = draw_view(surfaces_, view, {.scale = 2});
   const Sheet dashed = draw_view(surfaces_, view, {.hidden = HiddenLines::dashed, .scale = 2});
-  // Seen along the diagonal of a cube an edge of 1 is sqrt(2/3) long; width and depth lie at 30 degrees.
+  // Seen along the diagonal of a cube, an edge of 1 is sqrt(2/3) long; width and depth appear at 30 degrees.
   EXPECT_NEAR(plain.page.width, 20 + 2 * (40 + 30) * std::sqrt(2.0 / 3) * std::cos(std::numbers::pi / 6), 1e-3);
   ASSERT_EQ(plain.page.layers.size(), 1u);
   ASSERT_EQ(dashed.page.layers.size(), 2u);
   EXPECT_EQ(dashed.page.layers[0].name, "1 hidden");
   EXPECT_EQ(dashed.page.layers[0].groups[0].pen.dashes, (std::vector<double>{3, 0.75}));
-  EXPECT_EQ(travel_of({100, 100, "", {dashed.page.layers[0]}}).paths, 3u);  // edges that meet in one corner
+  EXPECT_EQ(travel_of({100, 100, "", {dashed.page.layers[0]}}).paths, 3u);  // edges that meet in one vertex
   EXPECT_EQ(dashed.views[0].name, "");
   EXPECT_EQ(dashed.views[0].surfaces.get(), &surfaces_);
 }
@@ -131,7 +131,7 @@ TEST(SheetOfSpheres, CurvedSurfacesAreMadeAnewAndStay) {
     sheet = draw_sheet(surfaces, {.views = {V::front, V::top}});
     EXPECT_GT(sheet->views[0].surfaces->primitive_count(), surfaces.primitive_count());
   }
-  // The numbers of triangles mean something after what was given has gone.
+  // Triangle numbers stay meaningful after the input is gone.
   for (const DrawnView& view : sheet->views) {
     ASSERT_FALSE(view.drawing.edges.empty());
     for (const DrawnEdge& edge : view.drawing.edges)
@@ -147,7 +147,7 @@ TEST(SheetOfNothing, IsEmpty) {
   EXPECT_TRUE(sheet.page.layers.empty());
 }
 
-/// Half of the block is before the plane, and half behind it.
+/// The plane cuts the block in half.
 TEST_F(SheetOfBlock, PlanesMayCrossTheModel) {
   const SheetOptions whole_options{.views = {V::front}, .hidden = HiddenLines::dashed, .page = Paper{}};
   const Sheet whole = drawn(whole_options);
@@ -165,7 +165,7 @@ TEST_F(SheetOfBlock, PlanesMayCrossTheModel) {
     const Sheet half = drawn(options);
     EXPECT_FALSE(half.is_empty);
     EXPECT_EQ(half.scale, whole.scale);
-    // The face across the sight that is left has its four edges; those along it are seen from their ends.
+    // The remaining face across the view direction has its four edges; edges along that direction are seen end-on.
     const DrawingBounds box = box_of(half.views[0]), all = box_of(whole.views[0]);
     expect_box(box, all.low, all.high);
     EXPECT_EQ(edges_drawn(half), 8u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sheets: where strokes land on the page, in which layer and group, with which pen.
+// Sheets: position, layer, group and pen of strokes on the page.
 #include <cmath>
 #include <numbers>
 
@@ -10,7 +10,7 @@
 namespace frontmost::test {
 namespace {
 
-/// Two objects; strokes of every class, each from (0, 0) to (10, 0) pixels.
+/// Two objects. The tests add strokes of every class, each from (0, 0) to (10, 0) pixels.
 Scene two_objects() {
   Mesh mesh;
   add_triangle(mesh, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
@@ -53,10 +53,10 @@ TEST(DrawSheet, LayersGroupsAndPens) {
   EXPECT_EQ(page.layers[2].groups[0].name, "front: other");
   EXPECT_GT(page.layers[2].groups[0].pen.width, page.layers[1].groups[0].pen.width);
   EXPECT_NO_THROW(validate(page));
-  // Not where they are hidden: all of those have one pen.
+  // Hidden contours and creases share one pen.
   const SheetView below{"", strokes_of({hidden, {EdgeKind::silhouette, true, false, 0, 0, 0, false}}), {0, 0}, 1};
   EXPECT_EQ(page_of(surfaces, std::span(&below, 1), figure_pens(), {100, 80}).layers[0].groups.size(), 1u);
-  // In a technical drawing they share one.
+  // In a technical drawing, visible ones share a pen too.
   EXPECT_EQ(page_of(surfaces, std::span(&view, 1), technical_pens(), {100, 80}).layers[1].groups.size(), 1u);
 }
 

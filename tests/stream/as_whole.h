@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files to stream, and holding a stream against the model that is read whole.
+// Files to stream, and checks of a stream against the model that is loaded as a whole.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -69,8 +69,8 @@ inline Scene loaded(const std::vector<std::string>& paths) {
   return whole;
 }
 
-/// Framing, visibility, the lit picture and normals of a stream of the files. Where ranks stream together, all of them
-/// call this, and the first one compares what comes of it.
+/// Compares framing, visibility, the lit picture and normals of a stream with those of the loaded files. If ranks
+/// stream together, all of them call this, and the first compares the results.
 inline void expect_as_whole(Stream& stream, const std::vector<std::string>& paths, bool has_results = true) {
   const Scene scene = loaded(paths);
   const Surfaces surfaces(scene);
@@ -102,14 +102,14 @@ inline void expect_as_whole(Stream& stream, const std::vector<std::string>& path
             content_hash(id_image(surfaces, whole_map, IdKind::object)));
 }
 
-/// The same of files streamed here, in pieces of `at_once`.
+/// Compares files streamed here, in pieces of `at_once` triangles, with the loaded files.
 inline void expect_streams_as_whole(const std::vector<std::string>& paths, std::uint32_t at_once) {
   SCOPED_TRACE(testing::Message() << paths.front() << ", " << at_once << " at once");
   Stream stream(paths, {.load = {}, .triangles_at_once = at_once});
   expect_as_whole(stream, paths);
 }
 
-/// The words of the error that reading all of a stream ends in; "read" if there is none.
+/// Message of the error that reading all of a stream ends in; "read" if there is none.
 inline std::string error_of(const std::string& path, std::uint32_t at_once) {
   try {
     View view;

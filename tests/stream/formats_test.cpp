@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What files may hold: polygons, attributes, both byte orders, gaps, lies.
+// Contents of files: polygons, attributes, both byte orders, gaps, and false counts.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ TEST_F(StreamFormats, EverySeedOfTheFuzzerIsReadAsByLoad) {
       ++files;
     }
   EXPECT_GE(files, 30);
-  EXPECT_GE(read, 3 * 14);  // the others are text, cut short, or promise too much
+  EXPECT_GE(read, 3 * 14);  // the others are text, truncated, or promise too much
 }
 
 TEST_F(StreamFormats, PolygonsAttributesAndByteOrdersAreDrawnAsAWhole) {
@@ -51,7 +51,7 @@ TEST_F(StreamFormats, PolygonsAttributesAndByteOrdersAreDrawnAsAWhole) {
   }
 }
 
-/// A strip of quads whose places, list lengths and corners are of these types.
+/// A strip of quads with these types for positions, list lengths and vertex indices.
 std::string binary_ply(const std::string& place, const std::string& count, const std::string& corner, bool big) {
   std::string text = std::string("ply\nformat binary_") + (big ? "big" : "little") +
                      "_endian 1.0\nelement vertex 20\nproperty " + place + " x\nproperty " + place + " y\nproperty " +
@@ -106,7 +106,7 @@ std::string stl_with_count(std::uint32_t promised, std::size_t bytes) {
   return text + std::string(bytes, '\1');
 }
 
-/// The words of the error that reading from a pipe ends in; "read" if there is none.
+/// Message of the error that reading from a pipe ends in; "read" if there is none.
 std::string error_of_pipe(const std::string& text, ModelFormat format) {
   const FullPipe pipe(as_bytes(text));
   try {
@@ -117,7 +117,7 @@ std::string error_of_pipe(const std::string& text, ModelFormat format) {
   }
 }
 
-// What a pipe promises is known only when it is there, so less is believed.
+// The length of a pipe is unknown until its end, so the reader trusts smaller counts only.
 TEST_F(StreamFormats, PipesThatPromiseTooMuchAreRefusedBeforeMemoryIsAskedFor) {
   const std::string ply = bytes_of(seed("many_vertices.ply"));
   std::string many = ply;
@@ -177,7 +177,7 @@ TEST_F(StreamFormats, TextIsRefusedWithAReason) {
   EXPECT_THAT(test::error_of(file("empty.ply", ""), 3), testing::HasSubstr("the file is empty"));
 }
 
-/// Faces of so many corners, all of them vertex 0.
+/// Faces of `corners` corners each, all at vertex 0.
 std::string equal_faces(int faces, int corners) {
   std::string text =
       "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
@@ -190,8 +190,8 @@ std::string equal_faces(int faces, int corners) {
   return text;
 }
 
-// Faces of two corners make no triangles, polygons many of a few bytes: whatever a file is made of, no piece grows with
-// its length.
+// Faces of two corners give no triangles, while polygons give many from a few bytes. No piece grows with the file's
+// length, whatever the faces are.
 TEST_F(StreamFormats, PiecesStaySmallWhateverTheFacesAre) {
   constexpr int faces = 30'000;
   for (const int corners : {0, 2, 3, 4, 60}) {
@@ -212,7 +212,7 @@ TEST_F(StreamFormats, PiecesStaySmallWhateverTheFacesAre) {
   }
 }
 
-// A polygon longer than a piece is read whole, in steps that double.
+// A polygon longer than a piece is read as a whole, in steps that double.
 TEST_F(StreamFormats, APolygonMayBeLongerThanAPiece) {
   constexpr std::uint32_t count = 20'000;
   std::string text =
@@ -226,8 +226,8 @@ TEST_F(StreamFormats, APolygonMayBeLongerThanAPiece) {
   EXPECT_TRUE(fuzz_stream(file("long.ply", text), as_bytes(text), 1));
 }
 
-// A view in which nothing is seen asks for all triangles, whatever the size of the pieces; another for none behind the
-// first that is seen.
+// A view that shows nothing examines all triangles, whatever the size of the pieces. Any other view examines none after
+// the first visible one.
 TEST_F(StreamFormats, WhatABlankViewDoesNotShowIsTold) {
   const Scene scene = load(seed("many_vertices.ply"));
   const Surfaces surfaces(scene);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of streams, each by itself: which triangles may be seen, which touch others, and where they are kept.
+// Parts of streams, each by itself: which triangles may be visible, which touch others, and where they are stored.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -96,7 +96,7 @@ TEST(TouchedPositions, TellOnlyAThousandTrianglesAtOnePlace) {
   EXPECT_EQ(told, 1000u);
 }
 
-// The filter may let through what is not seen; it must not lose a triangle that is, nor a pixel of it.
+// The filter may let invisible triangles through; it must not lose a visible one, nor any of its pixels.
 TEST(SampleFilter, LosesNothingThatTheZBufferShows) {
   std::size_t marked = 0, all = 0;
   for (const Kind kind : all_kinds)
@@ -119,7 +119,7 @@ TEST(SampleFilter, LosesNothingThatTheZBufferShows) {
             ASSERT_EQ(marks[id], 1) << id;
             ASSERT_TRUE(x >= pixels.x0 && x < pixels.x1 && y >= pixels.y0 && y < pixels.y1) << x << ", " << y;
           }
-      // And it does leave out most of what is smaller than the distance of samples.
+      // The filter must reject most triangles smaller than the distance of samples.
       if (kind == Kind::tiny) {
         marked += std::size_t(std::count(marks.begin(), marks.end(), 1));
         all += marks.size();
@@ -133,13 +133,13 @@ TEST(SampleFilter, LeavesOutWhatIsBehindTheEyeOrBesideThePicture) {
   view.width = view.height = 16;
   view.projection = make_projection(1.0, 1, {1, 10});
   Mesh mesh;
-  add_triangle(mesh, {-1, -1, -5}, {1, -1, -5}, {0, 1, -5});                             // seen
+  add_triangle(mesh, {-1, -1, -5}, {1, -1, -5}, {0, 1, -5});                             // visible
   add_triangle(mesh, {-1, -1, 5}, {1, -1, 5}, {0, 1, 5});                                // behind
   add_triangle(mesh, {-1, -1, -50}, {1, -1, -50}, {0, 1, -50});                          // beyond the far plane
   add_triangle(mesh, {90, -1, -5}, {95, -1, -5}, {92, 1, -5});                           // beside
   add_triangle(mesh, {0.001f, 0.001f, -9}, {0.002f, 0.001f, -9}, {0.001f, 0.002f, -9});  // between samples
   add_triangle(mesh, {-1, -1, 5}, {1, -1, -5}, {0, 1, -5});                              // through the near plane
-  add_triangle(mesh, {std::nanf(""), 0, -5}, {1, -1, -5}, {0, 1, -5});  // no number: its reader decides
+  add_triangle(mesh, {std::nanf(""), 0, -5}, {1, -1, -5}, {0, 1, -5});                   // NaN: left to the reader
   std::vector<std::uint8_t> marks(7, 0);
   const PixelBounds pixels = SampleFilter(view).mark(mesh, marks);
   EXPECT_THAT(marks, ElementsAre(1, 0, 0, 0, 0, 1, 1));
@@ -185,7 +185,7 @@ TEST(KeptTriangles, KeepTheirAttributesAndNumbers) {
   EXPECT_TRUE(kept.mesh.positions.empty());
 }
 
-// Parts of a model, put together in any order, have the outline of the whole: framed to the bit as it is.
+// Parts of a model, joined in any order, have the outline of the whole: framing is the same to the bit.
 TEST(OutlineFinder, OfPartsIsThatOfTheWhole) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     Random random(seed);

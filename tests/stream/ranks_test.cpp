@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ranks that stream a model together show to the bit what the model shows that is read whole, whoever reads what.
+// Ranks that stream a model together give the picture of the whole model to the bit, whichever rank reads which part.
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
@@ -67,7 +67,7 @@ TEST_F(RanksTest, SmoothNormalsReachAcrossRanks) {
   expect_same_of_ranks({file("half1.stl", stl_of(halves[0])), file("half2.stl", stl_of(halves[1]))}, {0, 1}, 97);
 }
 
-// The camera is told, so that the first pass does not know yet how many triangles others have.
+// The camera is given, so during the first pass no rank knows yet how many triangles the others have.
 TEST_F(RanksTest, IdsAreThoseOfTheWholeFromTheFirstPassOn) {
   std::vector<std::string> paths;
   for (int i = 0; i < 3; ++i)
@@ -120,7 +120,7 @@ TEST_F(RanksTest, PipesAndStandardInputAreRefused) {
     });
 }
 
-// Ranks that see other files under the same names.
+// Ranks see different files under the same names.
 TEST(Messages, ThatDoNotFitAreErrors) {
   streaming::MessageWriter writer;
   writer.put_text("twelve bytes");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stream shows to the bit what the model shows that is read whole, however small its pieces are.
+// A stream gives the picture of the whole model to the bit, however small its pieces are.
 #include <gmock/gmock.h>
 
 #include "frontmost/streams.h"
@@ -57,7 +57,7 @@ TEST_F(StreamTest, BrokenFilesGiveTheErrorsOfTheReader) {
       EXPECT_EQ(test::error_of(path, 5), test::error_of_whole(path)) << cut;
     }
     std::string wild = text;
-    wild[wild.size() - 2] = '\x7f';  // a corner out of range; a number in STL
+    wild[wild.size() - 2] = '\x7f';  // a vertex index out of range; in STL, a coordinate
     const std::string path = file(is_stl ? "wild.stl" : "wild.ply", wild);
     EXPECT_EQ(test::error_of(path, 5), test::error_of_whole(path));
   }
@@ -71,7 +71,7 @@ TEST_F(StreamTest, OtherFormatsAreRefused) {
   EXPECT_THROW(Stream({folder_.file("missing.stl")}), Error);
 }
 
-// Files, empty in truth, that promise 4,294,967,294 triangles together: as many as a scene may have.
+// The files are empty, but promise 4,294,967,294 triangles together: as many as a scene may have.
 TEST_F(StreamTest, MoreTrianglesThanAScenesAreRefusedAtOnce) {
   const auto promising = [&](const std::string& name, std::uint32_t triangles) {
     std::string header(80, '\0');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ranks that are threads of one process: what they say to each other lies in memory that all of them see.
+// Ranks that are threads of one process: their messages lie in shared memory.
 #pragma once
 
 #include <barrier>
@@ -9,7 +9,7 @@
 
 namespace frontmost::test {
 
-/// What all of them see.
+/// State that all ranks share.
 struct MeetingPlace {
   explicit MeetingPlace(int count) : everyone(count), messages(std::size_t(count)) {}
 
@@ -51,7 +51,7 @@ class ThreadRanks final : public Ranks {
   int number_;
 };
 
-/// Calls act(ranks) on so many at once.
+/// Calls act(ranks) on `count` ranks at once.
 template <class Act>
 void on_ranks(int count, const Act& act) {
   MeetingPlace place(count);

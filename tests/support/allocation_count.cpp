@@ -9,7 +9,7 @@ namespace {
 
 std::atomic<std::size_t> allocations{0};
 
-/// Null where there is no memory.
+/// Null if memory is exhausted.
 void* counted(std::size_t bytes) noexcept {
   ++allocations;
   return std::malloc(bytes == 0 ? 1 : bytes);
@@ -22,7 +22,7 @@ void* counted_or_throw(std::size_t bytes) {
 
 }  // namespace
 
-// All of them: sanitizers ask that what one kind gave does not go back to another's.
+// All kinds are replaced: sanitizers require that memory goes back to the kind that allocated it.
 void* operator new(std::size_t bytes) { return counted_or_throw(bytes); }
 void* operator new[](std::size_t bytes) { return counted_or_throw(bytes); }
 void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept { return counted(bytes); }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often a test program has asked for memory: allocation_count.cpp replaces `new` in programs that it is part of.
+// Counts allocations of a test program: allocation_count.cpp replaces `new` in programs that link it.
 #pragma once
 
 #include <cstddef>
 
 namespace frontmost::test {
 
-/// Allocations by `new` so far, of all threads.
+/// Allocations by `new` so far, over all threads.
 [[nodiscard]] std::size_t allocation_count();
 
 }  // namespace frontmost::test

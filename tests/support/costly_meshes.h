@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small meshes of which a method that holds every two triangles against each other takes minutes.
+// Small meshes for which comparing every two triangles takes minutes.
 #pragma once
 
 #include "support/meshes.h"
 
 namespace frontmost::test {
 
-/// Triangles in one plane, turned about their common centre: all overlap in the middle.
+/// Triangles in one plane, rotated about their common centre: all overlap in the middle.
 inline Mesh turned_triangles(int count) {
   Mesh mesh;
   for (int i = 0; i < count; ++i) {
@@ -19,21 +19,21 @@ inline Mesh turned_triangles(int count) {
   return mesh;
 }
 
-/// Equal squares, each `gap` nearer to +z than the one before.
+/// Equal squares, each `gap` nearer to +z than the previous one.
 inline Mesh parallel_sheets(int count, double gap) {
   Mesh mesh;
   for (int i = 0; i < count; ++i) add_square(mesh, 1, float(i * gap));
   return mesh;
 }
 
-/// Squares in one plane about one centre, each larger than the one before.
+/// Squares in one plane about one centre, each larger than the previous one.
 inline Mesh nested_sheets(int count) {
   Mesh mesh;
   for (int i = 0; i < count; ++i) add_square(mesh, 0.1f + 0.9f * float(i) / float(count), 0);
   return mesh;
 }
 
-/// Long narrow rectangles behind each other, in all directions of a plane.
+/// Long narrow rectangles one behind the other, in all directions of a plane.
 inline Mesh crossing_strips(int count) {
   Random random(2);
   Mesh mesh;
@@ -47,7 +47,7 @@ inline Mesh crossing_strips(int count) {
   return mesh;
 }
 
-/// Very thin triangles of length 2 through one point of a plane, in all directions of it.
+/// Very thin triangles of length 2 through one point, in all directions of a plane.
 inline Mesh flat_slivers(int count) {
   Random random(4);
   Mesh mesh;

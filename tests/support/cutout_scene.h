@@ -6,7 +6,7 @@
 
 namespace frontmost::test {
 
-/// All triangles of the mesh, every second one, or none, cut out of a texture of random alphas.
+/// Which triangles have holes, from a texture of random alphas: all, every second one, or none.
 enum class Cut { all, half, none };
 
 inline Texture random_alphas(Random& random) {
@@ -21,7 +21,7 @@ inline Texture random_alphas(Random& random) {
   return texture;
 }
 
-/// Holes wherever alpha is below `cutoff`: nowhere for 0, everywhere for more than 1.
+/// A scene with holes wherever alpha is below `cutoff`: nowhere for 0, everywhere for more than 1.
 inline Scene cutout_scene(Mesh mesh, Cut cut, float cutoff, std::uint64_t seed) {
   Random random(seed + 77);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {

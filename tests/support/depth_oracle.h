@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenGL's depth test as a state machine: one fragment after the other, every sample against every triangle.
+// OpenGL's depth test as a state machine: one fragment after another, every sample against every triangle.
 #pragma once
 
 #include <cmath>
@@ -61,13 +61,13 @@ class DepthOracle {
     return value;
   }
 
-  /// Within the depth range, before any offset.
+  /// Depth within the depth range, before any offset.
   [[nodiscard]] double window_depth(float key, const DepthState& state) const {
     const bool far_is_finite = !transform_.orthographic && std::isfinite(view_.projection.clip.far);
     const double far_key = far_is_finite ? double(transform_.near) / double(transform_.far) : 0.0;
     const double at_near = state.nearer_is_greater ? state.range_far : state.range_near;
     const double at_far = state.nearer_is_greater ? state.range_near : state.range_far;
-    // One rounding of the slope, so that the same doubles come out as in the library.
+    // The slope is rounded once, so that it has the same bits as in the library.
     const double slope = (at_near - at_far) * (1 / (1 - far_key));
     const double depth = (at_far - slope * far_key) + slope * double(key);
     return std::min(std::max(depth, std::min(at_near, at_far)), std::max(at_near, at_far));
@@ -75,7 +75,7 @@ class DepthOracle {
 
   [[nodiscard]] double offset(const OracleTriangle& t, double greatest, const DepthState& state) const {
     if (state.offset.factor == 0 && state.offset.units == 0) return 0;
-    // The plane's own gradient: edge functions from the farthest corner, weighted by what the others are nearer.
+    // The plane's gradient: edge functions from the farthest vertex, weighted by how much nearer the others are.
     int far = 0;
     for (int k = 1; k < 3; ++k)
       if (t.key[k] < t.key[far]) far = k;

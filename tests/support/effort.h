@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much a random test tries, and how much work something is: told by counting, which no clock disturbs.
+// How much random tests try, and how much work a call takes, measured by counting, which other load does not disturb.
 #pragma once
 
 #include <atomic>
@@ -16,19 +16,19 @@ extern "C" {
 
 namespace frontmost::test {
 
-/// Whether a sanitizer's runtime is linked; the tests themselves may be compiled without. An emulator, which is as
-/// slow, counts as one.
+/// Whether a sanitizer's runtime is linked; the tests themselves may be compiled without it. An emulator counts as one,
+/// as it is equally slow.
 #if defined(FRONTMOST_EMULATED)
 inline const bool under_sanitizer = true;
 #else
 inline const bool under_sanitizer = &__asan_init || &__tsan_init;
 #endif
 
-/// All the seeds that are asked for; an eighth under a sanitizer, which is ten to thirty times slower and looks for
-/// other faults than wrong results.
+/// Number of seeds to try: all or, under a sanitizer, an eighth. A sanitizer is ten to thirty times slower, and looks
+/// for other faults than wrong results.
 inline std::uint64_t seeds(std::uint64_t count) { return under_sanitizer ? (count + 7) / 8 : count; }
 
-/// Says "cancelled" at the question of number `last` and at all that follow; without one, never.
+/// Cancels at question number `last` and at all later ones; without `last`, never.
 class CountingWatch {
  public:
   static constexpr std::size_t never = std::numeric_limits<std::size_t>::max();
@@ -39,7 +39,7 @@ class CountingWatch {
   CountingWatch(const CountingWatch&) = delete;
   CountingWatch& operator=(const CountingWatch&) = delete;
 
-  /// One thread, so that the number of questions is always the same.
+  /// By default one thread, so that the number of questions is always the same.
   [[nodiscard]] Execution execution(int threads = 1) const { return {.threads = threads, .watch = &watch_}; }
   [[nodiscard]] std::size_t asked() const { return asked_; }
   /// Counts from 0 again.

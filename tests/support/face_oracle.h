@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is seen of every triangle, the slow and obvious way: each triangle, clipped to the view, less everything of
-// every other one that lies before it.
+// The visible part of every triangle by brute force: the triangle, clipped to the view, less all parts of other
+// triangles in front of it.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace frontmost::test {
 
-/// In long doubles, with as many cuts as there are pairs.
+/// The oracle computes in long doubles and cuts once for each pair.
 class FaceOracle {
  public:
   using Number = long double;
@@ -33,7 +33,7 @@ class FaceOracle {
     }
   }
 
-  /// By id, of all triangles that are seen.
+  /// Visible areas by id, of all visible triangles.
   [[nodiscard]] std::map<PrimitiveId, Areas> visible_areas() const {
     std::map<PrimitiveId, Areas> all;
     for (const Face& face : faces_) {
@@ -47,7 +47,7 @@ class FaceOracle {
     return all;
   }
 
-  /// In pixels, of the union of all triangles on the screen, without regard to depth.
+  /// Area in pixels of the union of all triangles on the screen, regardless of depth.
   [[nodiscard]] Number covered_area() const {
     Number covered = 0;
     for (std::size_t i = 0; i < faces_.size(); ++i) {
@@ -66,7 +66,7 @@ class FaceOracle {
   struct Point {
     Number x, y;
   };
-  /// Turns to the right as it is seen.
+  /// A polygon that turns right as seen.
   using Polygon = std::vector<Point>;
   struct Face {
     PrimitiveId id = no_primitive;
@@ -102,11 +102,11 @@ class FaceOracle {
     }
     return kept;
   }
-  /// Appends what of a polygon lies outside of a convex one.
+  /// Appends the parts of a polygon outside a convex one.
   static void subtract(Polygon polygon, const Polygon& hole, std::vector<Polygon>& rest) {
     for (std::size_t i = 0; i < hole.size() && polygon.size() > 2; ++i) {
       const Point &a = hole[i], &b = hole[(i + 1) % hole.size()];
-      if (std::hypot(b.x - a.x, b.y - a.y) < 1e-12L) continue;  // corners that cuts left twice
+      if (std::hypot(b.x - a.x, b.y - a.y) < 1e-12L) continue;  // vertices that cuts left twice
       const HalfPlane within{-(b.y - a.y), b.x - a.x, (b.y - a.y) * a.x - (b.x - a.x) * a.y};
       Polygon outside = cut(polygon, {-within.a, -within.b, -within.c});
       if (outside.size() > 2 && doubled_area(outside) > 1e-13L) rest.push_back(std::move(outside));
@@ -114,7 +114,8 @@ class FaceOracle {
     }
   }
 
-  /// Nearness where the ray of a place meets a face's plane: 1 / distance, or minus the distance.
+  /// Nearness at the point where a ray meets a face's plane: 1 / distance, or minus the distance in parallel
+  /// projection.
   [[nodiscard]] Number nearness(const Face& face, const Point& p) const {
     const Vector place = on_image(p);
     if (view_.projection.orthographic)
@@ -135,7 +136,7 @@ class FaceOracle {
     for (const Polygon& part : parts) subtract(part, before, rest);
     return rest;
   }
-  /// The part of `other` that lies before `face` where both are.
+  /// The part of `other` in front of `face` where both overlap.
   [[nodiscard]] Polygon part_before(const Face& face, const Face& other) const {
     Polygon common = other.polygon;
     for (std::size_t i = 0; i < face.polygon.size() && common.size() > 2; ++i) {
@@ -151,7 +152,7 @@ class FaceOracle {
       is_one_plane = is_one_plane && std::abs(before.back()) <= 1e-13L * std::abs(own);
     }
     if (is_one_plane) return other.id < face.id ? common : Polygon{};
-    Polygon kept;  // what is before is affine on the screen
+    Polygon kept;  // nearness is affine on the screen
     for (std::size_t i = 0; i < common.size(); ++i) {
       const std::size_t j = (i + 1) % common.size();
       if (before[i] >= 0) kept.push_back(common[i]);
@@ -206,7 +207,7 @@ class FaceOracle {
     polygon = std::move(kept);
   }
 
-  /// The solid angle by the angles between the planes through the eye and the sides: what they exceed half a turn by.
+  /// The solid angle is the excess of the angles between the planes through the eye and the edges over half a turn.
   void add(Areas& areas, const Polygon& polygon, const Face& face) const {
     areas.pixels += doubled_area(polygon) / 2;
     for (std::size_t i = 2; i < polygon.size(); ++i) {
@@ -218,7 +219,7 @@ class FaceOracle {
             view_.projection.orthographic ? Vector(way[k].x, way[k].y, -nearness(face, p)) : way[k] / nearness(face, p);
       }
       areas.units += glm::length(glm::cross(at[1] - at[0], at[2] - at[0])) / 2;
-      // Cuts leave corners twice: angles at those would be anything.
+      // Cuts leave vertices twice, where angles are arbitrary.
       const bool is_flat = doubled_area({polygon[0], polygon[i - 1], polygon[i]}) < 1e-11L;
       if (view_.projection.orthographic || is_flat) continue;
       Number excess = -std::acos(Number(-1));

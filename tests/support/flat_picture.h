@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of triangles that can be seen through, each of one colour: as shade() makes them, and laid over each other
-// from the lists of the A-buffer in plain doubles.
+// Pictures of translucent triangles of one colour each: by shade(), and composited from the A-buffer's lists in
+// doubles.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace frontmost::test {
 
-/// The scene with its triangles in these colours, linear with straight alpha, by primitive, and from the first colour
-/// again where there are fewer. Those of alpha 1 are opaque, all others blended.
+/// The scene with its triangles in these colours (linear, straight alpha) by primitive; the colours repeat if there are
+/// fewer. Triangles of alpha 1 are opaque, all others blended.
 inline Scene painted(Scene scene, std::span<const glm::vec4> colors) {
   scene.materials.assign(colors.size(), Material());
   for (std::size_t i = 0; i < colors.size(); ++i) {
@@ -28,7 +28,7 @@ inline Scene painted(Scene scene, std::span<const glm::vec4> colors) {
   return scene;
 }
 
-/// What shade() shows of all layers in their base colours, over nothing.
+/// Picture by shade() of all layers in their base colours, without a background.
 inline Image flat_picture(const Surfaces& surfaces, const View& view, const AbufferOptions& options = {},
                           const Execution& execution = {}) {
   ShadeOptions flat{.shading = Shading::flat, .background = std::nullopt};
@@ -38,7 +38,7 @@ inline Image flat_picture(const Surfaces& surfaces, const View& view, const Abuf
   return shade(surfaces, zbuffer(surfaces, view, execution), flat, execution);
 }
 
-/// Colour and alpha of a pixel, premultiplied.
+/// Premultiplied colour and alpha of a pixel.
 inline glm::vec4 pixel_of(const Image& picture, std::size_t pixel) {
   glm::vec4 color;
   for (int k = 0; k < 4; ++k) color[k] = picture.channels[std::size_t(k)].floats()[pixel];
@@ -48,13 +48,13 @@ inline glm::vec4 pixel_of(const Image& picture, int x, int y) {
   return pixel_of(picture, std::size_t(y) * std::size_t(picture.width) + std::size_t(x));
 }
 
-/// The fragments of a pixel laid over each other, in the order of their keys at every sub-sample: the premultiplied
-/// mean. Colours are by primitive and their alphas do not count; opacities are those of the fragments.
+/// Composites a pixel's fragments in the order of their keys at every sub-sample; returns the premultiplied mean.
+/// Colours are by primitive; their alphas are ignored, and the fragments' opacities count.
 inline glm::dvec4 laid_over(const FragmentLists& lists, int x, int y, std::span<const glm::vec4> colors) {
   glm::dvec4 sum(0);
   for (std::size_t s = 0; s < lists.samples.size(); ++s) {
     const glm::dvec2 from_centre = glm::dvec2(lists.samples[s] - 128) / 256.0;
-    std::vector<std::tuple<double, PrimitiveId, double>> order;  // the nearest first
+    std::vector<std::tuple<double, PrimitiveId, double>> order;  // nearest first
     for (const Fragment& f : lists.at(x, y)) {
       const double key = double(f.key) + from_centre.x * double(f.key_dx) + from_centre.y * double(f.key_dy);
       if (f.mask >> s & 1) order.emplace_back(-key, f.primitive, f.opacity);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes and views out of arbitrary bytes, for the fuzz targets that draw.
+// Makes scenes and views from arbitrary bytes, for the fuzz targets that draw.
 #pragma once
 
 #include <frontmost/frontmost.h>
@@ -10,7 +10,7 @@
 
 namespace frontmost::test {
 
-/// The beginning of an input; after it come triangles of nine floats each. Floats are taken as they are, so that NaN,
+/// The first bytes of an input; triangles of nine floats each follow. Floats are taken unchanged, so that NaN,
 /// infinities, denormals and huge values all occur.
 struct ViewBytes {
   std::uint8_t width, height, samples, culling, orthographic, fov, up, spare;
@@ -35,7 +35,7 @@ struct FuzzInput {
   Scene scene;
 };
 
-/// None of what is too short.
+/// Empty if the input is too short.
 inline std::optional<FuzzInput> read_input(const std::uint8_t* data, std::size_t size,
                                            std::size_t most = most_fuzzed_triangles) {
   FuzzInput input;

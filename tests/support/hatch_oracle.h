@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a hatch line does at a point: every triangle is asked whether it is there, and whether it stands in the light.
+// Whether a hatch line is drawn at a point: tests every triangle for visibility and for shadow.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace frontmost::test {
 
-/// For one set, and no smooth normals.
+/// Reference for one hatch set, without smooth normals.
 class HatchOracle {
  public:
   HatchOracle(const Surfaces& surfaces, const View& view, const HatchOptions& options)
@@ -44,7 +44,7 @@ class HatchOracle {
     const Projection& p = view_.projection;
     if (place.at.x < 1e-3 || place.at.y < 1e-3 || place.at.x > view_.width - 1e-3 || place.at.y > view_.height - 1e-3)
       return {};
-    // The same a little to the sides: where all agree, rounding does not matter.
+    // Points slightly to the sides are tested too: if all agree, rounding does not matter.
     Answer all;
     for (int i = 0; i < 5; ++i) {
       const glm::dvec2 at = place.at + 2e-3 * glm::dvec2(i == 1 ? 1 : i == 2 ? -1 : 0, i == 3 ? 1 : i == 4 ? -1 : 0);
@@ -75,7 +75,7 @@ class HatchOracle {
     glm::dvec3 from, along;
   };
 
-  /// The distance in lengths of ray.along; infinite where it misses.
+  /// The distance in units of ray.along; infinite if the ray misses.
   static double hit(const Triangle& t, const Ray& ray) {
     const double towards = glm::dot(t.normal, ray.along);
     constexpr double never = std::numeric_limits<double>::infinity();

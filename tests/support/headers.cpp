@@ -1,2 +1,2 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nothing of its own: a target needs a source, and this one is there for the headers that are compiled with it.
+// Empty on purpose: the target of the precompiled headers needs a source file.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the kernel of interpolation does for many fragments at once, for one.
+// Interpolation for one fragment, as the kernel does it for many at once.
 #pragma once
 
 #include "shade/geometry/triangle_setup.h"
@@ -11,7 +11,7 @@ template <class T>
   return corner[0] * weight.x + corner[1] * weight.y + corner[2] * weight.z;
 }
 
-/// Change per pixel of an attribute that is `value` at the position of `b`: exact derivatives of the quotient.
+/// Change per pixel of an attribute that has `value` at the position of `b`: exact derivatives of the quotient.
 struct Gradient {
   glm::vec2 dx, dy;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The map of a light that looks at what is visible, as pictures have it.
+// The shadow map of a light for a visible picture, as pictures use it.
 #pragma once
 
 #include "frontmost/zbuffer.h"
@@ -21,7 +21,7 @@ namespace frontmost::test {
   return map;
 }
 
-/// The part of the light that arrives at one point, given as ShadowPoints are.
+/// The share of the light that arrives at one point, given in the form of ShadowPoints.
 [[nodiscard]] inline float light_at(const shading::ShadowMap& map, const glm::vec3& position, const glm::vec3& normal,
                                     Isa isa = Isa::best) {
   float values[6][16] = {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texts found again among the strokes of a drawing.
+// Finds texts among the strokes of a drawing.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace frontmost::test {
 
-/// How often `points` hold, one after the other, those of `text` in letters of that height, wherever it stands.
+/// Number of occurrences in `points` of the consecutive points of `text`, in letters of `height`, at any place.
 inline int count_texts(const std::vector<glm::dvec2>& points, const std::string& text, double height) {
   PageGroup letters;
   add_text(letters, text, {0, 0}, {height});

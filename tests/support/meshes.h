@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes of known shape: quads that others are put together of, balls whose neighbouring triangles face about the same
-// way, which is what normal cones are good for, and many triangles at one place.
+// Meshes of known shape: quads as building blocks, balls whose neighbouring triangles face similar ways, as normal
+// cones need, and many triangles at one place.
 #pragma once
 
 #include <cmath>
@@ -9,17 +9,17 @@
 
 namespace frontmost::test {
 
-/// Counter-clockwise as its front is seen, with the diagonal from a to c.
+/// Adds a quad, counter-clockwise seen from its front, with the diagonal from a to c.
 inline void add_quad(Mesh& mesh, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
   add_triangle(mesh, a, b, c);
   add_triangle(mesh, a, c, d);
 }
 
-/// Faces +z, with its middle on the z axis; `half` is half of a side.
+/// Adds a square that faces +z, centred on the z axis; `half` is half of its side.
 inline void add_square(Mesh& mesh, float half, float z) {
   add_quad(mesh, {-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z});
 }
-/// A square across z, as an object of its own.
+/// Adds a square perpendicular to z, as an object of its own.
 inline void place_square(Scene& scene, const char* name, float half, const glm::dvec3& at) {
   Mesh mesh;
   add_square(mesh, half, 0);
@@ -29,8 +29,8 @@ inline void place_square(Scene& scene, const char* name, float half, const glm::
   scene.meshes.push_back(std::move(mesh));
 }
 
-/// A ball of radius 1 of 8 * steps^2 triangles, counter-clockwise from outside, every vertex moved along its radius by
-/// up to `roughness`.
+/// A ball of radius 1 with 8 * steps^2 triangles, counter-clockwise from outside. Every vertex is moved along its
+/// radius by up to `roughness`.
 inline Mesh bumpy_ball(int steps, float roughness, std::uint64_t seed) {
   Random random(seed);
   Mesh mesh;
@@ -39,7 +39,7 @@ inline Mesh bumpy_ball(int steps, float roughness, std::uint64_t seed) {
                                  {y, x, -z}, {-x, y, -z}, {-y, -x, -z}, {x, -y, -z}};
   for (const auto& face : faces) {
     const auto first = std::uint32_t(mesh.positions.size());
-    // Rows of one vertex less each. Seams between the eight faces stay closed only without roughness.
+    // Each row has one vertex less. Seams between the eight faces stay closed only without roughness.
     const auto number = [&](int i, int j) { return first + std::uint32_t(i * (steps + 1) - i * (i - 1) / 2 + j); };
     for (int i = 0; i <= steps; ++i)
       for (int j = 0; i + j <= steps; ++j) {
@@ -56,7 +56,7 @@ inline Mesh bumpy_ball(int steps, float roughness, std::uint64_t seed) {
   return mesh;
 }
 
-/// A fence stands before one long edge; dense is very small before a large square.
+/// Crowds of triangles. A fence stands before one long edge; dense is very small before a large square.
 enum class Crowd { stack, leaning_stack, book, fan, cone, fence, dense };
 inline constexpr Crowd all_crowds[] = {Crowd::stack, Crowd::leaning_stack, Crowd::book, Crowd::fan,
                                        Crowd::cone,  Crowd::fence,         Crowd::dense};

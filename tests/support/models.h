@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Test models that are not part of the repository, and which of them are to be read whole.
+// Test models outside the repository, and the list of those that must load.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,8 +24,8 @@ inline bool is_model(const std::filesystem::path& path) {
   return false;
 }
 
-/// Files that are to be read whole; `loader` holds broken ones, which the readers' own tests take one by one. Under a
-/// sanitizer, those of more than a megabyte are left out: they have more triangles, but no other code.
+/// Files that must load; `loader` holds broken ones, which the readers' own tests take one by one. Under a sanitizer,
+/// files above a megabyte are left out: they have more triangles, but exercise no other code.
 inline std::vector<std::string> good_models() {
   namespace fs = std::filesystem;
   std::vector<std::string> names;
@@ -41,6 +41,6 @@ inline std::vector<std::string> good_models() {
 
 }  // namespace frontmost::test
 
-/// Skips the rest of a test, visibly, where the models are absent.
+/// Skips the rest of a test, visibly, if the models are absent.
 #define FRONTMOST_NEEDS_MODELS() \
   if (!frontmost::test::have_models()) GTEST_SKIP() << "no models at " << frontmost::test::models_folder()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For libraries without the room io: programs link whose tests of files are not run.
+// For libraries without the room io: programs link, but their tests of files are not run.
 #include "frontmost/files.h"
 
 namespace frontmost {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that readers and methods have to bear with.
+// Unusual numbers that readers and methods must handle.
 #pragma once
 
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The oracle: every sample against every triangle, with nothing clever. Short enough to be believed by reading.
+// The oracle: every sample against every triangle, without shortcuts. Short enough to be verified by reading.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,8 @@ inline std::int64_t oracle_area(const OracleTriangle& t) {
   return (t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - (t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
 }
 
-/// Gentle planes in floats from the topmost corner, steep ones from the farthest by edge functions, in doubles.
+/// The key in floats from the topmost vertex for gentle planes; for steep ones, by edge functions from the farthest
+/// vertex, in doubles.
 inline float oracle_key(const OracleTriangle& t, std::int64_t px, std::int64_t py) {
   const auto [low, high] = std::minmax({t.key[0], t.key[1], t.key[2]});
   const auto [x_min, x_max] = std::minmax({t.x[0], t.x[1], t.x[2]});
@@ -50,7 +51,7 @@ inline float oracle_key(const OracleTriangle& t, std::int64_t px, std::int64_t p
     return double((t.x[b] - t.x[a]) * (y - t.y[a]) - (t.y[b] - t.y[a]) * (x - t.x[a]));
   };
   const double area = double(oracle_area(t)), far_key = double(t.key[far]);
-  // The gradient of a gentle plane is exact, so it may as well be taken from here.
+  // The gradient of a gentle plane is exact, so it may also be computed here.
   const double to_p = double(t.key[p]) - far_key, to_q = double(t.key[q]) - far_key;
   const float gx = float((to_p * double(t.y[q] - t.y[far]) - to_q * double(t.y[p] - t.y[far])) * (1 / area));
   const float gy = float((to_q * double(t.x[p] - t.x[far]) - to_p * double(t.x[q] - t.x[far])) * (1 / area));
@@ -63,8 +64,8 @@ inline float oracle_key(const OracleTriangle& t, std::int64_t px, std::int64_t p
   return std::min(std::max(key, low), high);
 }
 
-/// Calls visit(id, corners) for the primitives of [begin, end) that can be seen at all: finite corners, in world space,
-/// the winding of mirrored instances turned.
+/// Calls visit(id, corners) for potentially visible primitives of [begin, end): finite corners in world space, with the
+/// winding of mirrored instances reversed.
 template <class Visit>
 void for_each_primitive(const Surfaces& surfaces, PrimitiveId begin, PrimitiveId end, const Visit& visit) {
   for (PrimitiveId id = begin; id < std::min(end, surfaces.primitive_count()); ++id) {
@@ -77,7 +78,7 @@ void for_each_primitive(const Surfaces& surfaces, PrimitiveId begin, PrimitiveId
   }
 }
 
-/// Calls visit(triangle) for what clipping and culling leave of a primitive, turned so that areas are positive.
+/// Calls visit(triangle) for the parts of a primitive that clipping and culling leave, turned to positive area.
 template <class Visit>
 void for_each_triangle(const ScreenTransform& transform, Culling culling, const ClippedPolygon& polygon, PrimitiveId id,
                        const Visit& visit) {
@@ -100,7 +101,7 @@ void for_each_triangle(const ScreenTransform& transform, Culling culling, const 
   }
 }
 
-/// The holes of triangles, as a view sees them.
+/// Holes of triangles, as a view sees them.
 class OracleHoles {
  public:
   OracleHoles(const Surfaces& surfaces, const View& view)
@@ -115,7 +116,7 @@ class OracleHoles {
   ScreenRays rays_;
 };
 
-/// Calls visit(index, key) for every sample that a triangle covers, holes apart.
+/// Calls visit(index, key) for every sample that a triangle covers, except in holes.
 template <class Visit>
 void for_each_covered(const Visible& visible, const OracleTriangle& t, const Visit& visit,
                       const std::optional<ScreenCutout>& cutout = std::nullopt) {
@@ -130,7 +131,7 @@ void for_each_covered(const Visible& visible, const OracleTriangle& t, const Vis
       }
 }
 
-/// Keeps a fragment where it is nearer than what was kept, or as near and of a lower id.
+/// Keeps a fragment if it is nearer than the kept one, or equally near with a lower id.
 inline void keep_nearest(Visible& visible, std::size_t at, float key, PrimitiveId id) {
   const bool nearer = visible.primitives[at] == no_primitive || key > visible.keys[at] ||
                       (key == visible.keys[at] && id < visible.primitives[at]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a point of a drawn edge is hidden, by every triangle of the scene.
+// Whether a point of a drawn edge is hidden, by a test of every triangle of the scene.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace frontmost::test {
 
-/// How many triangles hide a point, by the intersection of the line of sight with each; none where that is within
-/// rounding of changing.
+/// Counts the triangles that hide a point, by intersecting the line of sight with each. The answer is uncertain if
+/// rounding could change it.
 class PointOracle {
  public:
   PointOracle(const Surfaces& surfaces, const View& view) : view_(view) {
@@ -24,7 +24,7 @@ class PointOracle {
     bool is_certain = true;
     std::uint32_t hidden_by = 0;
   };
-  /// x is on `edge`: a triangle that the edge lies within does not hide it.
+  /// x lies on `edge`; triangles that contain the edge do not hide it.
   [[nodiscard]] Answer ask(const glm::dvec3& x, const DrawnEdge& edge) const {
     Answer answer;
     for (std::size_t id = 0; id < triangles_.size(); ++id) {
@@ -34,7 +34,7 @@ class PointOracle {
       const glm::dvec3 u = t[1] - t[0], v = t[2] - t[0], n = glm::cross(u, v);
       const double slope = glm::dot(n, direction), size = glm::length(n) * glm::length(direction);
       if (std::abs(slope) <= 1e-9 * size) {
-        // Seen from its edge: hides nothing, unless by rounding.
+        // A triangle seen edge-on hides nothing, except by rounding.
         answer.is_certain &= slope == 0 || std::abs(glm::dot(n, x - t[0])) > 1e-6 * glm::length(n);
         continue;
       }

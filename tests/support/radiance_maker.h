@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiance pictures as their writers make them: plain, with pixels repeated, and packed byte by byte.
+// Radiance pictures in the encodings that writers use: plain, with repeated pixels, and packed by component.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ inline std::string plain_radiance(const RadianceRows& rows) {
   return bytes;
 }
 
-/// Runs of pixels, their lengths in digits of base 256, the lowest first.
+/// Runs of pixels, whose lengths are digits of base 256, lowest first.
 inline std::string repeating_radiance(const RadianceRows& rows) {
   std::string bytes = radiance_header(rows);
   for (const auto& row : rows)
@@ -45,7 +45,7 @@ inline std::string repeating_radiance(const RadianceRows& rows) {
   return bytes;
 }
 
-/// Runs of at most 127 bytes, and up to 128 bytes as they are.
+/// Runs of at most 127 bytes, and literals of up to 128 bytes.
 inline std::string packed_radiance(const RadianceRows& rows) {
   std::string bytes = radiance_header(rows);
   for (const auto& row : rows) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes to compare methods on: random, but the same on every machine.
+// Scenes to compare methods on: random, but equal on every machine.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace frontmost::test {
 
-/// Numbers that do not depend on the standard library.
+/// Random numbers that do not depend on the standard library.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(noted_seed(seed) * 0x9E3779B97F4A7C15u + 0x1234567) {}
@@ -27,7 +27,7 @@ class Random {
   std::uint64_t state_;
 };
 
-/// One mesh of triangles placed once.
+/// A scene of one mesh with one instance.
 inline Scene scene_of(Mesh mesh) {
   Scene scene;
   scene.name = "test";
@@ -42,12 +42,12 @@ inline void add_triangle(Mesh& mesh, const glm::vec3& a, const glm::vec3& b, con
   mesh.triangles.push_back({n, n + 1, n + 2});
 }
 
-/// `sheets` are large triangles one behind the other, by the seed up to a unit or a rounding error apart.
+/// In `sheets`, large triangles lie one behind the other, up to a unit or a rounding error apart, by seed.
 enum class Kind { soup, tiny, slivers, fan, shared_grid, huge, coplanar, through_eye, sheets };
 inline constexpr Kind all_kinds[] = {Kind::soup, Kind::tiny,     Kind::slivers,     Kind::fan,   Kind::shared_grid,
                                      Kind::huge, Kind::coplanar, Kind::through_eye, Kind::sheets};
 
-/// Triangles within about a unit of the origin (huge ones reach far beyond). One random number a statement, as
+/// Triangles within about a unit of the origin; huge ones extend far beyond. Each statement draws one random number, as
 /// compilers evaluate arguments in different orders.
 inline Mesh random_mesh(Kind kind, int count, std::uint64_t seed) {
   Random random(seed);
@@ -130,8 +130,8 @@ inline View random_view(Random& random, int width, int height) {
   return view;
 }
 
-/// Some triangles get a double-sided material, some a one-sided one and some none. Every eighth seed makes all of them
-/// double-sided, and the one after it none.
+/// Gives some triangles a double-sided material, some a one-sided one and some none. Every eighth seed makes all
+/// double-sided, and the next seed none.
 inline void add_random_sides(Scene& scene, std::uint64_t seed) {
   Random random(seed + 300);
   scene.materials.resize(2);
@@ -140,12 +140,13 @@ inline void add_random_sides(Scene& scene, std::uint64_t seed) {
     mesh.material_ids.assign(mesh.triangles.size(), seed % 8 == 0 ? 1 : 0);
     if (seed % 8 < 2) continue;
     for (std::uint32_t& id : mesh.material_ids) id = random.below(5) == 0 ? no_index : std::uint32_t(random.below(2));
-    // One material for all of a mesh is told once.
+    // A mesh of one material stores it once.
     if (random.below(3) == 0) mesh.material_ids.assign(1, std::uint32_t(random.below(2)));
   }
 }
 
-/// A scene of one kind and a view of it, of all sizes up to 200 x 170, with and without culling, one sample or four.
+/// A scene of one kind and a view of it, of any size up to 200 x 170, with and without culling, with one sample or
+/// four.
 struct RandomCase {
   Scene scene;
   View view;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Geometry in fractions: slow, and right.
+// Geometry in fractions: slow, but exact.
 #pragma once
 
 #include <boost/multiprecision/cpp_int.hpp>

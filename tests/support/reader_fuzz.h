@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every reader promises for any bytes at all. Shared by the fuzz targets and the tests over their corpus.
+// Promises that every reader keeps for any bytes. The fuzz targets and the tests over their corpus share them.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@
 
 namespace frontmost {
 
-/// Reads a copy of exactly the given size, so that a sanitizer sees every step beyond it.
-/// \returns whether it was read; an Error whose words do not start with the name ends the program, as does an invalid
-/// scene (load() validates) or another exception.
+/// Reads a copy of exactly the given size, so that a sanitizer detects every access beyond it. \returns whether it was
+/// read. The program ends on an Error whose message does not start with the name, on an invalid scene (load()
+/// validates), and on any other exception.
 inline bool fuzz_reader(ModelFormat format, std::span<const std::byte> bytes) {
   const std::unique_ptr<std::byte[]> copy(new std::byte[bytes.size()]);
   std::copy(bytes.begin(), bytes.end(), copy.get());
@@ -28,7 +28,7 @@ inline bool fuzz_reader(ModelFormat format, std::span<const std::byte> bytes) {
   }
 }
 
-/// The same for a material library, which is not reached from memory.
+/// Reads a material library through a file, as none is read from memory.
 inline bool fuzz_mtl(std::span<const std::byte> bytes) {
   const ModelSource source("fuzz", {});
   Scene scene;
@@ -44,7 +44,7 @@ inline bool fuzz_mtl(std::span<const std::byte> bytes) {
   }
 }
 
-/// The same for a file of categories.
+/// Reads a file of categories likewise.
 inline bool fuzz_categories(std::span<const std::byte> bytes) {
   Scene scene = builtin("cubes");
   scene.instances[1].name = "a";
@@ -58,9 +58,9 @@ inline bool fuzz_categories(std::span<const std::byte> bytes) {
   }
 }
 
-/// Any bytes read as 3MF: an archive as it is, or else the texts of its parts, which get an archive around them,
-/// because mutations would never get past its checksums. The parts of an input that is no archive are parted by zeros:
-/// the model, then "/a.model".
+/// Reads any bytes as 3MF: an archive unchanged, or else the texts of its parts, which are packed into an archive,
+/// because mutations would never pass its checksums. Zeros separate the parts of such an input: the model, then
+/// "/a.model".
 inline bool fuzz_3mf(std::string_view input) {
   const auto read = [](std::string_view bytes) {
     return fuzz_reader(ModelFormat::threemf, {reinterpret_cast<const std::byte*>(bytes.data()), bytes.size()});

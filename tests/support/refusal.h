@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a function says when it refuses what it was given: the words of its error, or the error's code.
+// The message or code of the error by which a function refuses its arguments.
 //
-// A test of a refusal compares the words as a whole, because they are what a user has to go by: they name what is wrong
-// and where. "none" is what a test finds where nothing was refused, so that it fails with both in sight.
+// Tests of refusals compare whole messages, because users rely on them: a message names the fault and its place. "none"
+// stands for no error, so that a failing test shows both texts.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 namespace frontmost::test {
 
-/// The words of the Error that `action` throws, which must have that code; "none" where it throws none.
+/// The message of the Error that `action` throws, which must have this code; "none" if it throws none.
 template <class Action>
 std::string refusal_of(ErrorCode code, const Action& action) {
   try {
@@ -25,7 +25,7 @@ std::string refusal_of(ErrorCode code, const Action& action) {
   return "none";
 }
 
-/// The code of the Error that `action` throws, which it must.
+/// The code of the Error that `action` must throw.
 template <class Action>
 ErrorCode code_of(const Action& action) {
   try {

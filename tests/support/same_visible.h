@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers of methods compared bit by bit: two of any methods; those of the z-buffer's two ways to draw; and those of a
-// method and its oracle, on every instruction set of this machine.
+// Bitwise comparison of answers: of any two methods; of the z-buffer's two ways to draw; and of a method and its
+// oracle, on every instruction set of this machine.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ inline std::size_t covered(const Visible& visible) {
          std::size_t(std::count(visible.primitives.begin(), visible.primitives.end(), no_primitive));
 }
 
-/// What sample `s` of a pixel sees.
+/// The id at sample `s` of a pixel.
 inline PrimitiveId id_at(const VisiblePixels& pixels, const glm::ivec2& at, int s) {
   constexpr int run = VisiblePixels::run;
   const std::size_t number = std::size_t(at.y) * pixels.runs_across() + std::size_t(at.x / run);
@@ -49,7 +49,7 @@ inline PrimitiveId id_at(const VisiblePixels& pixels, const glm::ivec2& at, int 
   return pixels.others[place + std::size_t(s) - 1];
 }
 
-/// \returns how many pixels are mixed.
+/// Compares pixels. \returns the number of mixed ones.
 inline std::size_t expect_same_pixels(const Visible& expected, const VisiblePixels& actual) {
   const View& view = expected.view;
   Visible all{view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(expected.keys)};
@@ -67,7 +67,7 @@ inline Visible draw_clusters(const Surfaces& surfaces, const View& view, const E
   return buffer.take();
 }
 
-/// What both show, which must be the same.
+/// Draws in both ways, which must give the same answer. \returns that answer.
 inline Visible draw_both_ways(const Surfaces& surfaces, const View& view, const Execution& execution = {}) {
   Visible visible = draw_clusters(surfaces, view, execution);
   const IeeeScope ieee;
@@ -75,8 +75,8 @@ inline Visible draw_both_ways(const Surfaces& surfaces, const View& view, const 
   return visible;
 }
 
-/// `oracle(surfaces, view)` says what is right, `method(surfaces, view, execution)` is tested: over random scenes of a
-/// kind that must not have become empty.
+/// Compares `method(surfaces, view, execution)` with `oracle(surfaces, view)`, over random scenes of a kind, which must
+/// not all be empty.
 template <class Oracle, class Method>
 void expect_oracle_on_every_isa(Kind kind, const Oracle& oracle, const Method& method) {
   std::size_t seen = 0;

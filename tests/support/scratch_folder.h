@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder of a test's own, which is gone after it.
+// A temporary folder for one test, which its destructor removes.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ class ScratchFolder {
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
-  /// Everything in it, hidden files included.
+  /// Number of entries, hidden files included.
   [[nodiscard]] std::size_t entry_count() const {
     return std::size_t(
         std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));

@@ -19,7 +19,7 @@ struct LastSeeds {
 };
 inline LastSeeds last_seeds;
 
-/// Gives the seed back, and remembers it for the message of a failure.
+/// Returns the seed, and remembers it for the message of a failure.
 inline std::uint64_t noted_seed(std::uint64_t seed) {
   last_seeds.seeds[last_seeds.count++ % last_seeds.seeds.size()] = seed;
   return seed;

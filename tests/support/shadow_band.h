@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a shadow map and rays to the light say different things, and whether the map's texels explain it.
+// Compares a shadow map with rays to the light, and checks whether the map's texels explain the differences.
 //
-// The map looks at the 8 x 8 texels whose centres lie within 4 of a point, a little above it by a bias that allows for
-// the slope of its plane. So where the map differs from the ray, one of those texels' lines, or the point's own raised
-// by the bias, must meet something else than the ray does: a shadow's edge passes within 4 texels. Whether it does is
-// asked of the triangles themselves, by lines of sight.
+// The map filters the 8 x 8 texels whose centres lie within 4 of a point, raised a little by a bias that allows for the
+// slope of its plane. So if the map and the ray differ, the line through one of those texels, or the point's own raised
+// by the bias, must hit something else than the ray: a shadow's edge passes within 4 texels. Lines of sight to the
+// triangles themselves check this.
 #pragma once
 
 #include "frontmost/pictures.h"
@@ -18,13 +18,13 @@
 namespace frontmost::test {
 
 struct ShadowBand {
-  std::size_t asked = 0;      ///< pixels whose plane the light meets
+  std::size_t asked = 0;      ///< pixels whose plane faces the light
   std::size_t in_shadow = 0;  ///< by rays
-  std::size_t differing = 0;  ///< the map says neither wholly lit nor wholly dark as the ray does
-  std::size_t opposite = 0;   ///< of those, it says the opposite
-  std::size_t by_bias = 0;    ///< of those, what shadows the point is no higher than the bias
+  std::size_t differing = 0;  ///< the map is neither wholly lit nor wholly dark like the ray
+  std::size_t opposite = 0;   ///< of those, pixels where the map gives the opposite
+  std::size_t by_bias = 0;    ///< of those, pixels whose occluder is no higher than the bias
   std::size_t unexplained = 0;
-  double widest = 0;  ///< texels to the nearest line that differs, along the worse axis
+  double widest = 0;  ///< texels to the nearest differing line, along the worse axis
 };
 
 class ShadowBandMeter {
@@ -79,7 +79,7 @@ class ShadowBandMeter {
     explain(glm::dvec3(position) + rays.eye(), is_lit != 0, bias, band);
   }
 
-  /// Whether nothing stands before the line of the light that passes `shift` texels beside a point, from `bias` on.
+  /// Whether nothing blocks the line to the light that passes `shift` texels beside a point, from `bias` on.
   [[nodiscard]] bool is_clear_at(const glm::dvec3& world, const glm::dvec2& shift, double bias) const {
     const glm::dvec3 from =
         world + texel_ * (shift.x * axes_[0] - shift.y * axes_[1]) + (bias + 1e-7 * depth_) * axes_[2];
@@ -106,7 +106,8 @@ class ShadowBandMeter {
       ++band.unexplained;
   }
 
-  /// The z-buffer moves corners by up to half of 1/256 texel: lines beside a texel's centre stand for it as well.
+  /// The z-buffer moves vertices by up to half of 1/256 texel, so lines just beside a texel's centre stand for it as
+  /// well.
   static constexpr double kSnapped = 1.0 / 128;
 
   [[nodiscard]] bool differs_at(const glm::dvec3& world, const glm::dvec2& shift, bool is_lit, double bias) const {
@@ -120,10 +121,10 @@ class ShadowBandMeter {
   Visible visible_;
   RayIndex index_;
   glm::vec3 to_key_;
-  Visible planes_;  ///< of the map
+  Visible planes_;  ///< borrowed by the map
   shading::ShadowMap map_;
   glm::dmat3 axes_{1};
-  glm::dvec3 corner_{0};  ///< of the map: its first texel's
+  glm::dvec3 corner_{0};  ///< position of the map's first texel
   double texel_ = 1, depth_ = 1;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What reading in pieces promises for any bytes at all: what load() reads is read the same, or refused with a reason.
-// Shared by the fuzz target and the tests.
+// The promise of reading in pieces for any bytes: the result equals load()'s, or is refused with a reason. Shared by
+// the fuzz target and the tests.
 #pragma once
 
 #include <fcntl.h>
@@ -40,7 +40,7 @@ inline void flatten(const Mesh& mesh, Flat& flat) {
   }
 }
 
-/// To the bit, so that NaN equals NaN.
+/// Compares to the bit, so that NaN equals NaN.
 template <class T>
 bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
@@ -61,7 +61,7 @@ inline Flat read_in_pieces(const std::string& path, const LoadOptions& options, 
     std::uint64_t first = 0;
     while (stream->fetch(piece, triangles)) {
       stream->parse(piece);
-      // What was told before parsing is what came of it.
+      // The counts given before parsing must be right.
       if (piece.first_triangle != first || piece.mesh.triangles.size() != piece.triangle_count) std::abort();
       first += piece.triangle_count;
       flatten(piece.mesh, flat);
@@ -78,7 +78,7 @@ inline Flat read_in_pieces(const std::string& path, const LoadOptions& options, 
   return flat;
 }
 
-/// The bytes as a pipe, which holds 64 KiB at least.
+/// The bytes in a pipe, which holds at least 64 KiB.
 class FullPipe {
  public:
   explicit FullPipe(std::span<const std::byte> bytes) {
@@ -97,8 +97,8 @@ class FullPipe {
   int end_ = -1;
 };
 
-/// Holds the file `path`, which has these bytes, and a pipe of them against load(). Ends the program where they differ.
-/// \returns whether the bytes were read in pieces.
+/// Compares streams of the file `path`, which has these bytes, and of a pipe of them with load(). Ends the program if
+/// they differ. \returns whether the bytes were read in pieces.
 inline bool fuzz_stream(const std::string& path, std::span<const std::byte> bytes, std::uint64_t triangles) {
   const bool is_ply = bytes.size() > 3 && std::memcmp(bytes.data(), "ply", 3) == 0;
   const LoadOptions options{.format = is_ply ? ModelFormat::ply : ModelFormat::stl, .up = {}};
@@ -109,14 +109,14 @@ inline bool fuzz_stream(const std::string& path, std::span<const std::byte> byte
     for (const Mesh& mesh : scene.meshes) flatten(mesh, *whole);
   } catch (const Error&) {  // NOLINT(bugprone-empty-catch): what the stream says is looked at below
   }
-  // Of a pipe with no count and half a triangle at its end nobody knows where it ought to have ended.
+  // A pipe without a count that ends in half a triangle may be malformed, as its intended end is unknown.
   const auto may_fail = [&](ErrorCode code, bool is_pipe) {
     return code == ErrorCode::unsupported || code == ErrorCode::limit_exceeded ||
            (is_pipe && !is_ply && code == ErrorCode::file_malformed);
   };
   const auto agrees = [&](const std::string& source, bool is_pipe) {
     try {
-      // Where load() failed, the stream may have ended before that: what follows the faces is not looked at.
+      // If load() failed, the stream may have ended before the fault, as it ignores anything after the faces.
       const Flat pieces = read_in_pieces(source, options, triangles);
       if (whole && !same(*whole, pieces)) std::abort();
       return true;

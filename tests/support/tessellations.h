@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes of machine parts as CAD programs cut them into triangles, well and badly.
+// Shapes of machine parts with tessellations as CAD programs make them, good and bad.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace frontmost::test {
 
 inline constexpr double kDegree = std::numbers::pi / 180;
 
-/// A point of a profile that is turned about z: radius and height, which may go with the angle.
+/// A point of a profile that is revolved about z: radius and height, which may depend on the angle.
 using ProfilePoint = std::function<glm::dvec2(double angle)>;
 
 inline ProfilePoint at(double radius, double height) {
@@ -25,8 +25,8 @@ inline glm::vec3 turned_about_z(const ProfilePoint& point, double angle) {
   return glm::vec3(glm::dvec3(p.x * std::cos(angle), p.x * std::sin(angle), p.y));
 }
 
-/// The sides of a solid of revolution, from ring to ring of `profile`, cut at `angles`; each rectangle along either
-/// diagonal, by turns. Angles ascend within a whole turn. Where a radius is 0 the ring is one point.
+/// Adds the sides of a solid of revolution, from ring to ring of `profile`, divided at `angles`; the diagonals of
+/// rectangles alternate. Angles ascend within a full turn. A ring of radius 0 is one point.
 inline void add_sides(Mesh& mesh, const std::vector<ProfilePoint>& profile, const std::vector<double>& angles) {
   const auto add = [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
     if (a != b && b != c && c != a) add_triangle(mesh, a, b, c);
@@ -46,7 +46,7 @@ inline void add_sides(Mesh& mesh, const std::vector<ProfilePoint>& profile, cons
     }
 }
 
-/// A flat lid over a ring, as a fan from its first corner: next to it are slivers.
+/// Adds a flat lid over a ring, as a fan from its first vertex, beside which are slivers.
 inline void add_lid(Mesh& mesh, const ProfilePoint& ring, const std::vector<double>& angles, bool is_top) {
   for (std::size_t k = 1; k + 1 < angles.size(); ++k) {
     const glm::vec3 a = turned_about_z(ring, angles[0]), b = turned_about_z(ring, angles[k]),
@@ -61,7 +61,7 @@ inline std::vector<double> even_angles(int count) {
   return angles;
 }
 
-/// Steps up to `ratio` times as wide as others.
+/// Angles over a full turn with steps up to `ratio` times as wide as others.
 inline std::vector<double> uneven_angles(int count, float ratio, std::uint64_t seed) {
   Random random(seed);
   std::vector<double> angles;

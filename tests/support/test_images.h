@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images to write and read, and how to tell that two are the same to the bit.
+// Images to write and read, and bitwise comparisons.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -92,8 +92,8 @@ inline ErrorCode error_of(const std::function<void()>& action, std::string* mess
   return ErrorCode::bad_argument;
 }
 
-/// The code and the message of the error that reading ends in; "read" if there is none. The bytes lie in memory of
-/// exactly their size, so that AddressSanitizer sees every byte too many.
+/// Code and message of the error that reading ends in; "read" if there is none. The bytes lie in memory of exactly
+/// their size, so that AddressSanitizer detects every byte read beyond it.
 inline std::string image_error(const std::string& bytes) {
   const auto* first = reinterpret_cast<const std::byte*>(bytes.data());
   const std::vector<std::byte> exact(first, first + bytes.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes small zip archives, and the small 3MF files that are such archives, for tests and fuzz targets.
+// Makes small zip archives, and small 3MF files, which are such archives, for tests and fuzz targets.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@ inline std::uint32_t crc_of(std::string_view text) {
 
 class ZipMaker {
  public:
-  /// Stores a file as it is.
+  /// Stores a file uncompressed.
   ZipMaker& add(const std::string& name, const std::string& text) {
     return add_as(name, text, {0, crc_of(text), std::uint32_t(text.size())});
   }
 
-  /// How the bytes of a file are packed (8: deflated), and what they are said to unpack to.
+  /// The compression method of a file (8: deflate), and its stated unpacked size.
   struct Packing {
     std::uint16_t method;
     std::uint32_t crc, size;
@@ -77,13 +77,13 @@ inline const std::string relationships =
     R"(<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">
 <Relationship Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel" Target="/3D/3dmodel.model"/>
 </Relationships>)";
-/// Four vertices, four triangles.
+/// Four vertices and four triangles.
 inline const std::string tetrahedron =
     R"(<mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/><vertex x="0" y="1" z="0"/>
 <vertex x="0" y="0" z="1"/></vertices><triangles><triangle v1="0" v2="2" v3="1"/><triangle v1="0" v2="1" v3="3"/>
 <triangle v1="1" v2="2" v3="3"/><triangle v1="0" v2="3" v3="2"/></triangles></mesh>)";
 
-/// A model part: `attributes` of its first tag, and what is in that.
+/// A model part with `attributes` in its first tag, and its contents.
 inline std::string model_of(const std::string& contents, const std::string& attributes = {}) {
   return R"(<?xml version="1.0" encoding="UTF-8"?>
 <model xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
@@ -92,7 +92,7 @@ inline std::string model_of(const std::string& contents, const std::string& attr
          attributes + ">" + contents + "</model>";
 }
 
-/// A package whose model is `model`.
+/// A package with this model.
 inline ZipMaker package_of(const std::string& model) {
   ZipMaker zip;
   zip.add("_rels/.rels", relationships).add(model_part_name, model);

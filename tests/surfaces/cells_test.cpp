@@ -30,7 +30,7 @@ TEST(SpaceCell, IsNearFromOneBeforeToTwoAfter) {
     }
 }
 
-/// The formula of CellMap, in the same order of sums, one triangle at a time.
+/// The formula of CellMap with sums in the same order, one triangle at a time.
 SpaceCell expected_cell(const Mesh& mesh, const CellMap& map, std::uint32_t triangle) {
   const glm::uvec3& c = mesh.triangles[triangle];
   const glm::vec3 sum = mesh.positions[c.x] + mesh.positions[c.y] + mesh.positions[c.z];
@@ -54,7 +54,7 @@ TEST(FindCells, EqualsThePlainFormulaForEveryInstructionSet) {
         EXPECT_TRUE(find_cells({mesh, begin, end}, map, isa, cells.data()));
         for (std::uint32_t t = begin; t < end; ++t)
           ASSERT_EQ(cells[t - begin].packed, expected_cell(mesh, map, t).packed) << t;
-        EXPECT_EQ(cells.back().packed, 77u);  // nothing is written behind the last
+        EXPECT_EQ(cells.back().packed, 77u);  // nothing is written beyond the last
       }
 }
 

@@ -21,7 +21,7 @@ struct Corners {
   }
 };
 
-/// The triangles of a cluster whose corners are not at one place.
+/// Triangles of a cluster, except those whose corners coincide.
 std::vector<Corners> triangles_of(const ClusterSet& set, const Cluster& cluster) {
   std::vector<Corners> triangles;
   const auto corner = [&](std::size_t number) {
@@ -59,7 +59,7 @@ TEST(Cones, HoldTheNormalsOfAllTriangles) {
     SCOPED_TRACE(name(isa));
     for (const Kind kind : all_kinds)
       for (std::uint64_t seed = 0; seed < 4; ++seed) {
-        // Soups have a cone only where a cluster is a few triangles.
+        // In soups, only clusters of a few triangles have a cone.
         const Scene scene = scene_of(random_mesh(kind, 1 + int(seed) * 40, seed));
         const Surfaces surfaces(scene);
         count += check_cones(cluster_set(surfaces), make_cones(cluster_set(surfaces), {.isa = isa}));
@@ -85,7 +85,7 @@ TEST(Cones, AreTheSameForEverySizeAndMirrored) {
     const ClusterSet& set = cluster_set(surfaces);
     const ConeArrays cones = make_cones(set, {});
     EXPECT_GT(check_cones(set, cones), set.clusters.size() * 3 / 4);
-    // What is outside stays outside: away from the middle.
+    // Cones keep pointing outwards, away from the middle.
     for (std::size_t i = 0; i < set.clusters.size(); ++i) {
       if (cones.altitude[i] == 0) continue;
       const Box box = set.boxes.get(i);
@@ -105,13 +105,13 @@ TEST(Cones, OfAPlaneAreClosed) {
   EXPECT_NEAR(cones.altitude[0], 2 / std::sqrt(5.0), 1e-6);
 }
 
-// The facing of a sliver is decided by rounding. Nothing is known of its cluster.
+// Rounding decides the facing of a sliver, so nothing is known about its cluster.
 TEST(Cones, AreNotMadeForSliversAndNothing) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const glm::vec3 cases[][3] = {
-      {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}},         // on a line
-      {{0, 0, 0}, {1, 0, 0}, {0.3f, 1e-6f, 0}},  // nearly so
-      {{nan, 0, 0}, {1, 0, 0}, {0, 1, 0}},       // nowhere
+      {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}},         // collinear
+      {{0, 0, 0}, {1, 0, 0}, {0.3f, 1e-6f, 0}},  // nearly collinear
+      {{nan, 0, 0}, {1, 0, 0}, {0, 1, 0}},       // not finite
       {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}},         // a point: a box without size
       {{0, 0, 0}, {3e38f, 0, 0}, {-3e38f, 3e38f, 0}},
   };
@@ -127,7 +127,7 @@ TEST(Cones, AreNotMadeForSliversAndNothing) {
   }
 }
 
-// A triangle whose corners are at one place faces nobody and takes no cone away from its neighbours.
+// A triangle whose corners coincide faces no direction and leaves its neighbours' cone intact.
 TEST(Cones, AreMadeBesideDegenerateTriangles) {
   Mesh mesh;
   add_triangle(mesh, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where triangles of alpha mode MASK have holes.
+// Holes in triangles of alpha mode MASK.
 #include "surfaces/cutouts.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(Cutouts, FollowTheTexels) {
   EXPECT_FALSE(is_hole(scene, {0.2, 0.2, 0}));
   EXPECT_TRUE(is_hole(scene, {0.6, 0.2, 0}));
   EXPECT_TRUE(is_hole(scene, {0.2, 0.6, 0}));
-  // Off its plane, and outside: as the nearest point.
+  // A point off the plane or outside counts as the nearest point of the triangle.
   EXPECT_FALSE(is_hole(scene, {0.2, 0.2, 0.5}));
   EXPECT_TRUE(is_hole(scene, {3, -1, 0}));
 }
@@ -59,12 +59,12 @@ TEST(Cutouts, AreFilteredLikeTheTexture) {
 
 TEST(Cutouts, AreLookedUpByTheSetOfTheirTexture) {
   Scene scene = one_triangle({255, 0, 0, 255}, 2);
-  // The other way round from left to right.
+  // The second set is mirrored from left to right.
   scene.meshes[0].further_texcoords = {{}, {{{1, 0}, {0, 0}, {1, 1}}, {}}};
   scene.materials[0].base_color_texture.set = 2;
   EXPECT_TRUE(is_hole(scene, {0.2, 0.2, 0}));
   EXPECT_FALSE(is_hole(scene, {0.6, 0.2, 0}));
-  // A set that is not there, and one that is empty: at the origin.
+  // For a missing or empty set, lookups are at the origin.
   for (const std::uint32_t set : {1u, 3u}) {
     scene.materials[0].base_color_texture.set = set;
     EXPECT_FALSE(is_hole(scene, {0.6, 0.2, 0}));
@@ -134,7 +134,7 @@ TEST(Cutouts, SurviveHostileValues) {
     (void)is_hole(scene, {0.1, 0.1, 0});
   }
   Scene nothing = one_triangle({255}, 1);
-  nothing.textures[0] = Texture();  // as where it could not be read: no texel, no hole
+  nothing.textures[0] = Texture();  // unreadable: no texel, no hole
   EXPECT_FALSE(is_hole(nothing, {0.1, 0.1, 0}));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces whose instances move, and what follows them, against those made anew of the scene as it is then.
+// Surfaces with moving instances, and structures that follow them, against new ones of the same scene.
 #include <gtest/gtest.h>
 
 #include "frontmost/files.h"
@@ -20,7 +20,7 @@ namespace {
 using namespace test;
 
 /// Boxes that meet corner to corner, so that clusters hold vertices of many at one place; balls without normals, leaves
-/// with holes, a pane of glass, and what has no finite triangle.
+/// with holes, a pane of glass, and a mesh without finite triangles.
 Scene moving_scene(std::uint64_t seed) {
   Scene scene = cutout_scene(random_mesh(Kind::soup, 40, seed), Cut::half, 0.5f, seed);
   Random random(seed);
@@ -40,7 +40,7 @@ Scene moving_scene(std::uint64_t seed) {
   return scene;
 }
 
-/// Turned, mirrored, flattened, carried off, or brought back to where it was modelled.
+/// A placement that is turned, mirrored, flattened, carried away, or back at the origin.
 glm::dmat4 next_placement(Random& random) {
   switch (random.below(8)) {
     case 0: return glm::dmat4(1.0);
@@ -55,7 +55,7 @@ glm::dmat4 next_placement(Random& random) {
   }
 }
 
-/// What is kept from move to move.
+/// Structures that are kept from move to move.
 struct Kept {
   explicit Kept(const Scene& scene)
       : surfaces(scene), index(surfaces), occlusion(surfaces), parts(surfaces, ObjectUnit::parts) {}
@@ -161,7 +161,7 @@ TEST(Move, WhoLooksSeldomFollowsAllTheSame) {
   Kept kept(scene);
   Random random(4);
   const View view = test::random_view(80, 60, 4);
-  // More moves than the log holds.
+  // The number of moves exceeds the log.
   for (std::size_t i = 0; i < 5 * scene.instances.size() + 3; ++i)
     kept.move(scene, std::uint32_t(random.below(scene.instances.size())), next_placement(random));
   ASSERT_NO_FATAL_FAILURE(expect_as_made_anew(kept, scene, view));
@@ -208,7 +208,7 @@ TEST(Move, OfManyIsThatOfEach) {
       surfaces.move(scene, placements);
       ASSERT_NO_FATAL_FAILURE(expect_same_boxes(surfaces, Surfaces(scene))) << count << ' ' << step;
     }
-    // All of them or none.
+    // A list of moves applies as a whole or not at all.
     const Box before = surfaces.bounds();
     const std::vector<Surfaces::Placement> wrong{{0, glm::dmat4(3.0)}, {std::uint32_t(count), glm::dmat4(1.0)}};
     EXPECT_EQ(code_of([&] { surfaces.move(scene, wrong); }), ErrorCode::bad_argument);

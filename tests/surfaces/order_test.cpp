@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order of triangles in space, and how instances, runs and cells are packed and found.
+// Spatial order of triangles, and packing and search of instances, runs and cells.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ TEST(InstanceFinder, FindsWhatASearchFindsAlsoBetweenEmptyInstances) {
     Random random(seed);
     std::vector<PrimitiveId> first{0};
     for (int i = 0; i < 200; ++i) {
-      // Many without triangles, some with hundreds: starting points every 64 ids fall into all kinds of places.
+      // Many meshes have no triangles, some have hundreds: starting points every 64 ids fall on all kinds of places.
       const int kind = random.below(4);
       const int count = kind < 2 ? 0 : kind == 2 ? random.below(5) : random.below(300);
       first.push_back(first.back() + PrimitiveId(count));
@@ -95,7 +95,7 @@ TEST(SpatialOrder, DoesNotDependOnThreadsOrInstructionSet) {
   }
 }
 
-// Neighbours in the order are neighbours in space: far nearer each other than two that are drawn by lot.
+// Neighbours in the order are neighbours in space: far nearer than random pairs.
 TEST(SpatialOrder, BringsNeighboursTogether) {
   Scene scene = scene_of(random_mesh(Kind::tiny, 20'000, 9));  // in no order at all
   const std::vector<PrimitiveId> first = first_primitives_of(scene);

@@ -16,7 +16,7 @@ Buffer<std::uint64_t> random_items(std::size_t count, int key_bits) {
   std::mt19937_64 random(test::noted_seed(count));
   Buffer<std::uint64_t> items(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint64_t above = random() << 32 << key_bits;  // what is beside the key must not count
+    const std::uint64_t above = random() << 32 << key_bits;  // bits beside the key must not count
     items[i] = (key_bits < 32 ? above : 0) | (random() >> (64 - key_bits)) << 32 | i;
   }
   return items;

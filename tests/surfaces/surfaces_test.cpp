@@ -13,7 +13,7 @@
 namespace frontmost::test {
 namespace {
 
-/// Corners of every triangle as the clusters hold them, by id; expects every id once.
+/// Corners of every triangle by id, as the clusters hold them; expects every id once.
 std::vector<std::array<glm::vec3, 3>> triangles_of(const ClusterSet& set, std::size_t count) {
   std::vector<std::array<glm::vec3, 3>> triangles(count);
   std::vector<int> seen(count, 0);
@@ -43,7 +43,7 @@ TEST(Surfaces, VerticesArePlacedAsOneByOne) {
       for (int row = 0; row < 3; ++row) place[column][row] = double(random.within(-9, 9)) * (column == 3 ? 1e4 : 1);
     std::vector<glm::vec3> from;
     for (std::size_t i = 0; i < count; ++i) from.push_back(random.point(i % 3 == 0 ? 1e-3f : 5e5f));
-    // Out of the floats' reach, and what never was within.
+    // Values beyond the range of floats, and values that were never finite.
     if (count > 8) from[3].x = 3e38f, from[5].y = std::numeric_limits<float>::infinity(), from[8].z = -3e38f;
     for (const Isa isa : available_isas()) {
       std::vector<glm::vec3> to(count), same = from;
@@ -53,7 +53,7 @@ TEST(Surfaces, VerticesArePlacedAsOneByOne) {
         const glm::vec3 expected = to_world(place, from[i]);
         const bool is_number = expected == expected;
         EXPECT_EQ(is_number, to[i] == to[i]) << i;
-        // Checked builds of Highway give the largest float in place of infinity, in code without vectors.
+        // Without vectors, checked builds of Highway give the largest float instead of infinity.
         if (!is_number || (test::under_sanitizer && !is_finite(expected))) continue;
         EXPECT_TRUE(has_same_bits(to[i], expected)) << i;
         EXPECT_TRUE(has_same_bits(same[i], expected)) << i;
@@ -101,7 +101,7 @@ TEST(Surfaces, BoxesHoldTheirClusters) {
 }
 
 TEST(Surfaces, BoundsOfAnInstanceAreThoseOfItsTriangles) {
-  // The instances lie within each other, so that clusters hold triangles of several.
+  // The instances overlap, so clusters hold triangles of several instances.
   Scene scene = scene_of(random_mesh(Kind::soup, 5'000, 3));
   scene.instances.push_back({"smaller", 0, glm::dmat4(0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0.1, 0.1, 0.1, 1)});
   scene.instances.push_back({"mirrored", 0, glm::dmat4(-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0.5, 0, 1)});
@@ -119,7 +119,7 @@ TEST(Surfaces, BoundsOfAnInstanceAreThoseOfItsTriangles) {
   }
 }
 
-/// The same surface whose file is in another order: neighbours far apart, and rows that end in the middle of a run.
+/// One surface in two file orders; in the second, neighbours are far apart, and rows end in the middle of a run.
 TEST(Surfaces, ClustersAreSmallWhateverTheOrderOfTheFile) {
   Mesh mesh = random_mesh(Kind::shared_grid, 20'000, 4);  // rows of 202 triangles, two units wide
   const auto expect_small_clusters = [&] {
@@ -131,7 +131,7 @@ TEST(Surfaces, ClustersAreSmallWhateverTheOrderOfTheFile) {
     for (std::size_t i = 0; i < count; ++i) {
       const float size = cluster_set(surfaces).boxes.get(i).diagonal();
       sum += size;
-      EXPECT_LT(size, 1.6);  // a row is longer; the curve leaves a flat sheet and comes back elsewhere
+      EXPECT_LT(size, 1.6);  // a row is longer; the curve leaves a flat sheet and returns elsewhere
     }
     EXPECT_LT(sum / double(count), 0.6);
   };
@@ -144,7 +144,7 @@ TEST(Surfaces, ClustersAreSmallWhateverTheOrderOfTheFile) {
 TEST(Surfaces, IdsLeadBackToInstanceMeshAndTriangle) {
   Scene scene = scene_of(random_mesh(Kind::soup, 10, 1));
   scene.meshes.push_back(random_mesh(Kind::soup, 3, 2));
-  scene.meshes.emplace_back();  // an empty one in between takes no ids
+  scene.meshes.emplace_back();  // an empty mesh in between takes no ids
   scene.instances = {
       {"a", 1, glm::dmat4(1)}, {"none", 2, glm::dmat4(1)}, {"b", 0, glm::dmat4(1)}, {"c", 1, glm::dmat4(1)}};
   const Surfaces surfaces(scene);
@@ -193,7 +193,7 @@ TEST(Surfaces, RefuseBrokenScenesByName) {
   EXPECT_THROW(Surfaces surfaces(scene), Error);
 }
 
-// The header promises that corners() gives the bits that are drawn, whichever zero they are.
+// The header promises that corners() returns the drawn bits, including the sign of zero.
 TEST(Surfaces, CornersKeepTheSignOfZero) {
   Mesh mesh;
   add_triangle(mesh, {-0.0f, -0.0f, 1}, {1, -0.0f, 0}, {0, 1, -0.0f});
@@ -203,7 +203,7 @@ TEST(Surfaces, CornersKeepTheSignOfZero) {
   EXPECT_EQ(std::memcmp(&drawn, &told, sizeof told), 0);
 }
 
-// Singular and overflowing transforms are no error: what they leave is flat, or beyond floats, and so not seen.
+// Singular and overflowing transforms are no error: their triangles are flat or not finite, and so invisible.
 TEST(Surfaces, DegenerateTransformsHaveAStatedOutcome) {
   Scene scene = scene_of(random_mesh(Kind::soup, 50, 1));
   scene.instances[0].world_from_mesh = glm::dmat4(0.0);
@@ -233,7 +233,7 @@ TEST(Surfaces, TellTheWatchAndStopWhenItSaysSo) {
   EXPECT_THROW(Surfaces(scene, {.watch = &watch}), Error);
 }
 
-// A small file can name the same vertices many times over: 2e12 of them, which would take an hour.
+// A small file can reference the same vertices many times: 2e12 times here, which would take an hour.
 TEST(Surfaces, VerticesThatNoTriangleUsesCostNothingPerInstance) {
   Scene scene = scene_of(random_mesh(Kind::soup, 1, 1));
   scene.meshes[0].positions.resize(2'000'000, glm::vec3(0.5f));

@@ -22,7 +22,7 @@ TEST(VertexTable, GivesEveryPositionANumberOfItsOwn) {
     std::set<int> numbers;
     for (std::size_t i = 0; i < Cluster::max_vertices; ++i) {
       const glm::vec3 p(float(random() % 100), float(round), float(i));
-      EXPECT_EQ(table.find({p, 7}), VertexTable::none);  // whatever was there before clear()
+      EXPECT_EQ(table.find({p, 7}), VertexTable::none);  // whatever the table held before clear()
       const std::uint8_t number = intern(table, p);
       EXPECT_TRUE(numbers.insert(number).second);
       EXPECT_EQ(table[number], p);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers that cannot be read: planes that are gone or of another size, and ids that no triangle has.
+// Answers that cannot be read: missing planes, planes of another size, and ids without a triangle.
 #include "view/answer.h"
 
 #include <gmock/gmock.h>
@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Calls `read`, which must throw bad_argument and say why.
+/// Calls `read`, which must throw bad_argument with a reason.
 template <class Read>
 void expect_refused(const char* words, const Read& read) {
   try {
@@ -96,7 +96,7 @@ TEST_F(Answer, TheLastIdAndNoIdAreFine) {
   expect_refused("test: the surfaces", [&] { check_ids(ids, count, "test", {}); });
   ids.back() = no_primitive - 1;
   expect_refused("test: the surfaces", [&] { check_ids(ids, count, "test", {}); });
-  // Nothing to look up where there are no triangles, but nothing is all that may be seen.
+  // Without triangles there is nothing to look up, and only "no primitive" may be seen.
   ids.back() = 0;
   expect_refused("test: the surfaces", [&] { check_ids(ids, 0, "test", {}); });
 }

@@ -82,7 +82,7 @@ TEST(Clip, CutsLieOnThePlaneAndOutsideVanishes) {
   }
 }
 
-// Both sides of an edge must cut it at the same points, whichever way round each triangle names it.
+// Both triangles at an edge must cut it at the same points, whichever direction each lists it in.
 TEST(Clip, NeighboursAgreeOnTheirCommonEdge) {
   Random random(5);
   std::size_t compared = 0;
@@ -90,7 +90,7 @@ TEST(Clip, NeighboursAgreeOnTheirCommonEdge) {
     const ScreenTransform t(test_view(i % 2));
     const glm::vec3 a = random.point(6), b = random.point(6), c = random.point(6), d = random.point(6);
     const ClippedPolygon left = clip_triangle(t, {a, b, c}), right = clip_triangle(t, {b, a, d});
-    // What an edge becomes is found by clipping it as a degenerate triangle with each neighbour's order.
+    // The clipped edge is found by clipping it as a degenerate triangle, in each neighbour's direction.
     const ClippedPolygon forth = clip_triangle(t, {a, b, b}), back = clip_triangle(t, {b, a, a});
     const auto holds = [](const ClippedPolygon& polygon, const ScreenVertex& v) {
       for (int k = 0; k < polygon.count; ++k) {
@@ -110,7 +110,7 @@ TEST(Clip, NeighboursAgreeOnTheirCommonEdge) {
   EXPECT_GT(compared, 1000u);
 }
 
-// Cut at the near plane first, the edge between the first two corners would end 1e16 to either side of the first.
+// Clipped at the near plane first, the edge between the first two vertices would end 1e16 to either side.
 TEST(Clip, TrianglesBesideTheViewVanishHoweverFarTheyReach) {
   const std::array<glm::vec3, 3> triangle{glm::vec3(1.31398e11f, -1.08918e8f, 84.1228f),
                                           glm::vec3(2.08206e32f, -4.1612e-35f, -3.12502e35f),

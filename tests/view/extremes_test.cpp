@@ -14,15 +14,15 @@
 namespace frontmost::test {
 namespace {
 
-/// From the origin along -z.
+/// A frustum from the origin along -z.
 FilledFrustum straight() { return {glm::dmat4(1.0), {false, -0.7, 0.7, -0.4, 0.4, {}}, 0}; }
 FilledFrustum turned() { return {look_at({3, -2, 1.5}, {0, 0, 0}, {0, 0, 1}), {false, -0.7, 0.7, -0.4, 0.4, {}}, 0}; }
-/// With an image that lies off the axis.
+/// A frustum with an off-axis image.
 FilledFrustum sheared() {
   return {look_at({3, -2, 1.5}, {0, 0, 0}, {0, 0, 1}), {false, -0.2, 1.2, 0.1, 0.9, {}}, 0.05};
 }
 
-/// Vertices in as many boxes as it takes.
+/// A scene of these vertices, in as many boxes as they need.
 Scene cloud(const std::vector<glm::vec3>& points) {
   Mesh mesh;
   for (std::size_t i = 0; i + 2 < points.size(); i += 3) add_triangle(mesh, points[i], points[i + 1], points[i + 2]);
@@ -61,7 +61,7 @@ TEST(Extremes, OfBoxesAreThoseOfAllVertices) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     std::vector<glm::vec3> points = random_points(30000, seed);
     for (const FilledFrustum& frustum : {turned(), sheared()}) expect_boxes_give_the_same(points, frustum);
-    for (glm::vec3& p : points) p = glm::normalize(p);  // a sphere: every box is near the outside
+    for (glm::vec3& p : points) p = glm::normalize(p);  // on a sphere, every box is near the outside
     expect_boxes_give_the_same(points, turned());
     for (glm::vec3& p : points) p = p * 1e-3f + glm::vec3(1000, -4000, 70);  // many are equal in floats
     expect_boxes_give_the_same(points, turned());
@@ -73,7 +73,7 @@ TEST(Extremes, TiesGoToTheLesserPosition) {
   for (int y = 0; y < 99; ++y)
     for (int x = 0; x < 99; ++x) grid.emplace_back(x, y, 7);
   for (const FilledFrustum& frustum : {straight(), turned()}) expect_boxes_give_the_same(grid, frustum);
-  // Seen along z all of them are nearest: of those, the least, and the corners of the sides' directions.
+  // Seen along z, all points are nearest: the least of these are kept, and the corners in the directions of the sides.
   const std::vector<glm::vec3> kept = one_by_one(grid, straight());
   EXPECT_EQ(kept.front(), glm::vec3(0, 0, 7));
   EXPECT_LE(kept.size(), 4u);
@@ -91,7 +91,7 @@ TEST(Extremes, ABoxMayChangeThemOnlyIfItReachesOut) {
   for (const glm::vec3& p : random_points(5000, 11)) extremes.include(glm::normalize(p));
   EXPECT_FALSE(extremes.may_change_by({glm::vec3(-0.5f), glm::vec3(0.5f)}));
   EXPECT_TRUE(extremes.may_change_by({glm::vec3(-0.5f), glm::vec3(0.5f, 0.5f, 3)}));
-  // A kept point itself ties with itself.
+  // A kept point ties with itself.
   for (const glm::vec3& p : extremes.points()) EXPECT_TRUE(extremes.may_change_by({p, p}));
 }
 

@@ -19,7 +19,8 @@ Scene box_scene(const glm::vec3& low, const glm::vec3& high, Axis up) {
   return scene;
 }
 
-/// Every corner of the model is inside the picture and between the planes; the picture is reasonably filled.
+/// Checks that every vertex is inside the picture and between the planes, and that the model reasonably fills the
+/// picture.
 void expect_fits(const Surfaces& surfaces, const View& view) {
   const ScreenTransform t(view);
   double widest = 0;
@@ -34,9 +35,9 @@ void expect_fits(const Surfaces& surfaces, const View& view) {
   EXPECT_GT(widest, 0.5);
 }
 
-// What is seen fills the picture up to the margin in the direction that is tighter, and is in its middle.
+// The model fills the picture up to the margin in the tighter direction, and is centred.
 TEST(Frame, FitsTheModelNotItsBox) {
-  Mesh ring;  // a disc seen from its side: its box has corners far outside of it
+  Mesh ring;  // a disc seen edge-on: its box has corners far outside of it
   for (int i = 0; i < 720; ++i) {
     const double a = i * 3.14159265358979 / 360, b = (i + 1) * 3.14159265358979 / 360;
     add_triangle(ring, {0.1f, 0, 0}, {float(std::cos(a)), 0, float(std::sin(a))},
@@ -62,7 +63,7 @@ TEST(Frame, FitsTheModelNotItsBox) {
   }
 }
 
-/// Where a point lies in the picture, from its middle: -1 and 1 are its sides. Doubles, not snapped.
+/// Position of a point in the picture, in doubles without snapping: 0 is the middle, -1 and 1 are the picture's edges.
 glm::dvec2 place_in_picture(const View& view, const glm::dvec3& point) {
   const glm::dvec3 d = point - view.eye();
   const Projection& p = view.projection;
@@ -72,7 +73,7 @@ glm::dvec2 place_in_picture(const View& view, const glm::dvec3& point) {
          (glm::dvec2(p.right - p.left, p.top - p.bottom) / 2.0);
 }
 
-/// The least and the greatest place of a mesh's vertices.
+/// The least and the greatest position of a mesh's vertices in the picture.
 std::pair<glm::dvec2, glm::dvec2> extent_in_picture(const View& view, const Mesh& mesh) {
   glm::dvec2 low(1e9), high(-1e9);
   for (const glm::vec3& p : mesh.positions) {
@@ -83,7 +84,7 @@ std::pair<glm::dvec2, glm::dvec2> extent_in_picture(const View& view, const Mesh
   return {low, high};
 }
 
-// Principal points in the middle, off it, and outside of the picture.
+// Principal points in the middle of the picture, off it, and outside of the picture.
 constexpr Intrinsics kCameras[] = {{300, 300, 99.5, 49.5}, {300, 310, 10, 60}, {250, 400, 260, -30}};
 
 TEST(Frame, ATargetIsInTheMiddleAndTheModelReachesTheMargin) {
@@ -99,7 +100,8 @@ TEST(Frame, ATargetIsInTheMiddleAndTheModelReachesTheMargin) {
       const auto [low, high] = extent_in_picture(view, scene.meshes[0]);
       const double reach = std::max({-low.x, -low.y, high.x, high.y});
       EXPECT_LE(reach, 0.9 + 1e-9);
-      // As near as that, unless the target lies before the model: the eye must be behind it.
+      // The view is as tight as the margin allows, unless the target is in front of the model: the eye must be behind
+      // it.
       if (target.z < 30) {
         EXPECT_NEAR(reach, 0.9, 1e-9);
       }
@@ -187,7 +189,7 @@ TEST(Frame, EmptyAndFlatAndSinglePointModelsHaveAView) {
 
 TEST(Frame, OfABoxIsThatOfAModelWithItsCorners) {
   for (const Axis up : {Axis::y, Axis::z}) {
-    Mesh mesh;  // all eight corners
+    Mesh mesh;  // all eight corners of the box
     add_triangle(mesh, {-1, -2, -3}, {4, -2, -3}, {-1, 5, -3});
     add_triangle(mesh, {4, 5, -3}, {4, 5, 6}, {-1, 5, 6});
     add_triangle(mesh, {4, -2, 6}, {-1, -2, 6}, {-1, -2, -3});

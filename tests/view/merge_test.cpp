@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Merging what parts show: known answers, and the laws that streaming and compositing rest on.
+// Merging the pictures of parts: known answers, and the laws that streaming and compositing rely on.
 #include <gtest/gtest.h>
 
 #include "frontmost/view.h"
@@ -126,7 +126,7 @@ TEST(Merge, IdsDoNotRunOver) {
   EXPECT_THROW(merge(into, of_samples({{0.5f, 4}}), none - 4), Error);
 }
 
-/// A scene's triangles dealt out to parts, each a scene of its own.
+/// A scene's triangles distributed over parts, each a scene of its own.
 std::vector<Scene> cut(const Scene& whole, std::size_t triangles_at_once) {
   std::vector<Scene> parts;
   const Mesh& mesh = whole.meshes.at(0);

@@ -59,7 +59,7 @@ TEST(Pose, ARobotHasXAheadYLeftAndZUp) {
   EXPECT_EQ(-glm::dvec3(eye[2]), glm::dvec3(1, 0, 0)) << "ahead";
   EXPECT_EQ(-glm::dvec3(eye[0]), glm::dvec3(0, 1, 0)) << "left";
   EXPECT_EQ(glm::dvec3(eye[1]), glm::dvec3(0, 0, 1)) << "up";
-  // From (0, 0, 5) towards zero, y up: the origin is 5 ahead, and what is at +x there is on the right.
+  // A camera at (0, 0, 5) looks at zero, y up: the origin is 5 ahead, and points at +x are on the right.
   const glm::dmat4 robot_from_world =
       pose_of(look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0}), PoseConvention::robot_world_to_camera);
   expect_near(glm::dvec3(robot_from_world * glm::dvec4(0, 0, 0, 1)), {5, 0, 0});

@@ -124,7 +124,7 @@ TEST(Projection, RefusesWhatMakesNoSense) {
   EXPECT_THROW((void)intrinsics_of(make_orthographic(0, 1, 0, 1, {1, 2}), 4, 4, PixelRule::centre_at_half), Error);
 }
 
-/// The message that refuses a view, or "" when it is valid.
+/// The message that refuses a view; "" if the view is valid.
 std::string refusal(const Projection& projection, const glm::dvec3& eye = {0, 0, 0}) {
   View view{64, 48, 1, glm::dmat4(1.0), projection, {}};
   view.world_from_eye[3] = glm::dvec4(eye, 1);
@@ -168,7 +168,7 @@ TEST(Samples, LieInThePixelAndAreAllDifferent) {
     ASSERT_EQ(offsets.size(), std::size_t(count));
     for (std::size_t i = 0; i < offsets.size(); ++i) {
       EXPECT_TRUE(offsets[i].x >= 0 && offsets[i].x < 256 && offsets[i].y >= 0 && offsets[i].y < 256);
-      // Rotated grids: no two samples in one row or column, so level and upright edges are smooth too.
+      // Rotated grids: no two samples share a row or column, so level and upright edges are smooth too.
       for (std::size_t j = 0; j < i; ++j)
         EXPECT_TRUE(offsets[i].x != offsets[j].x && offsets[i].y != offsets[j].y) << count << " samples";
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every word with which a view, a projection, a pose or a merge is refused, beside the nearest that is taken.
+// All messages that refuse a view, a projection, a pose or a merge, next to the nearest accepted values.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
 
-/// "argument, limit or camera: words" of the error; "taken" if there is none.
+/// "argument, limit or camera: message" of the error; "taken" if there is none.
 template <class Action>
 std::string outcome(Action&& action) {
   try {
@@ -55,7 +55,7 @@ TEST(RefusedViews, SizesAndSamples) {
   for (const int samples : {1, 2, 4, 8, 16}) EXPECT_EQ(changed([&](View& v) { v.samples = samples; }), "taken");
   for (const int samples : {-1, 0, 3, 5, 32, 64})
     EXPECT_EQ(changed([&](View& v) { v.samples = samples; }), "argument, samples: must be 1, 2, 4, 8 or 16");
-  // 2^14 x 2^13 pixels of two samples are just as many as there may be.
+  // 2^14 x 2^13 pixels of two samples reach the limit exactly.
   const auto many = [](int width, int height, int samples) {
     return changed([&](View& v) { v.width = width, v.height = height, v.samples = samples; });
   };
@@ -146,7 +146,7 @@ TEST(RefusedPoses, LookingNowhere) {
   EXPECT_EQ(look({0, 0, 0}, {0, nan, 0}, {0, 1, 0}), apart);
   EXPECT_EQ(look({-1e200, 0, 0}, {1e200, 0, 0}, {0, 1, 0}), apart) << "their distance is beyond doubles";
   EXPECT_EQ(look({0, 0, 0}, {0, 0, 1e-150}, {0, 1, 0}), "taken") << "however near";
-  // An up that says nothing is y, as if none had been given.
+  // An invalid up vector is replaced by y, the default.
   for (const glm::dvec3& up : {glm::dvec3(0), glm::dvec3(nan, 0, 0), glm::dvec3(infinity, 0, 0)})
     EXPECT_EQ(look_at({0, 0, 3}, {0, 0, 0}, up), look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0}));
 }
@@ -188,7 +188,7 @@ TEST(SampleOffsets, AreThoseOfDirect3D) {
     ASSERT_EQ(offsets.size(), std::size_t(pattern.samples));
     EXPECT_EQ(offsets.front(), 128 + 16 * pattern.first);
     EXPECT_EQ(offsets.back(), 128 + 16 * pattern.last);
-    // Every row and every column of the grid of N x N has one sample, where the pattern is that of N rooks.
+    // In an N rooks pattern, every row and every column of the N x N grid has one sample.
     if (pattern.samples == 1 || pattern.samples == 2) continue;
     std::uint32_t columns = 0, rows = 0;
     for (const glm::ivec2& at : offsets) {

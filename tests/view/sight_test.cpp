@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signs of lines of sight and of planes against fractions; rays, weights and screen positions against each other.
+// Signs for lines of sight and planes against fractions; rays, weights and screen positions against each other.
 #include "view/sight.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 int sign_of(const Rational& r) { return r > 0 ? 1 : r < 0 ? -1 : 0; }
 
-/// Points of a coarse lattice, so that many lie in one plane with the eye, and a few of them moved by a rounding.
+/// Points of a coarse lattice, so that many are coplanar with the eye; a few are moved by a rounding error.
 glm::dvec3 lattice_point(Random& random) {
   const int x = random.below(5) - 2, y = random.below(5) - 2, z = random.below(5) - 2;
   glm::dvec3 p = glm::dvec3(x, y, z) * 0.5;
@@ -30,7 +30,7 @@ View sight_view(Random& random, bool orthographic) {
   View view;
   view.width = 64;
   view.height = 48;
-  // Eyes on the lattice, looking along an axis: the matrix holds them without a rounding.
+  // The eye is on the lattice and looks along an axis, so the matrix is exact.
   const int x = random.below(5) - 2, y = random.below(5) - 2;
   view.world_from_eye = look_at(glm::dvec3(0.5 * x, 0.5 * y, 3), glm::dvec3(0.5 * x, 0.5 * y, 0), {0, 1, 0});
   view.projection =
@@ -38,7 +38,7 @@ View sight_view(Random& random, bool orthographic) {
   return view;
 }
 
-/// 1 where a, b, c run counter-clockwise as they are seen.
+/// 1 if a, b, c run counter-clockwise as seen.
 int exact_facing(const View& view, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const RationalVector p(a), q(b), r(c);
   const RationalVector normal = cross(q - p, r - p);
@@ -63,7 +63,7 @@ TEST(Sight, FacingIsExactHoweverFlatATriangleIsSeen) {
   for (const int count : signs) EXPECT_GE(count, int(seeds(150)));
 }
 
-// With slack the sign is open where the point may lie on either side, and certain as soon as it cannot.
+// With slack, a sign stays open if the point may lie on either side, and is certain otherwise.
 TEST(Sight, SlackLeavesSignsOpenOnlyNearThePlane) {
   Random random(5);
   const View view = sight_view(random, false);
@@ -96,7 +96,7 @@ TEST(FacePlane, HeightsAreExact) {
   for (const int count : signs) EXPECT_GE(count, int(seeds(150)));
 }
 
-// A ray through (x, y) goes to where Sight says that (x, y) is: both go by the same view, in opposite directions.
+// A ray through (x, y) leads to points that Sight maps to (x, y): both use the same view, in opposite directions.
 TEST(ScreenRays, LeadToThePlacesThatSightSees) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     Random random(seed);
@@ -116,7 +116,7 @@ TEST(ScreenRays, LeadToThePlacesThatSightSees) {
   }
 }
 
-// Vertices are snapped from floats: within half a step of 1/256 pixel, and what the floats lose.
+// Vertices are snapped from floats: within half a step of 1/256 pixel, plus the rounding of floats.
 TEST(ScreenTransform, SnapsToTheUnitThatSightSees) {
   std::size_t compared = 0;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
@@ -153,9 +153,9 @@ TEST(RayVolumes, AreProportionalToBarycentricWeights) {
     const glm::dvec3 screen = sight.to_screen(sight.in_eye(view.eye() + point));
     const RayVolumes volumes = ray_volumes(rays, corners, screen.x, screen.y);
     const double sum = volumes.value.x + volumes.value.y + volumes.value.z;
-    if (std::abs(sum) < 1e-3) continue;  // seen from its edge
+    if (std::abs(sum) < 1e-3) continue;  // seen edge-on
     for (int k = 0; k < 3; ++k) ASSERT_NEAR(volumes.value[k] / sum, weights[k], 1e-9) << seed;
-    // Affine over the screen: from anywhere else by steps.
+    // The volumes are affine over the screen: other pixels are reached by steps.
     const RayVolumes corner = ray_volumes(rays, corners, 0, 0);
     for (int k = 0; k < 3; ++k)
       ASSERT_NEAR(corner.value[k] + screen.x * corner.step_x[k] + screen.y * corner.step_y[k], volumes.value[k], 1e-9);

@@ -27,7 +27,7 @@ Mesh box_of(const glm::vec3& middle, float half, int n = 3) {
   return sheet_of(middle - glm::vec3(half), middle + glm::vec3(half), n);
 }
 
-/// Nine houses of 10 within 100.
+/// Nine houses of size 10 within 100.
 Scene village() {
   Scene scene;
   for (int x = -1; x <= 1; ++x)
@@ -43,7 +43,7 @@ Subject subject_of(const Scene& scene) {
 LeftOut left_out_of(const Scene& scene) { return subject_of(scene).left_out; }
 
 TEST(Subject, IsTheVillageOnItsPlane) {
-  for (const int n : {1, 100}) {  // also where the plane is finely divided
+  for (const int n : {1, 100}) {  // also with a finely divided plane
     Scene scene = village();
     const Box houses = Surfaces(scene).bounds();
     add(scene, sheet_of({-1000, 0, -1000}, {1000, 0, 1000}, n));
@@ -64,12 +64,12 @@ TEST(Subject, IsWhatADomeIsAround) {
 TEST(Subject, IsNotWhatWasLostFarAway) {
   Scene scene = village();
   add(scene, box_of({1e6f, 3, 20}, 0.01f, 6));
-  add(scene, box_of({1e6f, 3, 21}, 0.01f, 6));  // two at one place, neither of which shrinks the bounds alone
+  add(scene, box_of({1e6f, 3, 21}, 0.01f, 6));  // two at one place; removing one alone does not shrink the bounds
   Mesh point;
   add_triangle(point, {0, -1e7f, 0}, {0, -1e7f, 0}, {0, -1e7f, 0});
   add(scene, point);
   EXPECT_EQ(left_out_of(scene), (LeftOut{9, 10, 11}));
-  // Wherever the village stands, and in whatever order.
+  // The result is the same wherever the village stands, and in any order.
   Scene other;
   add(other, box_of({1e6f + 500, 3, 20}, 0.01f, 6));
   Scene moved = village();
@@ -78,7 +78,7 @@ TEST(Subject, IsNotWhatWasLostFarAway) {
   EXPECT_EQ(left_out_of(other), LeftOut{0});
 }
 
-// A gap of eight to the bit is one; a reach less it is none.
+// A gap of exactly eight counts; one a bit smaller does not.
 TEST(Subject, NeedsAGapOfEight) {
   for (const float far : {7.99f, 8.0f}) {
     Scene scene;
@@ -88,7 +88,7 @@ TEST(Subject, NeedsAGapOfEight) {
   }
 }
 
-// Interests go with the root of n, of sheets with 2 n * n triangles: 3 of 5 are needed.
+// Interest grows with the square root of the number of triangles: n for a sheet of 2 n * n. The subject needs 3 of 5.
 TEST(Subject, NeedsThreeFifthsOfTheInterest) {
   for (const int n : {15, 16, 17}) {
     Scene scene;
@@ -103,17 +103,17 @@ TEST(Subject, IsAllWhereNothingStandsOut) {
   EXPECT_EQ(left_out_of(village()), LeftOut{});
   Scene single;
   add(single, box_of({0, 0, 0}, 1));
-  single.meshes[0].positions[0] = {1e6f, 0, 0};  // a vertex alone is no object
+  single.meshes[0].positions[0] = {1e6f, 0, 0};  // an unused vertex is no object
   EXPECT_EQ(left_out_of(single), LeftOut{});
   Scene furniture;  // on a floor five times as large
   for (const float x : {-0.5f, 0.5f}) add(furniture, box_of({x, 0.4f, 0}, 0.4f));
   add(furniture, sheet_of({-5, 0, -5}, {5, 0, 5}, 1));
   EXPECT_EQ(left_out_of(furniture), LeftOut{});
-  Scene plate;  // with holes, and one bolt in it
+  Scene plate;  // with holes, and with one bolt in it
   add(plate, sheet_of({-50, 0, -50}, {50, 1, 50}, 10));
   add(plate, box_of({30, 1, 20}, 1, 16));
   EXPECT_EQ(left_out_of(plate), LeftOut{});
-  Scene street;  // every house twice as far as the last one
+  Scene street;  // every house twice as far as the previous one
   for (float x = 10; x < 5000; x *= 2) add(street, box_of({x, 0, 0}, 4));
   EXPECT_EQ(left_out_of(street), LeftOut{});
 }
@@ -125,7 +125,7 @@ TEST(Subject, HasNoUseForObjectsThatCannotBeSeen) {
   add(scene, broken);
   add(scene, Mesh());
   EXPECT_EQ(left_out_of(scene), LeftOut{});
-  Scene points;  // all of the interest in one point, whose reach is nothing
+  Scene points;  // one point has all of the interest, and no extent
   Mesh point;
   for (int i = 0; i < 1000; ++i) add_triangle(point, {1, 2, 3}, {1, 2, 3}, {1, 2, 3});
   add(points, point);
@@ -133,7 +133,7 @@ TEST(Subject, HasNoUseForObjectsThatCannotBeSeen) {
   EXPECT_EQ(left_out_of(points), LeftOut{});
 }
 
-/// The views of two scenes, of which one has more objects.
+/// Compares the views of two scenes, one with more objects.
 void expect_same_place(const View& one, const View& other) {
   EXPECT_EQ(one.world_from_eye, other.world_from_eye);
   EXPECT_EQ(one.projection.left, other.projection.left);
@@ -150,7 +150,7 @@ TEST(Subject, IsFramedAsIfItWereAlone) {
   expect_same_place(view, frame(houses, 320, 200));
   (void)cluster_set(surfaces);
   expect_same_place(view, frame(surfaces, 320, 200));
-  // Planes hold what is left out, but not at the price of the subject.
+  // The planes include objects outside the subject, but not at the subject's expense.
   EXPECT_GT(view.projection.clip.far, 9e5);
   const double near = frame(houses, 320, 200).projection.clip.near;
   EXPECT_LE(view.projection.clip.near, near);
@@ -158,7 +158,7 @@ TEST(Subject, IsFramedAsIfItWereAlone) {
   expect_same_place(frame(houses, 320, 200, {.objects = FramedObjects::all}), frame(houses, 320, 200));
 }
 
-// The eye of a parallel projection stands within the dome, which would hide all from farther away.
+// The eye of the parallel projection stands inside the dome, which would hide everything from farther away.
 TEST(Subject, IsNotHiddenInParallelProjection) {
   Scene scene = village();
   const Box houses = Surfaces(scene).bounds();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles for a view: how far they are from the surface, on the screen, and whether they hang together.
+// Tessellation for a view: distance from the surface on the screen, and edges without cracks.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,8 +32,8 @@ glm::dvec2 screen_of(const View& view, const glm::dvec3& world) {
           (p.top - eye.y / w) / (p.top - p.bottom) * view.height};
 }
 
-/// Greatest distance on the screen between points of the triangles and the points of the surface that have the same
-/// texture coordinates; the patches of `scene` have the unit square for texture.
+/// Greatest screen distance between points of the triangles and points of the surface with the same texture
+/// coordinates. The patches of `scene` use the unit square as texture coordinates.
 double worst_pixels(const Scene& scene, const View& view) {
   double worst = 0;
   const Instance& instance = scene.instances[0];
@@ -75,7 +75,7 @@ Position position_of(const Mesh& mesh, std::uint32_t vertex) {
   return {p.x, p.y, p.z};
 }
 
-/// Directed edges, by position, that have no partner in the other direction.
+/// Number of directed edges, by position, without a partner in the opposite direction.
 std::size_t open_edges(const Mesh& mesh) {
   std::map<std::pair<Position, Position>, int> edges;
   for (const glm::uvec3& t : mesh.triangles)
@@ -113,7 +113,7 @@ TEST(Tessellation, TakesTransformsIntoAccount) {
   EXPECT_GT(worst, 0.01);
 }
 
-/// Points along the edges that only one patch has.
+/// Number of points along the edges that only one patch has.
 std::size_t rim_length(const Mesh& mesh, const std::vector<PatchLevel>& levels) {
   constexpr std::size_t ends[4][4] = {{0, 1, 2, 3}, {12, 13, 14, 15}, {0, 4, 8, 12}, {3, 7, 11, 15}};
   struct Edge {
@@ -183,7 +183,7 @@ TEST(Tessellation, OfASphereIsWithinThePixelsAskedFor) {
   }
 }
 
-// The exact worst case of a globe is the middle of a cell's diagonal at the equator, where the bound is met.
+// The exact worst case for a globe is the middle of a cell's diagonal at the equator, where the bound is reached.
 TEST(Tessellation, KnowsHowFarAGlobeIsFromTheSphere) {
   for (const int rings : {4, 9, 24, 100}) {
     const Mesh globe = sphere(rings);
@@ -217,7 +217,7 @@ TEST(Tessellation, GivesInstancesWhatEachNeedsAndSharesTheRest) {
   EXPECT_GT(cut.meshes[0].triangles.size(), 4 * cut.meshes[2].triangles.size());
   EXPECT_EQ(cut.meshes[1].positions, scene.meshes[1].positions);
   EXPECT_TRUE(cut.meshes[2].is_curved());
-  // What is shared counts once, and what is not curved not at all.
+  // Shared meshes count once, and meshes that are not curved do not count.
   const double made = double(cut.meshes[0].triangles.size() + cut.meshes[2].triangles.size());
   EXPECT_GE(tessellated_count(scene, looking_at_origin({0, 1, 9}), 0.2), made);
   EXPECT_LT(tessellated_count(scene, looking_at_origin({0, 1, 9}), 0.2), 1.1 * made);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keys between corners, held against exact sums.
+// Keys between vertices, compared with exact sums.
 #include "view/triangle_keys.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ KeyedTriangle with_positive_area(const KeyedTriangle& t) { return doubled_area(t
 Rational exact_key(const KeyedTriangle& t, std::int64_t x, std::int64_t y) {
   Rational sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;  // the side opposite to corner k
+    const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;  // the edge opposite to vertex k
     const std::int64_t edge =
         std::int64_t(t.x[b] - t.x[a]) * (y - t.y[a]) - std::int64_t(t.y[b] - t.y[a]) * (x - t.x[a]);
     sum += Rational(edge) * Rational(t.key[k]);
@@ -45,8 +45,8 @@ bool is_inside(const KeyedTriangle& t, std::int64_t x, std::int64_t y) {
   return true;
 }
 
-/// Triangles as clipping and snapping leave them: up to the guard band, keys over many powers of two, many of them
-/// needles.
+/// Triangles as clipping and snapping leave them: up to the guard band, with keys over many powers of two, and many of
+/// them needles.
 KeyedTriangle random_triangle(Random& random) {
   KeyedTriangle t{};
   const int reach = 1 << (4 + random.below(18));
@@ -55,18 +55,18 @@ KeyedTriangle random_triangle(Random& random) {
     t.y[k] = random.below(2 * reach) - reach;
     t.key[k] = std::ldexp(0.5f + 0.5f * random.unit(), -random.below(1 + random.below(20)));
   }
-  if (random.below(2) == 0) {  // a needle: the last corner beside the side of the others
+  if (random.below(2) == 0) {  // a needle: the last vertex is close to the edge between the others
     const float s = random.unit();
     t.x[2] = t.x[0] + std::int32_t(s * float(t.x[1] - t.x[0])) + random.below(3) - 1;
     t.y[2] = t.y[0] + std::int32_t(s * float(t.y[1] - t.y[0])) + random.below(3) - 1;
   }
   if (random.below(4) == 0) t.key[1] = t.key[0];
-  if (random.below(4) == 0)  // gentle
+  if (random.below(4) == 0)  // a gentle plane
     for (float& key : t.key) key = 0.5f + 0.1f * key;
   return t;
 }
 
-/// A point of the triangle, found from random weights of its corners.
+/// A point of the triangle, by random weights of its vertices.
 glm::ivec2 random_point(const KeyedTriangle& t, Random& random) {
   double a = random.unit(), b = random.unit();
   if (a + b > 1) a = 1 - a, b = 1 - b;
@@ -113,7 +113,7 @@ TEST(TriangleKeys, DoNotDependOnTheOrderOfTheCorners) {
 }
 
 TEST(TriangleKeys, HaveTheGradientOfTheirPlane) {
-  // Exact where all numbers are round: a quarter in ten pixels to the right, nothing in y.
+  // Round numbers give exact results: a quarter in ten pixels to the right, nothing in y.
   const KeyedTriangle ramp{{0, 2560, 2560}, {0, 0, 2560}, {0.5f, 0.75f, 0.75f}};
   EXPECT_FALSE(KeyPlane(ramp).is_steep);
   EXPECT_EQ(KeyPlane(ramp).gx, 0.25f / 2560);

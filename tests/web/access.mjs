@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// access.mjs FOLDER [all]: every page without a mouse and without seeing it, in Chromium, in one language and the other
-// in turn, or in both: what the accessibility tree names, where the tab key goes and what it shows there, what keys do,
-// what is told when something changes, and whether text stands out from what is behind it in both schemes of colours.
+// access.mjs FOLDER [all]: tests every page in Chromium without a mouse and without sight, with languages in turn, or
+// in both. Checks the names in the accessibility tree, the places that the tab key reaches and their focus marks, the
+// effect of keys, announcements of changes, and the contrast of texts in both colour schemes.
 import assert from "node:assert/strict";
 import { openBrowser, openPage } from "./browser.mjs";
 
@@ -16,7 +16,7 @@ function check(holds, otherwise) {
 }
 
 const operable = new Set(["button", "link", "radio", "checkbox", "slider", "combobox", "textbox", "application", "radiogroup", "image"]);
-// Names of formats, people and programs are the same in every language.
+// Names of formats, people and programs are equal in all languages.
 const international = /^(Frontmost|English|中文|PNG|SVG|PDF|DXF|[\w.-]+\.(npy|exr|pfm)|D16|D24|F32|Newell, Newell, Sancha|Newell、Newell、Sancha|[A-Z]+|builtin:.*|[\d.]+)$/;
 const chinese = /[\u4e00-\u9fff]/;
 
@@ -29,7 +29,7 @@ async function readyPage(path, lang, more = {}) {
   return { page, context };
 }
 
-/** Everything that can be used or looked at has a name, in the page's language. */
+/** Checks that every control and picture has a name in the page's language. */
 async function checkNames(page, context, lang, where) {
   check(await page.evaluate(() => document.documentElement.lang) === (lang === "zh" ? "zh-Hans" : "en"), `${where}: lang`);
   const cdp = await context.newCDPSession(page);
@@ -39,7 +39,7 @@ async function checkNames(page, context, lang, where) {
     const text = name?.value?.trim() ?? "", isFocusable = properties.some((one) => one.name === "focusable" && one.value.value);
     check(text, `${where}: a ${role.value} without a name`);
     if (!international.test(text)) check(chinese.test(text) === (lang === "zh"), `${where}: ${role.value} '${text}'`);
-    // What is in a picture, and which keys it takes.
+    // The name must describe the picture and the keys that it takes.
     if (role.value === "application") check(isFocusable && text.length > (lang === "zh" ? 6 : 15), `${where}: '${text}'`);
     ++names;
   }
@@ -47,7 +47,7 @@ async function checkNames(page, context, lang, where) {
   check(levels[0] === 1 && levels.lastIndexOf(1) === 0 && levels.every((level, i) => i === 0 || level <= levels[i - 1] + 1), `${where}: headings ${levels.join(" ")}`);
 }
 
-/** What the tab key should reach: of radio buttons one a group. */
+/** Collects the elements that the tab key should reach; a group of radio buttons counts once. */
 const focusable = () => {
   const seen = new Set(), found = [];
   for (const one of document.querySelectorAll("a[href], button, input, select, [tabindex]")) {
@@ -61,7 +61,7 @@ const focusable = () => {
   return found.length;
 };
 
-/** Tab after tab: which of them has the focus, and whether that can be seen. */
+/** Collects the element that has the focus after each tab, and whether the focus is visible. */
 const focused = () => {
   const one = document.activeElement;
   if (one === document.body) return undefined;
@@ -87,7 +87,7 @@ async function checkTabs(page, where) {
   stops += count;
 }
 
-/** Of every text that is shown whether it stands out from what is behind it: by at least 4.5, and 3 where it is large. */
+/** Finds visible texts with too little contrast to their background: below 4.5, or below 3 for large text. */
 const faintTexts = () => {
   const parse = (color) => {
     const numbers = color.match(/-?[\d.]+(?:e-?\d+)?/g).map(Number), scale = color.startsWith("color(") ? 1 : 255;
@@ -116,7 +116,7 @@ const faintTexts = () => {
     ++count;
     if (ratio < least) faint.push(`${ratio.toFixed(2)} '${walker.currentNode.textContent.slice(0, 40)}' ${style.color} on ${below.map((c) => Math.round(c * 255))}`);
   }
-  // What figures write into pictures.
+  // Colours of texts that figures write into pictures.
   const root = getComputedStyle(document.documentElement), ink = (name) => {
     const probe = document.createElement("i");
     probe.style.color = root.getPropertyValue(name);
@@ -132,7 +132,7 @@ const faintTexts = () => {
   return { faint, count };
 };
 
-/** What a figure shows and tells. */
+/** The pictures and shapes of a figure, as text. */
 const shown = (figure) => figure.evaluate((one) => [...one.querySelectorAll("canvas")].map((canvas) => canvas.toDataURL()).join() + [...one.querySelectorAll("svg")].map((svg) => svg.innerHTML).join());
 const told = (figure) => figure.evaluate((one) => [...one.querySelectorAll("[aria-live], [role=status]")].map((region) => region.textContent).join(" | "));
 
@@ -144,7 +144,8 @@ async function becomes(look, before, what) {
   check(false, what);
 }
 
-/** Every picture that takes keys follows them; steps are told; a file is picked by a key. */
+/** Checks that every picture with keys responds to them, that steps are announced, and that a file can be picked by a
+ * key. */
 async function checkKeys(page, where) {
   let choosers = 0;
   page.on("filechooser", () => ++choosers);
@@ -182,7 +183,7 @@ try {
   await contents.goto(`${address}lessons.html?lang=en`);
   paths.push(...await contents.locator(".contents a").evaluateAll((links) => links.map((link) => link.getAttribute("href"))));
   await first.close();
-  // The English page in the light scheme, the Chinese one in the dark one.
+  // The English page is tested in the light scheme, the Chinese one in the dark one.
   const kinds = [["en", "light"], ["zh", "dark"]];
   for (const [i, path] of paths.entries()) {
     for (const [lang, colorScheme] of all ? kinds : [kinds[i % 2]]) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// answers.mjs MODULE: what the module answers beside hashes: known numbers of the lessons, broken files, files that are
-// written, and memory that does not grow with every model.
+// answers.mjs MODULE: tests the module's answers apart from hashes: known numbers of the lessons, broken files, written
+// files, and memory that does not grow with every model.
 import assert from "node:assert/strict";
 import { loadModule } from "./module.mjs";
 
@@ -8,7 +8,7 @@ const frontmost = await loadModule(process.argv[2]);
 const { ask, plane } = frontmost;
 const text = (place) => new TextDecoder("latin1").decode(plane(place));
 
-// The classic table, nearer first, as its books have it.
+// The classic table, nearer triangle first, as in textbooks.
 {
   const expected = [
     [64, 64, 64, 64, 64, 64, 64, 255], [64, 64, 64, 64, 64, 64, 255, 255], [64, 64, 64, 64, 64, 255, 255, 255], [64, 64, 64, 64, 255, 255, 255, 255],
@@ -31,7 +31,7 @@ const text = (place) => new TextDecoder("latin1").decode(plane(place));
   assert.ok(greater.triangles[0].every((cell) => cell.depth === 5 && cell.passes), "255 less 250 is 5");
 }
 
-// 1 / z: 4, and not 4.5.
+// Interpolating 1 / z gives 4, and not 4.5.
 {
   const { depth, linear } = ask({ ask: "lesson.projection", example: "segment" });
   assert.ok(Math.abs(depth[200] - 4) < 1e-3 && Math.abs(linear[200] - 4.5) < 1e-9);
@@ -40,7 +40,7 @@ const text = (place) => new TextDecoder("latin1").decode(plane(place));
   assert.ok(coarse.wrong > 1000 && fine.wrong === 0, `${coarse.wrong} and ${fine.wrong} wrong pixels`);
 }
 
-// A ring of three: wrong by any sorting, right when it is cut.
+// A ring of three: wrong by any sorting, right after cuts.
 {
   const wrong = (method) => ask({ ask: "lesson.painter", scene: "cycle", method });
   assert.ok(wrong("centroid").wrong_count > 100 && wrong("farthest").wrong_count > 100);
@@ -50,8 +50,8 @@ const text = (place) => new TextDecoder("latin1").decode(plane(place));
   assert.equal(wrong("bsp").wrong_count, 0);
 }
 
-// The tree of planes paints every scene rightly from every side. Where Newell's tests decide on a pair that overlaps, the
-// library, which has tests of its own, paints it in that order; where none holds, it cuts.
+// The BSP tree paints every scene correctly from every side. Where Newell's tests decide an overlapping pair, the
+// library, which has tests of its own, paints the pair in that order. Where no test holds, it cuts.
 for (const scene of ["cycle", "cubes", "concave", "cube"])
   for (const forward of [[-0.6, -0.45, -0.8], [0.3, -0.2, -1], [-0.05, -0.1, -1]]) {
     const camera = ask({ ask: "lesson.frame", scene, width: 240, height: 180, forward });
@@ -68,7 +68,7 @@ for (const scene of ["cycle", "cubes", "concave", "cube"])
   }
 assert.ok(ask({ ask: "lesson.newell", scene: "cubes", width: 240, height: 180 }).pairs.some(({ first }) => first === "cut"));
 
-// The viewing volume at 90 degrees is as wide as it is far away, and the matrix says so.
+// At 90 degrees, the viewing volume is as wide as its distance, and the matrix agrees.
 {
   const camera = { width: 200, height: 200, eye: [0, 0, 5], target: [0, 0, 0], up: [0, 1, 0], angle: 90, near: 1, far: 9 };
   const { matrix, sides, volume } = ask({ ask: "lesson.projection", example: "frustum", scene: "blocks", camera, beside: { ...camera, eye: [30, 0, 5] } });
@@ -77,7 +77,7 @@ assert.ok(ask({ ask: "lesson.newell", scene: "cubes", width: 240, height: 180 })
   assert.equal(volume.length, 12);
 }
 
-// Half of a cube's triangles face the eye, and leaving out the others changes nothing.
+// Half of a cube's triangles face the eye, and omitting the others changes nothing.
 {
   const camera = { width: 200, height: 150, eye: [4, 3, 5], target: [0, 0, 0], up: [0, 1, 0], angle: 30 };
   const cube = ask({ ask: "lesson.culling", scene: "cube", camera: { ...camera, culling: 1 } });
@@ -86,8 +86,8 @@ assert.ok(ask({ ask: "lesson.newell", scene: "cubes", width: 240, height: 180 })
   assert.ok(ask({ ask: "lesson.culling", scene: "cube", camera: { ...camera, culling: 2 } }).changed > 1000);
 }
 
-// A plain tree of boxes finds what the library's rays do, at every pixel and on every level; it asks less the further it
-// is opened; and the light's verdict does not change with the tree.
+// A plain tree of boxes finds the hits of the library's rays, at every pixel and on every level. It does less work the
+// further the tree is opened, and the result of the light test does not depend on the tree.
 for (const scene of ["blocks", "cubes", "concave", "teapot"]) {
   const camera = ask({ ask: "lesson.frame", scene, width: 160, height: 120, forward: [-0.6, -0.45, -0.8] });
   const beside = ask({ ask: "lesson.frame", scene, width: 160, height: 120, forward: [0.75, -0.4, -0.75], beside: [camera.eye] });
@@ -108,8 +108,8 @@ for (const scene of ["blocks", "cubes", "concave", "teapot"]) {
   }
 }
 
-// What triangles hide of an edge, one by one, adds up to the library's counts in every part; of a cube three edges are
-// hidden, by one surface; behind blocks some are by two and more.
+// The intervals that single triangles hide of an edge add up to the library's counts in every part. One surface hides
+// three edges of a cube; behind blocks, some edges are hidden by two and more.
 for (const [scene, least] of [["cube", 1], ["concave", 2], ["cubes", 2], ["blocks", 3]]) {
   const camera = ask({ ask: "lesson.frame", scene, width: 320, height: 240, forward: [-0.6, -0.45, -0.8] });
   const drawing = ask({ ask: "lesson.lines", scene, camera });
@@ -126,7 +126,7 @@ for (const [scene, least] of [["cube", 1], ["concave", 2], ["cubes", 2], ["block
   if (scene === "cube") assert.deepEqual([drawing.silhouettes, drawing.creases, parts.filter((part) => part.hiddenBy === 1).length], [6, 6, 3]);
 }
 
-// Sutherland and Hodgman leave what the library sees, to the last digits; behind the eye w is negative, and no more once
+// Sutherland-Hodgman clipping leaves what the library shows, to the last digits. Behind the eye w is negative, until
 // the near plane has cut.
 for (const [corners, most] of [[[[-1, -0.8, -3], [1, -0.5, -4], [0.3, 1, -3.5]], 3], [[[-4, -0.8, -3], [3, -1, -5], [0.6, 3.2, -3]], 6],
   [[[-2, -1.1, -5], [1.8, -0.6, -4], [0.5, 0.5, 1]], 6], [[[-2.2, -0.7, 1.5], [2, -0.8, 1], [0.3, 0.9, -4.5]], 6], [[[-1, -0.9, -8], [1.6, -0.2, -4], [0.2, 0.25, -0.6]], 7]]) {
@@ -138,8 +138,8 @@ for (const [corners, most] of [[[[-1, -0.8, -3], [1, -0.5, -4], [0.3, 1, -3.5]],
   assert.ok(cut.steps.slice(1).every((step) => step.length <= most && step.every(({ clip }) => clip[3] > 0)));
 }
 
-// Without a bias half of what faces the light has acne; with one it goes; with too much light leaks; and with fine texels
-// and a little bias the map says what exact rays do, but for a few pixels.
+// Without a bias half of the pixels that face the light have acne; with one the acne disappears; with too much, light
+// leaks. With fine texels and a small bias the map agrees with exact rays, except for a few pixels.
 {
   const camera = ask({ ask: "lesson.frame", scene: "blocks", width: 360, height: 270, forward: [-0.6, -0.5, -0.8] });
   const light = [0.6, 0.8, 0.35];
@@ -151,7 +151,7 @@ for (const [corners, most] of [[[[-1, -0.8, -3], [1, -0.5, -4], [0.3, 1, -3.5]],
   assert.ok(fine.acne + fine.leaks < 0.003 * fine.facing, `${fine.acne} and ${fine.leaks} of ${fine.facing}`);
 }
 
-// What is proved hidden is seen nowhere; more objects cover no less; smaller cells prove no less here; nothing covers
+// Objects proved hidden are never seen; more objects cover no less; larger cells prove no more here; no objects cover
 // nothing.
 {
   const camera = { width: 480, height: 320, eye: [0.1, 0.55, 2.4], target: [0.1, 0.5, -3.5], up: [0, 1, 0], angle: 46 };
@@ -172,7 +172,7 @@ for (const [corners, most] of [[[[-1, -0.8, -3], [1, -0.5, -4], [0.3, 1, -3.5]],
   }
 }
 
-// The same of models that are taken apart: 50 clusters of a teapot, and of a city the nearest 300 of its houses.
+// Similar checks for models split into parts: 50 clusters of a teapot, and the nearest 300 houses of a city.
 for (const [scene, least, visited] of [["teapot", 30, undefined], ["gallery", 8, undefined], ["city", 301, 300]]) {
   const camera = ask({ ask: "lesson.frame", scene, width: 480, height: 320, forward: [-0.6, -0.1, -0.8] });
   let covered = 0;
@@ -187,7 +187,7 @@ for (const [scene, least, visited] of [["teapot", 30, undefined], ["gallery", 8,
   }
 }
 
-// Figures that have room for 200 triangles show the foremost of them, in a tree of planes without a wrong pixel.
+// Figures with room for 200 triangles show the foremost ones, and their BSP tree has no wrong pixel.
 {
   assert.throws(() => ask({ ask: "lesson.bsp", scene: "teapot" }), /200/);
   const part = { scene: "teapot", most: 200 }, camera = ask({ ask: "lesson.frame", ...part, width: 240, height: 180, forward: [-0.6, -0.45, -0.8] });
@@ -198,7 +198,7 @@ for (const [scene, least, visited] of [["teapot", 30, undefined], ["gallery", 8,
   assert.ok(pairs.length > 0 && by_test[0] > 1000 && by_test[1] > 1000);
 }
 
-// Fragments come nearest first; without their order glass has other colours; every method shows what the z-buffer does.
+// Fragments come nearest first; in another order glass has other colours; every method gives the z-buffer's picture.
 {
   const layers = ask({ ask: "lesson.layers", scene: "cubes", camera: { width: 160, height: 120, eye: [4, 3, 5], target: [0, 0, 0], up: [0, 1, 0], angle: 30 } });
   assert.ok(layers.list.length >= 2 && layers.differing > 100);
@@ -214,7 +214,7 @@ for (const [scene, least, visited] of [["teapot", 30, undefined], ["gallery", 8,
   }
 }
 
-// A file of one's own is a scene like the others, z up where its format says so, and stays while others are shown.
+// A user's file is a scene like the others, z up if its format says so, and stays while others are shown.
 {
   const facets = new TextEncoder().encode("solid one\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid one\n");
   assert.equal(frontmost.give({ ask: "lesson.open", name: "one.stl" }, facets).triangles, 1);
@@ -224,7 +224,7 @@ for (const [scene, least, visited] of [["teapot", 30, undefined], ["gallery", 8,
   assert.equal(ask({ ask: "lesson.lines", scene: "own", camera: own() }).boundaries, 3);
 }
 
-// Broken files end in an error that names them, and the model before stays.
+// A broken file ends in an error that names it, and the previous model stays.
 ask({ ask: "builtin", name: "cubes" });
 for (const [name, bytes] of [["cut.stl", new Uint8Array(90).fill(200)], ["bad.glb", new TextEncoder().encode("glTF????")], ["empty.ply", new Uint8Array()], ["what.xyz", new Uint8Array([1, 2, 3])]])
   assert.throws(() => frontmost.open(name, bytes), (error) => error.message.includes(name), name);
@@ -232,7 +232,7 @@ const camera = ask({ ask: "frame", width: 160, height: 120 });
 ask({ ask: "draw", camera, hash: true });
 assert.throws(() => ask({ ask: "draw", camera: { ...camera, width: 0 } }), /width/);
 
-// What is written begins and ends as its format does.
+// Written files begin and end as their formats require.
 const written = (what, format) => text(ask({ ask: "write", what, format }).file);
 assert.match(written("lines", "svg"), /^<\?xml[\s\S]*<\/svg>\s*$/);
 assert.match(written("figure", "svg"), /<path|<polygon/);
@@ -248,14 +248,14 @@ for (const [map, names] of [["depth", ["Z"]], ["objects", ["object"]], ["normals
   for (const y of [0, 60, 119]) {
     const at = Number(numbers.getBigUint64(rows - 8 * (120 - y), true));
     assert.deepEqual([numbers.getInt32(at, true), numbers.getInt32(at + 4, true)], [y, 160 * 4 * names.length]);
-    // What an NPY of the same map holds in this row.
+    // The EXR row equals the row of an NPY of the same map.
     if (names.length === 1) assert.equal(latin.slice(at + 8, at + 8 + 640), written(map, "npy").slice(128 + 640 * y, 128 + 640 * (y + 1)));
   }
 }
 assert.match(written("depth", "pfm"), /^Pf\n160 120\n/);
 assert.equal(ask({ ask: "conventions" }).resolution[0], 160);
 
-// Pointing: two cubes one behind the other.
+// Picks objects in a scene of two cubes, one behind the other.
 {
   const { hits } = ask({ ask: "point", x: 80, y: 60 });
   assert.ok(hits.length >= 2 && hits[0].depth <= hits[1].depth);
@@ -269,8 +269,8 @@ assert.equal(ask({ ask: "conventions" }).resolution[0], 160);
   assert.ok(objects.some((object) => object.hidden_by.some((hider) => hider.share > 0)));
 }
 
-// Numbers of triangles that are the library's own differ nowhere. Of those that are exchanged for a neighbour's on the
-// same side of a cube, what lies within two roundings of a border is explained by it, and nothing else.
+// The library's own triangle numbers differ nowhere. If a number is replaced by that of the neighbour on the same side
+// of a cube, only differences within two roundings of a border are explained by it.
 {
   ask({ ask: "draw", camera });
   const { corners, matrix, view } = ask({ ask: "triangles" });
@@ -298,7 +298,7 @@ assert.equal(ask({ ask: "conventions" }).resolution[0], 160);
     assert.deepEqual([ours + 1, theirs + 1], [numbers[y * width + x], moved[y * width + x]]);
     if (why === 0) assert.ok(border <= 2 / 16, `${border} pixels`);
   }
-  // A triangle behind the one that is seen, far from any border and from its depth.
+  // Takes a triangle behind the visible one, far from any border and from its depth.
   const far = numbers.slice(), at = (height / 2) * width + width / 2, [first, second] = ask({ ask: "point", x: width / 2, y: height / 2 }).hits;
   far[at] = second.primitive + 1;
   assert.equal(first.primitive, ids[at]);
@@ -308,7 +308,7 @@ assert.equal(ask({ ask: "conventions" }).resolution[0], 160);
   assert.throws(() => compared(numbers), /another view/);
 }
 
-// Files beside a model, in folders below it; and textures, which the page decodes.
+// Files beside a model and in folders below it, and textures, which the page decodes.
 {
   const bytes = (content) => new TextEncoder().encode(content), png = new Uint8Array([0x89, 0x50, 0x4e, 0x47, 13, 10, 26, 10, 1, 2, 3]);
   const put = (name, content) => frontmost.give({ ask: "file", name }, content);
@@ -327,14 +327,14 @@ assert.equal(ask({ ask: "conventions" }).resolution[0], 160);
   assert.deepEqual([opened.name, opened.triangles, opened.warnings, opened.materials], ["quad", 2, [], ["red"]]);
   const flat = ask({ ask: "draw", camera: ask({ ask: "frame", width: 40, height: 40, view: "front" }), show: "flat" });
   assert.deepEqual([...plane(flat.pixels).slice(4 * (20 * 40 + 20), 4 * (20 * 40 + 20) + 4)], [10, 200, 30, 255]);
-  // What cannot be decoded is a warning; files of the model before are gone; names do not lead out of the folder.
+  // An undecodable image is a warning; the previous model's files are gone; names must not lead out of the folder.
   putAll();
   ask({ ask: "open", name: "quad.obj" });
   ask({ ask: "image", number: 0, problem: "not an image after all" });
   assert.match(ask({ ask: "open", again: true }).warnings.join(), /not an image after all/);
   put("quad.obj", bytes(quad));
   assert.match(ask({ ask: "open", name: "quad.obj" }).warnings.join(), /quad\.mtl/);
-  // Nor are those of a model that was never opened there for the next one.
+  // Files of a model that was never opened are gone, too.
   putAll();
   frontmost.give({ ask: "file", name: "quad.obj", first: true }, bytes(quad));
   assert.match(ask({ ask: "open", name: "quad.obj" }).warnings.join(), /quad\.mtl/);
@@ -342,7 +342,7 @@ assert.equal(ask({ ask: "conventions" }).resolution[0], 160);
   assert.throws(() => ask({ ask: "open", again: true }), /no model is being opened/);
 }
 
-// Fifty models, one after the other.
+// Opens fifty models in turn.
 let after = 0;
 for (let i = 0; i < 50; ++i) {
   ask({ ask: "builtin", name: i % 2 ? "teapot" : "gallery" });
@@ -351,4 +351,4 @@ for (let i = 0; i < 50; ++i) {
 }
 assert.equal(frontmost.memory().length, after, "memory grows with every model");
 console.log(`the lessons' numbers, four broken files, ten files written, 50 models in ${after / 2 ** 20} MiB`);
-process.exit(0); // threads wait for more
+process.exit(0); // waiting threads would keep Node alive

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chromium, as Debian has it, through playwright-core, without a network but for the page's own server.
+// Debian's Chromium through playwright-core, without a network except the page's own server.
 import { createRequire } from "node:module";
 import { serve } from "../../scripts/page/server.mjs";
 
@@ -14,7 +14,7 @@ export async function openBrowser(folder, more = ["--disable-gpu", "--enable-uns
   } };
 }
 
-/** A page whose complaints are kept. */
+/** Opens a page and collects its errors and warnings. */
 export async function openPage(browser, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true, ...options });
   const page = await context.newPage();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// hashes.mjs MODULE PROGRAM [MODEL...]: the hashes of what is visible, of scenes and views, are those of the native
-// program, which is given the flags that the page shows.
+// hashes.mjs MODULE PROGRAM [MODEL...]: visibility hashes of scenes and views must equal those of the native program,
+// called with the flags that the page shows.
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { basename } from "node:path";
@@ -48,4 +48,4 @@ if (checked < 30 || wrong.length > 0) {
   process.exit(1);
 }
 console.log(`${checked} hashes of scenes and views equal those of the program (${isa})`);
-process.exit(0); // threads wait for more
+process.exit(0); // waiting threads would keep Node alive

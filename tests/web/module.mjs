@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The WebAssembly module in Node: loads it, asks it.
+// Loads the WebAssembly module in Node and asks it questions.
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { dirname } from "node:path";
 import { pathToFileURL } from "node:url";
 
 export async function loadModule(path) {
-  // What emscripten's loader takes for granted in Node, and modules do not have.
+  // Emscripten's loader expects these names in Node, but ES modules do not have them.
   globalThis.require = createRequire(pathToFileURL(path));
   globalThis.__filename = path;
   globalThis.__dirname = dirname(path);
   const { default: create } = await import(pathToFileURL(path));
   const m = await create({ wasmBinary: readFileSync(path.replace(/\.mjs$/, ".wasm")) });
-  // Of a module with threads, one of which may have asked for more and told nobody.
+  // The view of memory is made anew each time: a thread may have grown the memory without notice.
   const memory = () => (m.wasmMemory ? new Uint8Array(m.wasmMemory.buffer) : m.HEAPU8);
   const text = (question) => {
     const json = JSON.stringify(question);
@@ -30,7 +30,7 @@ export async function loadModule(path) {
       if (answer.error) throw new Error(answer.error);
       return answer;
     },
-    /** A question with bytes. */
+    /** Asks a question that comes with bytes. */
     give(question, bytes) {
       const room = m._frontmost_room(bytes.length);
       if (room === 0) throw new Error("no room");

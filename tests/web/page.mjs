@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// page.mjs FOLDER PROGRAM [all]: the page as people use it, in Chromium: every view, every download, a broken file, every
-// lesson stepped to its end, without a complaint of the browser. The command that the page shows, given to the program,
-// prints the hash that the page shows. Lessons take turns with languages and widths, and every fourth one is tried
-// without its module; `all` tries each in both languages and without its module, and opens fifty models in a row.
+// page.mjs FOLDER PROGRAM [all]: uses the page in Chromium as people do: every view, every download, a broken file, and
+// every lesson stepped to its end, without browser errors. The program, given the command that the page shows, must
+// print the hash that the page shows. Languages and widths alternate over the lessons, and every fourth lesson is also
+// tested without its module. `all` tests each lesson in both languages and without its module, and opens fifty models
+// in a row.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
@@ -20,14 +21,14 @@ let downloads = 0, steps = 0, lessons = 0, ownModels = 0, memory = [];
 const settled = (page) => page.waitForFunction(() => /[0-9a-f]{16}/.test(document.querySelector(".state")?.textContent ?? "") && document.querySelector(".busy")?.hidden, undefined, patience);
 const hashOf = async (page) => (await page.locator(".state").textContent()).match(/[0-9a-f]{16}$/)[0];
 
-/** Runs the command of the page; not its picture, which would be a file. */
+/** Runs the page's command without its picture, which would be a file. */
 async function nativeHash(page) {
   const command = await page.locator("pre.command").textContent();
   const words = command.replace("-o picture.png", "").trim().split(" ").slice(1);
   return execFileSync(program, words, { encoding: "utf8" }).match(/visible ([0-9a-f]{16})/)[1];
 }
 
-/** What must be true of a file by its name. */
+/** Checks of downloaded files, by file name. */
 const checks = [
   [/-lines\.svg$|-figure\.svg$/, (bytes) => /<svg[\s\S]*<\/svg>\s*$/.test(bytes)],
   [/\.pdf$/, (bytes) => bytes.startsWith("%PDF-1.") && bytes.trimEnd().endsWith("%%EOF")],
@@ -70,7 +71,7 @@ function crc32(bytes) {
   return ~crc >>> 0;
 }
 
-/** Eight bits, red, green, blue, alpha. */
+/** A PNG of 8-bit red, green, blue and alpha. */
 function pngOf(width, height, rgba) {
   const chunk = (name, data) => {
     const named = Buffer.concat([Buffer.from(name), data]), ends = Buffer.alloc(8);
@@ -85,7 +86,7 @@ function pngOf(width, height, rgba) {
   return Buffer.concat([Buffer.from([137, 80, 78, 71, 13, 10, 26, 10]), chunk("IHDR", header), chunk("IDAT", deflateSync(rows)), chunk("IEND", Buffer.alloc(0))]);
 }
 
-/** Files by name: texts, or bytes in base 64. */
+/** Drops files on the page, given by name as texts or as bytes in base 64. */
 async function drop(page, files) {
   await page.evaluate((all) => {
     const transfer = new DataTransfer();
@@ -95,11 +96,11 @@ async function drop(page, files) {
   }, files);
 }
 
-/** A square whose texture is 2 x 2 pixels, one of which is nearly transparent: all colours arrive as they are stored. */
+/** Tests a square with a texture of 2 x 2 pixels, one nearly transparent: all colours must arrive as stored. */
 async function tryTexture(page) {
   const texture = pngOf(2, 2, [255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 250, 128, 6, 255]);
   const files = { "quad.obj": "mtllib quad.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3 4/4\n", "quad.mtl": "newmtl m\nmap_Kd texture.png\n" };
-  // A header that states more pixels than a model's textures may have: refused before anybody decodes it.
+  // The header states more pixels than a model's textures may have, so it is refused before decoding.
   const huge = Buffer.from(texture);
   huge.writeUInt32BE(16000, 16);
   huge.writeUInt32BE(16000, 20);
@@ -117,13 +118,13 @@ async function tryTexture(page) {
     const reach = Math.round(Math.min(width, height) / 4.7), at = (x, y) => 4 * (((height >> 1) + y * reach) * width + (width >> 1) + x * reach);
     return [[-1, -1], [1, -1], [-1, 1]].map(([x, y]) => [...data.slice(at(x, y), at(x, y) + 4)]);
   });
-  // In light, but of one colour each.
+  // Each quarter is lit, but has a single hue.
   hues.forEach((pixel, i) => assert.ok(pixel[i] > 80 && pixel.slice(0, 3).every((value, c) => c === i || value < 0.7 * pixel[i]), `${i}: ${pixel}`));
 }
 
-/** WebGL's picture of the view, every pixel that differs explained. */
+/** Compares WebGL's picture of the view; every differing pixel must be explained. */
 async function tryWebGL(page) {
-  // Twice at once, of which one is shown.
+  // A double click requests it twice; one result is shown.
   await page.locator("[data-webgl]").dblclick();
   await page.waitForFunction(() => document.querySelectorAll(".beside").length === 1 && document.querySelector(".busy").hidden, undefined, patience);
   const { marks, counts } = await page.evaluate(() => ({ marks: document.querySelectorAll(".beside .plate:first-child circle").length, counts: [...document.querySelectorAll(".beside li b")].map((b) => Number(b.textContent.replaceAll(",", ""))) }));
@@ -144,7 +145,7 @@ async function tryWorkbench(lang, viewport) {
   await page.goto(`${address}index.html?lang=${lang}&scene=cubes`);
   await settled(page);
   assert.equal(await hashOf(page), await nativeHash(page), "the program prints another hash than the page");
-  // Turned by keys, and it rests again.
+  // Keys turn the view, and it comes to rest again.
   await page.locator("canvas").first().focus();
   const before = await hashOf(page);
   await page.keyboard.press("ArrowLeft");
@@ -179,8 +180,8 @@ async function tryWorkbench(lang, viewport) {
   await context.close();
 }
 
-/** A host that sends no headers: the page has no threads at first, and has them from the second visit on, when its service
- * worker adds what the host left out. The hash stays the same. */
+/** Tests a host that sends no headers. The page has no threads at first; from the second visit on it has them, as its
+ * service worker adds the missing headers. The hash stays the same. */
 async function tryPlainHost() {
   const { server, address: plain } = await serve(folder, 0, {});
   const { page, complaints, context } = await openPage(browser);
@@ -196,7 +197,7 @@ async function tryPlainHost() {
   assert.equal(modules[0], "frontmost.wasm");
   assert.ok(modules.slice(1).includes("frontmost-threads.wasm"), modules.join());
   assert.equal(hashes[0], hashes[1]);
-  // Another machine's http: neither isolated nor with a decoder of images, which a secure page alone has.
+  // Plain http from another machine: the page is not isolated, and lacks the image decoder of secure pages.
   await page.goto(`${plain.replace("127.0.0.1", "plain.test")}index.html?lang=en&scene=cubes`);
   await settled(page);
   assert.deepEqual([await page.evaluate(() => "ImageDecoder" in self || isSecureContext), await hashOf(page)], [false, hashes[0]]);
@@ -208,7 +209,7 @@ async function tryPlainHost() {
   server.close();
 }
 
-/** A host that gives pages other addresses: they are found on the second visit, too. */
+/** Tests a host that redirects pages: they must be found on the second visit, too. */
 async function tryRedirectingHost() {
   const host = createServer(async (request, response) => {
     const { pathname } = new URL(request.url, address);
@@ -227,7 +228,7 @@ async function tryRedirectingHost() {
   host.close();
 }
 
-/** After one visit no page needs a network, those that were not visited neither. */
+/** After one visit, no page needs a network, not even unvisited ones. */
 async function tryOffline() {
   const { server, address: gone } = await serve(folder), { page, complaints, context } = await openPage(browser);
   await page.goto(`${gone}index.html?lang=en&scene=cubes`);
@@ -248,7 +249,7 @@ async function tryOffline() {
   await context.close();
 }
 
-/** Fifty models, one after the other: what the browser's processes hold grows no more after the first ten. */
+/** Opens fifty models in turn: memory of the browser's processes must not grow after the first ten. */
 async function tryManyModels() {
   const { page, complaints, context } = await openPage(browser, { viewport: { width: 700, height: 400 } });
   const session = await browser.newBrowserCDPSession();
@@ -275,7 +276,7 @@ async function tryManyModels() {
 }
 
 const cornerOf = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\n";
-/** A ball of 5000 triangles. */
+/** A ball of 5000 triangles, as a file. */
 function ballOf(rows = 50, columns = 51) {
   const text = [], corner = (row, column) => row * columns + (column % columns) + 1;
   for (let row = 0; row <= rows; ++row)
@@ -292,7 +293,8 @@ function ballOf(rows = 50, columns = 51) {
 }
 
 const limited = { nscene: "200", bscene: "200" };
-/** Every figure with scenes takes a model of one's own: a broken one, a small one and a large one, of which some show a part. */
+/** Gives every figure with scenes three models: a broken one, a small one, and a large one, which some figures show in
+ * part. */
 async function giveOwnModels(page, id) {
   for (const around of await page.locator(".figure .scenes").all()) {
     const picker = around.locator("input[type=file]"), alert = around.locator("[role=alert]"), own = around.locator('input[value="own"]'), note = around.locator("[role=status]");
@@ -311,14 +313,14 @@ async function giveOwnModels(page, id) {
   }
 }
 
-/** What figures told of answers that did not come. */
+/** Records the reasons that figures show for missing answers. */
 const watchTroubles = () => {
   window.troubles = new Set();
   new MutationObserver(() => document.querySelectorAll(".trouble:not([hidden])").forEach((one) => window.troubles.add(one.textContent)))
     .observe(document, { subtree: true, attributes: true, attributeFilter: ["hidden"] });
 };
 
-/** Without its module every figure says why it shows nothing. */
+/** Without its module, every figure must give the reason why it shows nothing. */
 async function tryWithoutModule(id) {
   const { page, context } = await openPage(browser, { serviceWorkers: "block" });
   await page.route("**/frontmost*.wasm", (route) => route.abort());
@@ -333,7 +335,7 @@ async function tryLesson(id, lang, viewport) {
   await page.addInitScript(watchTroubles);
   await page.goto(`${address}lesson.html?lesson=${id}&lang=${lang}`);
   await page.waitForSelector(".figure", patience);
-  // Figures have asked, and were answered.
+  // Waits until all figures have their answers.
   await page.waitForFunction(() => [...document.querySelectorAll(".steps output")].every((output) => /\/ [1-9]/.test(output.textContent)), undefined, patience);
   for (const stepper of await page.locator(".steps").all()) {
     await stepper.locator("[data-begin]").click();
@@ -359,7 +361,7 @@ async function tryLesson(id, lang, viewport) {
 }
 
 try {
-  if (isWhole) memory = await tryManyModels(); // alone, as others hold memory, too
+  if (isWhole) memory = await tryManyModels(); // runs alone, as other tests hold memory too
   await Promise.all([tryWorkbench("en", { width: 1280, height: 720 }), tryWorkbench("zh", { width: 390, height: 844 }), tryPlainHost(), tryRedirectingHost(), tryOffline()]);
   const { page, context } = await openPage(browser);
   await page.goto(`${address}lessons.html?lang=en`);

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# run.sh NEEDED SCRIPT ARGUMENTS... : runs a script in Node. 77, which means skipped, where a needed file or Node is not
-# there; and, of tests in a browser, without that.
+# run.sh NEEDED SCRIPT ARGUMENTS... : runs a script in Node. The exit status is 77 (skipped) if a needed file or Node is
+# missing, or, for tests in a browser, the browser.
 needed=$1
 script=$2
 skip() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// screenshots.mjs PAGE FOLDER [NAME...]: every page, or those of these names, at three widths, in both languages and both
-// schemes of colours, to be looked at.
+// screenshots.mjs PAGE FOLDER [NAME...]: takes pictures of every page, or of the named ones, at three widths, in both
+// languages and both colour schemes, for inspection.
 import { mkdirSync } from "node:fs";
 import { openBrowser, openPage } from "./browser.mjs";
 

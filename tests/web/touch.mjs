@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// touch.mjs FOLDER [all]: the page and every second lesson, or all, under fingers, in Chromium: one turns, two come nearer
-// and move, a tap asks; and pages scroll, wherever a finger begins to.
+// touch.mjs FOLDER [all]: tests the page and every second lesson, or all, by touch in Chromium. One finger turns the
+// view, two zoom and move it, and a tap picks. Pages scroll, wherever a finger starts.
 import assert from "node:assert/strict";
 import { openBrowser, openPage } from "./browser.mjs";
 
@@ -15,7 +15,7 @@ async function openPhone(path, more = {}) {
   return { page, context, cdp: await context.newCDPSession(page) };
 }
 
-/** Fingers go from one place to another, each [x, y, toX, toY]. */
+/** Moves fingers at once, each [x, y, toX, toY]. */
 async function drag(cdp, ...fingers) {
   const at = (share) => fingers.map(([x, y, toX, toY], id) => ({ x: x + (toX - x) * share, y: y + (toY - y) * share, id }));
   await cdp.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: at(0) });
@@ -26,7 +26,7 @@ async function drag(cdp, ...fingers) {
   await cdp.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
 }
 
-/** In the middle of the picture, and how far fingers may go. */
+/** The middle of the picture, and how far fingers may move. */
 async function middleOf(locator) {
   await locator.evaluate((one) => one.scrollIntoView({ block: "center" }));
   const { x, y, width, height } = await locator.boundingBox();
@@ -34,7 +34,7 @@ async function middleOf(locator) {
 }
 
 const settled = (page) => page.waitForFunction(() => /[0-9a-f]{16}/.test(document.querySelector(".state")?.textContent ?? "") && document.querySelector(".busy")?.hidden, undefined, patience);
-/** The eye and what it looks at, by the command that the page shows. */
+/** Eye and target, from the command that the page shows. */
 async function cameraOf(page) {
   const command = await page.locator("pre.command").textContent();
   const [eye, target] = ["position", "focal-point"].map((name) => command.match(new RegExp(`--camera-${name} (\\S+)`))[1].split(",").map(Number));
@@ -75,10 +75,10 @@ async function tryWorkbench() {
   await lying.context.close();
 }
 
-/** All pictures of a figure and the shapes over them. */
+/** All pictures of a figure, and the shapes over them. */
 const shown = (figure) => figure.evaluate((one) => [...one.querySelectorAll("canvas")].map((canvas) => canvas.toDataURL()).join() + [...one.querySelectorAll("svg")].map((svg) => svg.innerHTML).join());
 
-/** What it shows when nothing is on the way any more. */
+/** The figure's content after all requests have finished. */
 async function atRest(figure) {
   for (let last = "", same = 0; ; await new Promise((go) => setTimeout(go, 200))) {
     const now = await shown(figure);
@@ -112,12 +112,12 @@ async function tryLesson(id) {
         await changes(figure, () => drag(cdp, [x, y, x + far, y + 8]), `${name}: one finger`);
         await changes(figure, () => drag(cdp, [x - 20, y, x - far, y - 80], [x + 20, y, x + far, y - 80]), `${name}: two fingers`);
       } else if (keys && /pixel/.test(name)) await changes(figure, () => page.touchscreen.tap(x - far / 2, y), `${name}: a tap`);
-      // Texts below and above may have taken another line.
+      // Texts below and above may now take more lines.
       assert.ok(Math.abs(await top() - at) < 30, `${name}: the page went along`);
       at = await top();
       assert.equal(await page.evaluate(() => visualViewport.scale), 1, `${name}: the page grew`);
       const still = turns && await atRest(figure);
-      // Down, or up where the page ends below.
+      // Scrolls down, or up if the page ends below.
       const room = await page.evaluate(() => document.documentElement.scrollHeight - innerHeight - scrollY);
       await drag(cdp, [x, y, x + 4, y + (room > 200 ? -120 : 120)]);
       await page.waitForFunction((old) => Math.abs(scrollY - old) > 60, at, patience).catch(() => assert.fail(`${name}: the page does not scroll`));

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# without_simd.sh PROGRAM : builds the module for engines without vectors; its hashes are those of the program. 77, which
-# means skipped, where there is no emscripten or no Node.
+# without_simd.sh PROGRAM : builds the module for engines without vectors; its hashes must equal the program's. The exit
+# status is 77 (skipped) without emscripten or Node.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 for tool in /usr/share/emscripten/cmake/Modules/Platform/Emscripten.cmake node; do

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clipping against a reference that does not clip: homogeneous edge functions in double, sample by sample.
+// Clipping against a reference without clipping: homogeneous edge functions in double, sample by sample.
 //
 // M. Olano, T. Greer. Triangle Scan Conversion using 2D Homogeneous Coordinates. 1997.
 
@@ -15,10 +15,10 @@
 namespace frontmost::test {
 namespace {
 
-/// What the reference says of a sample: outside, inside at a depth, or too close to a border to tell after snapping.
+/// The reference's verdict on a sample: outside, inside at a depth, or too close to a border to tell after snapping.
 enum class Verdict { outside, inside, unclear };
 
-/// One triangle in pixels, homogeneous: sample (x, y) sees it where no edge function is negative.
+/// A triangle in homogeneous pixel coordinates: it covers sample (x, y) if no edge function is negative.
 class HomogeneousTriangle {
  public:
   HomogeneousTriangle(const View& view, const std::array<glm::vec3, 3>& world) : view_(view) {
@@ -33,11 +33,11 @@ class HomogeneousTriangle {
     }
     const double volume = glm::dot(p[0], glm::cross(p[1], p[2]));
     for (int k = 0; k < 3; ++k) edge_[k] = glm::cross(p[(k + 1) % 3], p[(k + 2) % 3]) / volume;
-    // Affine on the screen: distance in parallel projection, its reciprocal in perspective.
+    // Affine on the screen: the distance in parallel projection, its reciprocal in perspective.
     plane_ = depth_[0] * edge_[0] + depth_[1] * edge_[1] + depth_[2] * edge_[2];
   }
 
-  /// How far a depth found at a sample is from the triangle's, in pixels that the sample would have to move.
+  /// Error of a depth at a sample, as the number of pixels by which the sample would have to move.
   [[nodiscard]] double depth_error(double x, double y, double depth) const {
     const double value = view_.projection.orthographic ? depth : 1 / depth;
     const double rounding =
@@ -62,7 +62,7 @@ class HomogeneousTriangle {
   }
 
  private:
-  /// How far inside a line the sample lies.
+  /// Distance of the sample from a line, positive inside.
   static double pixels(const glm::dvec3& line, const glm::dvec3& s) {
     const double slope = std::hypot(line.x, line.y);
     return glm::dot(line, s) / std::max(slope, 1e-12 * std::abs(line.z));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole clusters that face away are left out only where none of their triangles would have been drawn: by the area on
-// the snapped screen, which is what decides, however small the triangles and however far away the origin.
+// Whole clusters that face away may be culled only if none of their triangles would be drawn. The area on the snapped
+// screen decides, however small the triangles and however far the origin.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 using namespace zbuffer_detail;
 
-/// The scene, as `size` in every direction about `place`.
+/// The scene scaled by `size` and moved to `place`.
 Scene placed(Mesh mesh, double size, const glm::dvec3& place, bool is_mirrored) {
   Scene scene = scene_of(std::move(mesh));
   glm::dmat4& m = scene.instances[0].world_from_mesh;
@@ -29,7 +29,7 @@ Scene placed(Mesh mesh, double size, const glm::dvec3& place, bool is_mirrored) 
   return scene;
 }
 
-/// A view of a ball of radius `size` about `place` that has about `pixels` pixels across.
+/// A view of a ball of radius `size` about `place`, about `pixels` pixels wide.
 View view_of_ball(Random& random, double size, const glm::dvec3& place, double pixels) {
   View view;
   view.width = 8 + random.below(60);
@@ -58,7 +58,7 @@ std::vector<ClusterFate> fates(const Surfaces& surfaces, const View& view, bool 
   return fates;
 }
 
-/// Whether the triangles of a cluster, snapped, may be seen under the view's culling.
+/// Whether any snapped triangle of a cluster is visible under the view's culling.
 bool has_facing_triangle(const ClusterSet& set, const Cluster& cluster, const View& view) {
   const ScreenTransform t(view);
   std::vector<ScreenVertex> snapped;
@@ -76,7 +76,7 @@ struct Count {
   std::size_t culled = 0, facing_away = 0;
 };
 
-/// Culls with and without cones: what only the cones cull must hold no triangle that faces the eye.
+/// Culls with and without cones: clusters that only cones cull must hold no visible triangle.
 Count check(const Surfaces& surfaces, const View& view, Isa isa) {
   const ClusterSet& set = cluster_set(surfaces);
   const std::vector<ClusterFate> without = fates(surfaces, view, false, isa), with = fates(surfaces, view, true, isa);
@@ -104,7 +104,8 @@ TEST(ConeCulling, LeavesOutNothingThatFacesTheEye) {
     const int steps = random.below(2) ? 12 : 40;
     const Scene scene = placed(bumpy_ball(steps, roughness / float(steps), seed), size, place, random.below(2));
     const Surfaces surfaces(scene);
-    // So many triangles to a quarter of the circle: from a hundredth of a pixel each to some tens.
+    // A quarter of the circle has a fixed number of triangles: each takes a hundredth of a pixel to some tens of
+    // pixels.
     const View view = view_of_ball(random, size, place, std::exp2(random.within(-1, 11)));
     for (const Isa isa : available_isas()) {
       const Count count = check(surfaces, view, isa);
@@ -124,7 +125,7 @@ TEST(ConeCulling, EqualsTheOracle) {
     const Scene scene = placed(bumpy_ball(12, 0.01f, seed), 1, place, random.below(2));
     const Surfaces surfaces(scene);
     const View view = view_of_ball(random, 1, place, std::exp2(random.within(1, 9)));
-    culled += check(surfaces, view, Isa::best).culled;  // makes the cones, too
+    culled += check(surfaces, view, Isa::best).culled;  // also makes the cones
     const Visible expected = oracle(surfaces, view);
     for (const PrimitiveId id : expected.primitives) seen += id != no_primitive;
     EXPECT_EQ(content_hash(draw_both_ways(surfaces, view)), content_hash(expected));

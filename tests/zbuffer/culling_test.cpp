@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Facing: by the sign of N.V in object space, and by the area on the screen, which is the one that decides.
+// Facing: the sign of N.V in object space, and the area on the screen, which decides.
 
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ TEST(Culling, CounterClockwiseIsFront) {
   EXPECT_EQ(covered_samples(scene_of(back), straight_on(64, Culling::front)), all);
 }
 
-// glTF 2.0, 3.7.4: a transform with a negative determinant turns the winding round, so that outside stays outside.
+// glTF 2.0, 3.7.4: a transform with a negative determinant reverses the winding, so that outside stays outside.
 TEST(Culling, MirroredInstancesKeepTheirFrontFaces) {
   Mesh front;
   add_triangle(front, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
@@ -47,7 +47,7 @@ TEST(Culling, MirroredInstancesKeepTheirFrontFaces) {
   EXPECT_EQ(covered_samples(scene, straight_on(64, Culling::front)), 0u);
 }
 
-// N.V = 0: neither front nor back, and covers nothing, whatever is culled.
+// N.V = 0: the triangle is neither front nor back, and covers nothing under any culling.
 TEST(Culling, EdgeOnFacesNobody) {
   Mesh mesh;
   add_triangle(mesh, {0, -1, -1}, {0, 1, -1}, {0, 0, 1});  // in the plane x = 0 that holds the eye
@@ -74,8 +74,8 @@ TEST(Culling, ObjectSpaceAndScreenSpaceAgreeUpToSnapping) {
       ++agree;
       continue;
     }
-    // Snapping moves a corner by at most 0.71 units (and float rounding by less than half of one): it may flip a
-    // triangle only if that is thinner than three units.
+    // Snapping moves a vertex by at most 0.71 units, and float rounding by less than half a unit. Both may flip a
+    // triangle only if it is thinner than three units.
     double longest = 0;
     for (std::size_t k = 0; k < 3; ++k)
       longest = std::max(longest, std::hypot(v[k].x - v[(k + 1) % 3].x, v[k].y - v[(k + 1) % 3].y));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles with holes in the tiles of the z-buffer: against the oracle, behind and before others, and as copies.
+// Triangles with holes in the z-buffer's tiles: against the oracle, behind and in front of others, and as copies.
 #include <gtest/gtest.h>
 
 #include "support/cutout_scene.h"
@@ -31,8 +31,7 @@ TEST_P(CutoutsOfEveryKind, EqualTheOracleOnEveryInstructionSet) {
   EXPECT_GT(seen, 60u) << "the scenes have become empty";
 }
 
-/// A triangle three times at one place: the first one is nothing but a hole, the next two are solid, all of them
-/// cutouts.
+/// A triangle three times at one place, all cutouts: the first one is all hole, the next two are solid.
 Scene copies(float size) {
   Mesh mesh;
   mesh.positions = {{-size, -size, 0}, {size, -size, 0}, {0, size, 0}};
@@ -45,7 +44,7 @@ Scene copies(float size) {
   return scene;
 }
 
-// Of copies without holes only the first is drawn; with them another may be what is seen.
+// Only the first of copies without holes is drawn; if copies have holes, a later one may be visible.
 TEST(ZBuffer, CopiesOfACutoutHaveHolesOfTheirOwn) {
   View view;
   view.width = view.height = 600;
@@ -61,7 +60,7 @@ TEST(ZBuffer, CopiesOfACutoutHaveHolesOfTheirOwn) {
   }
 }
 
-// Tiles that a frame leaves blank stay as they are, and those with nothing but holes are no different from them.
+// Tiles that a frame leaves blank keep their content, and tiles with nothing but holes behave like them.
 TEST(ZBuffer, FramesOfCutoutsFollowEachOther) {
   const Scene scene = cutout_scene(random_mesh(Kind::soup, 60, 1), Cut::all, 0.5f, 1);
   const Surfaces surfaces(scene);

@@ -86,7 +86,7 @@ TEST_P(DepthOfEveryKind, EqualsTheStateMachineOnEveryInstructionSet) {
   EXPECT_GT(seen, covers_little ? 200u : 1'000u) << "the scenes have become empty";
 }
 
-// Every function with every format and direction, alone.
+// Tests every function with every format and direction on its own.
 TEST(DepthBuffer, EveryFunctionOnEveryFormat) {
   const Scene scene = scene_of(random_mesh(Kind::soup, 60, 5));
   const Surfaces surfaces(scene);
@@ -109,13 +109,13 @@ TEST(DepthBuffer, EveryFunctionOnEveryFormat) {
         }
         seen += covered(oracle.visible());
       }
-      // Nothing need be exactly as deep as the clear value.
+      // No surface need be exactly as deep as the clear value.
       if (DepthFunc(func) == DepthFunc::equal) continue;
       EXPECT_EQ(seen == 0, DepthFunc(func) == DepthFunc::never);
     }
 }
 
-// A float's reversed depth with an infinite far plane is the key itself, and ids are the order of submission.
+// The reversed depth of a float with an infinite far plane is the key itself, and ids follow the order of submission.
 TEST(DepthBuffer, ReversedFloatIsTheDefaultZBufferToTheBit) {
   for (const Kind kind : all_kinds)
     for (const int samples : {1, 4, 16}) {
@@ -135,7 +135,7 @@ TEST(DepthBuffer, ReversedFloatIsTheDefaultZBufferToTheBit) {
     }
 }
 
-// Where LESS with another format sees another surface, the two must round to the same depth.
+// If LESS with another format shows another surface, both must round to the same depth.
 TEST(DepthBuffer, OtherFormatsDifferFromTheDefaultOnlyWhereTheyCannotTellDepthsApart) {
   const Scene scene = scene_of(random_mesh(Kind::soup, 300, 21));
   const Surfaces surfaces(scene);
@@ -180,7 +180,7 @@ TEST(DepthBuffer, DoesNotDependOnThreadsOrTheCallersRounding) {
   EXPECT_EQ(upward, one);
 }
 
-// One call, or one for every triangle: the same order, the same result.
+// One call, or one call for every triangle: the order and the result are the same.
 TEST(DepthBuffer, CallsFollowOneAnother) {
   const Scene scene = scene_of(random_mesh(Kind::coplanar, 50, 3));
   const Surfaces surfaces(scene);

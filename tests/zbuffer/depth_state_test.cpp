@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What OpenGL's users expect of each piece of state, with numbers that can be worked out by hand.
+// The meaning of each piece of state as in OpenGL, with numbers computed by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kSide = 8;
 
-/// Eight pixels a side, seen in parallel from z = 0 along -z: world (x, y) is a pixel's corner, y up, and a point at
-/// z = -d has the window depth d.
+/// Eight by eight pixels, seen in parallel projection from z = 0 along -z. World (x, y) is a pixel's corner, y up; a
+/// point at z = -d has the window depth d.
 View flat_view() {
   View view;
   view.width = view.height = kSide;
@@ -36,7 +36,7 @@ Mesh full(float depth) {
   return mesh;
 }
 
-/// Draws meshes one after the other, two ids each.
+/// Draws meshes one after another, with two ids each.
 struct Bench {
   explicit Bench(DepthFormat format = DepthFormat::d24) : buffer(kSide, kSide, 1, format) {}
 
@@ -46,7 +46,7 @@ struct Bench {
     buffer.draw(surfaces, flat_view(), {.state = state, .id_offset = ids});
     ids += surfaces.primitive_count();
   }
-  /// Which of the meshes of two triangles is seen at the first pixel; -1: none.
+  /// Number of the mesh visible at the first pixel, where each mesh has two triangles; -1: none.
   [[nodiscard]] int seen() const {
     const PrimitiveId id = buffer.visible(flat_view()).primitives[0];
     return id == no_primitive ? -1 : int(id / 2);
@@ -84,7 +84,7 @@ TEST(DepthState, IntegerTableOfTheLecture) {
             "64 127 127 255 255 255 255 255\n127 127 127 255 255 255 255 255\n");
 }
 
-// The other one counts the other way: 0 is the background, and greater is nearer.
+// The other table counts the other way: 0 is the background, and greater is nearer.
 TEST(DepthState, IntegerTableWithNearerGreater) {
   const DepthState greater{.func = DepthFunc::greater, .nearer_is_greater = true};
   Mesh triangle;
@@ -120,14 +120,14 @@ TEST(DepthState, EveryFunctionComparesAsItsNameSays) {
 TEST(DepthState, TheClearValueIsRoundedAndClamped) {
   Bench d16(DepthFormat::d16), f32(DepthFormat::f32);
   d16.buffer.clear(0.5);
-  EXPECT_EQ(d16.buffer.stored()[0], 32768u);  // 32767.5: the even neighbour
+  EXPECT_EQ(d16.buffer.stored()[0], 32768u);  // 32767.5 rounds to the even neighbour
   d16.buffer.clear(7);
   EXPECT_EQ(d16.buffer.stored()[0], 65535u);
   d16.buffer.clear(-7);
   EXPECT_EQ(d16.buffer.stored()[0], 0u);
   f32.buffer.clear(7);
   EXPECT_EQ(f32.depth(), 7);
-  // A negative clear value of a float buffer is less than every depth.
+  // A negative clear value of a float buffer is below every depth.
   f32.buffer.clear(-7);
   f32.draw(full(0), {.func = DepthFunc::less_equal});
   EXPECT_EQ(f32.seen(), -1);
@@ -151,7 +151,7 @@ TEST(DepthState, WithoutTheMaskFragmentsAreSeenButStoreNothing) {
   EXPECT_EQ(bench.seen(), 2) << "0.25 was not stored, so 0.4 passes";
 }
 
-// First all depths, then only what is equal to them: nothing is seen that was not nearest.
+// All depths are drawn first, then only equal depths: nothing is visible that was not nearest.
 TEST(DepthState, EqualAfterAPrepassSeesTheSame) {
   const Scene scene = scene_of(random_mesh(Kind::soup, 80, 3));
   const Surfaces surfaces(scene);
@@ -172,7 +172,7 @@ TEST(DepthState, TheDepthRangeScalesAndReverses) {
     Bench bench(DepthFormat::f32);
     bench.draw(full(0.25f), {.func = DepthFunc::always, .range_near = near, .range_far = far});
     EXPECT_FLOAT_EQ(float(bench.depth()), float(expected));
-    // Nearer being greater is the range turned round.
+    // With the range reversed, nearer means greater.
     bench.draw(full(0.25f),
                {.func = DepthFunc::equal, .range_near = far, .range_far = near, .nearer_is_greater = true});
     EXPECT_EQ(bench.seen(), 1);
@@ -203,7 +203,7 @@ TEST(DepthState, PerspectiveDepthIsThatOfTheMatrix) {
   }
 }
 
-// One unit is one step of the format: the least offset that is always resolved.
+// One unit is one step of the format: the smallest offset that is always resolved.
 TEST(PolygonOffset, AUnitIsOneStep) {
   for (const DepthFormat format : {DepthFormat::d8, DepthFormat::d16, DepthFormat::d24, DepthFormat::f32})
     for (const float depth : {0.11f, 0.3f, 0.52f, 0.77f, 0.985f}) {
@@ -217,7 +217,7 @@ TEST(PolygonOffset, AUnitIsOneStep) {
     }
 }
 
-// A decal in the plane of its wall: hidden by LESS without an offset, in front with one unit towards the eye.
+// A decal in the plane of its wall: LESS hides it without an offset, and shows it with one unit towards the eye.
 TEST(PolygonOffset, DecalsComeToTheFront) {
   for (const DepthFormat format : {DepthFormat::d8, DepthFormat::d16, DepthFormat::d24, DepthFormat::f32}) {
     Bench bench(format);
@@ -249,7 +249,7 @@ TEST(PolygonOffset, TheFactorScalesTheGreaterSlope) {
   EXPECT_NEAR(bench.depth(), plain - 0.125, 1e-6) << "a positive clamp limits from above";
   bench.draw(mesh, {.func = DepthFunc::always, .offset = {-2, 0, -0.03}});
   EXPECT_NEAR(bench.depth(), plain - 0.03, 1e-6);
-  // Half the range, half the slope.
+  // Half the range gives half the slope.
   bench.draw(mesh, {.func = DepthFunc::always, .range_far = 0.5});
   const double halved = bench.depth();
   bench.draw(mesh, {.func = DepthFunc::always, .range_far = 0.5, .offset = {1, 0}});
@@ -279,7 +279,7 @@ TEST(StoredDepth, RoundsToTheNearestAndBack) {
       ASSERT_EQ(stored_depth(format, depth), i);
       ASSERT_EQ(stored_depth(format, depth + half), i);
       ASSERT_EQ(stored_depth(format, depth - half), i);
-      // What a reader of floats sees tells the integers apart.
+      // Depths converted to float still tell the integers apart.
       ASSERT_EQ(stored_depth(format, double(float(depth))), i);
     }
 }

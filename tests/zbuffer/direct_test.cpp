@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One picture straight from the scene's arrays: to the bit that of the clusters, whatever the scene.
+// One picture straight from the scene's arrays: equal to the bit to the clusters' picture, for any scene.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 using zbuffer_detail::draw_directly;
 using zbuffer_detail::draw_pixels_directly;
 
-/// \returns how many samples are covered.
+/// Compares the pictures of both ways. \returns the number of covered samples.
 std::size_t expect_same_both_ways(const Scene& scene, const View& view, int threads) {
   const Surfaces surfaces(scene);
   const Visible expected = draw_clusters(surfaces, view);
@@ -51,7 +51,7 @@ TEST_P(DirectOfEveryKind, EqualsTheClusters) {
   EXPECT_GT(seen, 1'000u) << "the scenes have become empty";
 }
 
-// More batches than are drawn at a time, so that tiles are taken up again.
+// The scene has more batches than are drawn at a time, so tiles are resumed.
 TEST(Direct, TakesUpTilesAgain) {
   for (const Kind kind : {Kind::tiny, Kind::shared_grid}) {
     Scene scene = scene_of(random_mesh(kind, under_sanitizer ? 9'000 : 90'000, 3));
@@ -65,12 +65,12 @@ TEST(Direct, TakesUpTilesAgain) {
   }
 }
 
-// One triangle an instance or a few, some of them mirrored, turned and flattened.
+// One or a few triangles an instance, some mirrored, turned and flattened.
 TEST(Direct, ManySmallInstances) {
   Random random(7);
   Scene scene;
   for (int m = 0; m < 5; ++m) scene.meshes.push_back(random_mesh(m % 2 ? Kind::soup : Kind::shared_grid, 3 + 9 * m, 5));
-  scene.meshes.emplace_back();  // nothing
+  scene.meshes.emplace_back();  // an empty mesh
   for (int i = 0; i < 3'000; ++i) {
     Instance instance{"", std::uint32_t(random.below(6)), glm::dmat4(1.0)};
     for (int column = 0; column < 3; ++column) {
@@ -99,7 +99,7 @@ TEST(Direct, HolesOfCutOuts) {
   }
 }
 
-// Neighbours in the file are nowhere near each other in the array of vertices.
+// Neighbours in the file are far apart in the array of vertices.
 TEST(Direct, ScatteredNumbersOfVertices) {
   Mesh mesh = random_mesh(Kind::shared_grid, 20'000, 2);
   Random random(3);
@@ -134,7 +134,7 @@ TEST(Direct, NothingAtAll) {
   EXPECT_EQ(expect_same_both_ways(scene_of(Mesh{}), view, 1), 0u);
 }
 
-// The first pictures need no clusters; the third makes them, and every one is the same.
+// The first two pictures need no clusters; the third makes them, and all pictures are the same.
 TEST(Direct, ThirdPictureMakesClusters) {
   const Scene scene = scene_of(random_mesh(Kind::shared_grid, 9'000, 1));
   Random random(1);
@@ -151,7 +151,7 @@ TEST(Direct, ThirdPictureMakesClusters) {
   EXPECT_EQ(many.byte_count(), surfaces.byte_count());
 }
 
-// Whoever comes first makes the clusters, and all see the same picture.
+// The first thread makes the clusters, and all threads draw the same picture.
 TEST(Direct, ThreadsMayAskForClustersAtOnce) {
   const Scene scene = scene_of(random_mesh(Kind::shared_grid, 9'000, 1));
   Random random(1);
@@ -165,7 +165,7 @@ TEST(Direct, ThreadsMayAskForClustersAtOnce) {
   for (const Visible& visible : found) expect_same(expected, visible);
 }
 
-// A wall before a crowd, last in the file: batches behind it are left out, which nothing must show.
+// A wall in front of a crowd, last in the file: skipping the batches behind it must not show.
 TEST(Direct, WhatAWallHides) {
   for (const int holes : {0, 1}) {
     Scene scene = scene_of(random_mesh(Kind::tiny, 300'000, 9));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views and scenes at the ends of what numbers can hold: each is refused by name, or equals the oracle.
+// Views and scenes at the limits of numbers: each is refused by name, or equals the oracle.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ View straight_on(const Projection& projection, double distance = 3) {
   return {40, 30, 1, look_at({0, 0, distance}, {0, 0, 0}, {0, 1, 0}), projection, {}};
 }
 
-/// Draws `view` on every instruction set. \returns how many samples see something, or -1 when it is refused.
+/// Draws `view` on every instruction set. \returns the number of covered samples, or -1 if the view is refused.
 int samples_seen(const Scene& scene, const View& view) {
   const Surfaces surfaces(scene);
   try {
@@ -42,7 +42,7 @@ int samples_seen(const Scene& scene, const View& view) {
   return seen;
 }
 
-/// Views that are drawn and compared, and how many of them see something: a test that refuses them all has shown
+/// Counts the views that are drawn and compared, and those that see something: a test that refuses all of them proves
 /// nothing.
 class Cases {
  public:
@@ -66,13 +66,14 @@ Scene soup(float scale = 1) {
   return scene_of(mesh);
 }
 
-// The one-lane target has no instruction for it, and vertices of clusters and of clipped triangles take two roads.
+// The one-lane target has no instruction for rounding, and vertices of clusters and of clipped triangles take two
+// paths.
 TEST(Extreme, EveryInstructionSetSnapsToTheNearestUnit) {
   for (const float x : {0.49999997f, 0.5f, 0.50000006f, 1.5f, 2.5f, -0.49999997f, -0.5f, -1.5f}) {
     SCOPED_TRACE(x);
     Mesh mesh;
     add_triangle(mesh, {x, -200, 0}, {300, 0, 0}, {x, 200, 0});
-    // One pixel, one unit of 1/256 pixel a scene unit, its sample at 0: what is left of it is seen or not.
+    // One pixel, with one 1/256 pixel for a scene unit, and its sample at 0: a triangle to its left is seen or not.
     View view = straight_on(make_orthographic(-128, 128, -128, 128, {1, 5}));
     view.width = view.height = 1;
     EXPECT_EQ(samples_seen(scene_of(mesh), view), std::nearbyint(x) <= 0 ? 1 : 0);

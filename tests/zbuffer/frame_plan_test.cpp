@@ -12,7 +12,7 @@ namespace {
 
 using namespace zbuffer_detail;
 
-/// Every tile's list of records, over all rounds; checks that rounds follow one another and keep to their budget.
+/// Every tile's list of records over all rounds; checks that rounds are consecutive and within their budget.
 std::vector<std::vector<std::uint32_t>> lists_of(FramePlan& plan, const View& view, std::size_t budget) {
   std::vector<std::vector<std::uint32_t>> lists;
   for (const TileRange& round : plan.records().rounds()) {
@@ -52,7 +52,7 @@ TEST(FramePlan, RoundsListTheSameRecordsWithinTheirBudget) {
   }
 }
 
-// The list of a tile may leave out no record that covers one of its samples.
+// A tile's list must contain every record that covers one of its samples.
 TEST(FramePlan, ListsHoldEveryRecordThatCoversASample) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Scene scene = scene_of(random_mesh(seed % 2 ? Kind::through_eye : Kind::huge, 30, seed));

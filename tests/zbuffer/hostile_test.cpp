@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views and scenes made to break the bounds that culling rests on: every sample still equals the oracle's, to the bit,
+// Views and scenes made to break the bounds that culling relies on: every sample still equals the oracle's, to the bit,
 // on every instruction set.
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace frontmost::test {
 namespace {
 
-/// The picture plane of a view: where a point of the image, 0 to 1 both ways, lies at a distance.
+/// World position of the image point (u, v), 0 to 1 both ways, at a distance.
 glm::vec3 in_world(const View& view, double u, double v, double distance) {
   const Projection& p = view.projection;
   const double spread = p.orthographic ? 1 : distance;
@@ -24,7 +24,7 @@ glm::vec3 in_world(const View& view, double u, double v, double distance) {
   return glm::vec3(view.eye() + x * view.right() + y * view.up() + distance * view.forward());
 }
 
-/// Powers of ten from 10^low to 10^high.
+/// A random value from 10^low to 10^high, uniform in the exponent.
 double magnitude(Random& random, double low, double high) {
   return std::pow(10.0, random.within(float(low), float(high)));
 }
@@ -32,7 +32,7 @@ double magnitude(Random& random, double low, double high) {
 enum class Where { origin, far_away, tiny, vast };
 
 struct Setting {
-  double size = 1;  ///< of what is looked at, in scene units
+  double size = 1;  ///< of the scene, in scene units
   glm::dvec3 centre{0};
 };
 
@@ -76,7 +76,7 @@ View random_hostile_view(Random& random, const Setting& setting) {
   return view;
 }
 
-/// One triangle that is meant to be hard on `view`.
+/// A triangle made to be hard for `view`.
 void add_hostile_triangle(Mesh& mesh, Random& random, const View& view, const Setting& setting) {
   const glm::vec3 centre(setting.centre);
   const float size = float(setting.size);
@@ -100,7 +100,7 @@ void add_hostile_triangle(Mesh& mesh, Random& random, const View& view, const Se
       };
       return add_triangle(mesh, near_border(), near_border(), near_border());
     }
-    case 3: {  // on the near or far plane, give or take a rounding
+    case 3: {  // on the near or far plane, up to a rounding error
       const double plane = random.below(2) || std::isinf(view.projection.clip.far) ? view.projection.clip.near
                                                                                    : view.projection.clip.far;
       const auto on_plane = [&] {
@@ -111,7 +111,7 @@ void add_hostile_triangle(Mesh& mesh, Random& random, const View& view, const Se
     case 4:  // beyond everything
       return add_triangle(mesh, centre + random.point(size * 1e4f), centre + random.point(size * 1e4f),
                           centre + random.point(size * 1e4f));
-    case 5: {  // fills the picture, flat to the viewer: hides, and ties
+    case 5: {  // fills the picture, parallel to it: hides others, and ties
       return add_triangle(mesh, in_world(view, -0.1, -0.1, distance), in_world(view, 2.2, -0.1, distance),
                           in_world(view, -0.1, 2.2, distance));
     }
@@ -141,7 +141,7 @@ TEST(Hostile, ScenesOfAnySizeAndPlaceInAnyViewEqualTheOracle) {
     const Setting setting = random_setting(random);
     const View view = random_hostile_view(random, setting);
     Mesh mesh;
-    // Few triangles make clusters with nothing around them, many make them small.
+    // Few triangles make isolated clusters, many make small ones.
     const int count = random.below(2) ? 1 + random.below(12) : 300 / view.samples;
     for (int i = 0; i < count; ++i) add_hostile_triangle(mesh, random, view, setting);
     const Scene scene = scene_of(mesh);

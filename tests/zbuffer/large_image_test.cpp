@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The largest image there is, where fixed point and guard band are at their limits. Two gigabytes, a few seconds.
+// The largest possible image, where fixed point and guard band reach their limits. Takes two gigabytes and a few
+// seconds.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,7 @@ namespace {
 
 constexpr int kLargestSide = 16384;
 
-/// Some rows of the picture, sample by sample, as the oracle's rules have them.
+/// Some rows of the picture, sample by sample, by the oracle's rules.
 class RowOracle {
  public:
   RowOracle(const Surfaces& surfaces, const View& view) : transform_(view) {
@@ -54,7 +55,7 @@ class RowOracle {
 
 TEST(LargestImage, ComesOutRightInEveryCorner) {
   Mesh mesh;
-  // Beyond the picture on all sides, through one another, and one that just fits.
+  // Triangles beyond the picture on all sides, intersecting, and one that just fits.
   add_triangle(mesh, {-3, -2, 0.3f}, {4, -1, -0.6f}, {0.1f, 5, 0.2f});
   add_triangle(mesh, {-1, 1, -0.5f}, {-1, -1, 0.5f}, {1, 1, 0.1f});
   add_triangle(mesh, {0.5f, -0.5f, 0.8f}, {0.50001f, -0.49999f, 0.8f}, {0.5f, -0.49998f, 0.8f});

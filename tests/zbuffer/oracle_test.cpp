@@ -40,7 +40,7 @@ TEST(ZBuffer, EqualsTheOracleWithEverySampleCount) {
   }
 }
 
-// Blocks are hidden by the planes of triangles that cover them: the margin for rounding must suffice.
+// Planes of triangles that cover a block hide others: the margin for rounding must suffice.
 TEST(ZBuffer, SheetsARoundingErrorApartAreToldApart) {
   for (std::uint64_t seed = 0; seed < seeds(150); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
@@ -75,7 +75,7 @@ TEST(ZBuffer, DoesNotDependOnTheCallersRoundingMode) {
   EXPECT_EQ(upward, expected);
 }
 
-// Permuting triangles permutes ids; which surface is seen, and how deep, must not change where depths differ.
+// Permuting triangles permutes ids; the visible surfaces and their depths must not change where depths differ.
 TEST(ZBuffer, PermutedTrianglesShowTheSameSurfaces) {
   for (const Kind kind : {Kind::soup, Kind::tiny, Kind::shared_grid, Kind::slivers}) {
     Mesh mesh = random_mesh(kind, 2000, 9);
@@ -100,10 +100,10 @@ TEST(ZBuffer, PermutedTrianglesShowTheSameSurfaces) {
   }
 }
 
-// Cutting every triangle in two at the middle of an edge that is exact on the screen covers the same samples.
+// Splitting every triangle at the middle of an edge, if that is exact on the screen, covers the same samples.
 TEST(ZBuffer, SharedEdgesLeaveNoGapAndNoOverlap) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
-    // A fan around an inner vertex fills a square: every sample of it exactly once.
+    // A fan around an inner vertex fills a square, covering every sample exactly once.
     Random random(seed);
     Mesh mesh;
     const glm::vec3 centre = random.point(0.4f) * glm::vec3(1, 1, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts that frames are put together from, each by itself: records, edges, planes, lists of tiles, stored depths.
+// Building blocks of frames, each by itself: records, edges, planes, lists of tiles, stored depths.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ TriangleRecord record_of(std::array<glm::ivec2, 3> corners, std::array<float, 3>
   return record;
 }
 
-/// Corners within `reach` units of a picture of 40 x 30 pixels.
+/// A record with vertices within `reach` units of a picture of 40 x 30 pixels.
 TriangleRecord random_record(Random& random, int reach) {
   std::array<glm::ivec2, 3> corners;
   for (glm::ivec2& corner : corners) {
@@ -39,7 +39,7 @@ TriangleRecord random_record(Random& random, int reach) {
 }
 
 TEST(TriangleRecord, IsTurnedSoThatItsAreaIsPositive) {
-  // y is down: to the right and then down is clockwise to the eye, the back.
+  // y points down: right and then down is clockwise to the eye, so it is the back.
   TriangleRecord back = record_of({{{0, 0}, {256, 0}, {256, 256}}});
   EXPECT_EQ(doubled_area(back), 65536);
   EXPECT_TRUE(orient(back, FacingRule(Culling::none, nullptr)));
@@ -58,7 +58,7 @@ TEST(TriangleRecord, IsTurnedSoThatItsAreaIsPositive) {
   EXPECT_FALSE(orient(line, FacingRule(Culling::none, nullptr))) << "no area, no side";
 }
 
-// The greatest coordinates of the guard band: 22 bits, whose products need more than 32.
+// The largest coordinates of the guard band have 22 bits, and their products need more than 32.
 TEST(TriangleRecord, AreasOfTheGuardBandAreExact) {
   const int most = kGuardBand;
   EXPECT_EQ(doubled_area(record_of({{{-most, -most}, {most, -most}, {most, most}}})), 4 * std::int64_t(most) * most);
@@ -107,7 +107,7 @@ TEST(PixelRects, HaveACommonPart) {
   EXPECT_LT(none.x1, none.x0);
 }
 
-/// Whether a point is covered, as the rule is written: on or inside all edges, on only where they are top or left.
+/// The coverage rule as stated: inside all edges, or on an edge that is a top or left one.
 bool covers(const TriangleRecord& r, const glm::ivec2& at) {
   for (int k = 0; k < 3; ++k) {
     const int n = (k + 1) % 3;
@@ -123,7 +123,7 @@ TEST(Coverage, TwoWaysToWalkFindWhatTheRuleSays) {
   Random random(5);
   std::size_t covered = 0;
   for (int i = 0; i < 400; ++i) {
-    // Every second triangle on a coarse grid, so that many samples lie on edges.
+    // Half of the triangles are on a coarse grid, so that many samples lie on edges.
     TriangleRecord record = random_record(random, i % 3 == 0 ? 200'000 : 2000);
     if (i % 2)
       for (std::size_t k = 0; k < 3; ++k) record.x[k] = record.x[k] / 128 * 128, record.y[k] = record.y[k] / 128 * 128;
@@ -170,12 +170,12 @@ TEST(Misses, IsRightWhereItSaysSo) {
 
 TEST(TileLists, HoldTheItemsOfTheirTilesInOrder) {
   TileLists lists;
-  // Item i is in all tiles that it divides; tiles 10 to 14.
+  // Item i is in all tiles from 10 to 14 that it divides.
   const auto visit = [](std::size_t i, const auto& add) {
     for (std::size_t tile = 10; tile < 15; ++tile)
       if (tile % (i + 1) == 0) add(tile);
   };
-  for (int round = 0; round < 2; ++round) {  // made again in the same memory
+  for (int round = 0; round < 2; ++round) {  // the second time in the same memory
     lists.make({10, 15}, 7, visit);
     EXPECT_THAT(lists.of(10), ElementsAre(0, 1, 4));
     EXPECT_THAT(lists.of(11), ElementsAre(0));

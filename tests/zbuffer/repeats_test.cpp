@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles that are there again, twice or a million times: what is seen is the first, for the cost of the first.
+// Triangles repeated twice or a million times: the first one is visible, at the cost of the first.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ View front_view(int width, int height) {
   return make_view(0.9, width, height).looking({0, 0, 2}, {0, 0, 0}, {0, 1, 0}).between(0.1, 10);
 }
 
-/// Some meshes at a few places each, many of them taken, and in each mesh triangles that it has before.
+/// Some meshes in a few placements each, many of these repeated; each mesh has repeated triangles.
 Scene crowded(Kind kind, std::uint64_t seed) {
   Random random(seed + 9);
   Scene scene;
@@ -51,7 +51,7 @@ TEST_P(RepeatsOfEveryKind, ChangeNothingThatIsSeen) {
   }
 }
 
-// Every triangle fills the picture. Drawing all of them would take minutes.
+// Every triangle fills the picture, so drawing all of them would take minutes.
 TEST(Repeats, AMillionTakeTheTimeToCountThem) {
   Mesh mesh;
   for (int i = 0; i < 3; ++i) add_triangle(mesh, {-9, -9, 0}, {9, -9, 0.1f}, {0, 9, 0});
@@ -63,7 +63,7 @@ TEST(Repeats, AMillionTakeTheTimeToCountThem) {
   for (const PrimitiveId id : visible.primitives) ASSERT_EQ(id, 0u);
 }
 
-// Of a few tiles each, which are not sorted beforehand: so many would take half a minute.
+// Triangles of a few tiles are not sorted beforehand; drawing so many would take half a minute.
 TEST(Repeats, AMillionOfMiddleSizeDoToo) {
   Mesh mesh;
   add_triangle(mesh, {-0.4f, -0.4f, 0}, {0.4f, -0.3f, 0.1f}, {0, 0.5f, 0});

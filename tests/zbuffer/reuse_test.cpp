@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ZBuffer, the object: frames that reuse memory are the frames that zbuffer() gives, and ask for none.
+// The ZBuffer object: frames that reuse memory equal those of zbuffer(), and allocate none.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ TEST(ZBuffer, FramesAfterTheFirstAreWhatTheFunctionGives) {
   for (std::uint64_t seed = 0; seed < seeds(60); ++seed) {
     const Scene scene = scene_of(random_mesh(Kind(seed % 8), seed % 5 == 0 ? 0 : 80, seed));
     const Surfaces surfaces(scene);
-    // Two grids of one size in memory among them, and views that leave most tiles empty.
+    // Two of the sizes need equal memory, and some views leave most tiles empty.
     constexpr std::array<std::pair<int, int>, 4> kSizes{{{400, 300}, {300, 400}, {700, 500}, {64, 64}}};
     const auto [width, height] = kSizes[seed / 4 % 4];
     View view = random_view(random, width, height);
@@ -65,7 +65,7 @@ TEST(ZBuffer, TakenPlanesAreLeftAlone) {
   EXPECT_EQ(content_hash(buffer.draw(surfaces, view)), hash);
 }
 
-// Whatever was done to them in between.
+// Planes are reused whatever their content.
 TEST(ZBuffer, PlanesGivenBackAreUsedAgain) {
   const Scene scene = scene_of(random_mesh(Kind::tiny, 200, 1));
   const Surfaces surfaces(scene);
@@ -81,7 +81,7 @@ TEST(ZBuffer, PlanesGivenBackAreUsedAgain) {
   const Visible& again = buffer.draw(surfaces, view);
   EXPECT_EQ(content_hash(again), content_hash(expected));
   EXPECT_EQ(again.primitives.data(), primitives);
-  // Of another size, or with a plane missing: as if there were none.
+  // Planes of another size, or with one missing, are as good as none.
   Visible other = nothing_visible(random_view(random, 30, 20));
   other.keys = {};
   buffer.give_back(std::move(other));
@@ -115,7 +115,7 @@ TEST(ZBuffer, GoesOnAfterAFrameWasCancelled) {
   }
 }
 
-// Planes and tile scratches are not taken from operator new: that they stay where they are shows that they are kept.
+// operator new does not supply planes and tile scratches; unchanged addresses show that they are kept.
 TEST(ZBuffer, FramesAfterTheFirstAllocateNothing) {
   for (const Kind kind : {Kind::tiny, Kind::through_eye, Kind::huge}) {
     const Scene scene = scene_of(random_mesh(kind, 500, 1));
@@ -134,12 +134,12 @@ TEST(ZBuffer, FramesAfterTheFirstAllocateNothing) {
   }
 }
 
-// The flight of examples/flight.cpp: memory grows with the frame that needs most, and is there from then on.
+// The flight of examples/flight.cpp: memory grows up to the most demanding frame, and is then reused.
 TEST(ZBuffer, AFlightAllocatesNothingOnceItHasBeenFlown) {
   const Scene scene = builtin("city");
   const Surfaces surfaces(scene);
   const glm::dvec3 middle = surfaces.bounds().centre(), up = direction(scene.up);
-  (void)cluster_set(surfaces);  // which the first frame would make
+  (void)cluster_set(surfaces);  // otherwise the first frame makes them
   ZBuffer buffer;
   const int frames = under_sanitizer ? 40 : 300;
   const auto fly = [&] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles in the order of submission: sizes mixed, cut at tiles, clipped, placed by transforms and by scattered
+// Triangles in the order of submission: of mixed sizes, cut at tiles, clipped, transformed, and with scattered vertex
 // numbers.
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace frontmost::test {
 namespace {
 
-/// Small triangles, large ones and such that pass the eye, in turn: no two neighbours are drawn alike.
+/// Small triangles, large ones and ones that pass the eye, in turn: no two neighbours are drawn alike.
 Mesh mixed_mesh(int count, std::uint64_t seed) {
   Mesh mesh;
   for (int i = 0; i < count; ++i) {
@@ -30,7 +30,7 @@ bool is_as_oracle(const DepthOracle& expected, const DepthBuffer& actual, const 
          content_hash(expected.visible()) == content_hash(actual.visible(view));
 }
 
-// ALWAYS shows the last: any triangle out of its place is seen.
+// ALWAYS shows the last triangle, so any triangle out of order is visible.
 TEST(Submission, OrderIsKeptAcrossSizesTilesAndClipping) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);

@@ -35,9 +35,9 @@ Table depth_table(const Visible& visible, int nothing, int (*number)(float depth
 // Van Dam's integer z-buffer: near 0, far 255, a triangle at 64 and a second at 127.
 TEST(WorkedExample, IntegerDepthTable) {
   Mesh mesh;
-  // Covers, in row y, pixels 0 to 6 - y: its long edge passes just under the centres of the diagonal.
+  // The triangle covers, in row y, pixels 0 to 6 - y: its long edge passes just under the centres of the diagonal.
   add_triangle(mesh, {0, 8, -64}, {0, 0.6f, -64}, {7.4f, 8, -64});
-  // In row 5 pixel 2 is won from the background; in rows 6 and 7 more of it. It lies behind at 127.
+  // The second triangle, behind at 127, wins pixel 2 in row 5 from the background, and more pixels in rows 6 and 7.
   add_triangle(mesh, {0, 0, -127}, {5.4f, 0, -127}, {0.6f, 4.8f, -127});
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
@@ -65,7 +65,7 @@ TEST(WorkedExample, IntegerDepthTableTheOtherWay) {
     for (std::size_t x = 0; x < 8; ++x) EXPECT_EQ(table[y][x], x + y < 7 ? 5 : 0) << x << ", " << y;
 }
 
-// A point between (-4, 2) and (2, 5) seen straight ahead lies at depth 4; linear interpolation would say 4.5.
+// A point between (-4, 2) and (2, 5), seen straight ahead, lies at depth 4; linear interpolation would give 4.5.
 TEST(WorkedExample, DepthIsInterpolatedByItsReciprocal) {
   Mesh mesh;
   add_triangle(mesh, {-4, -1, -2}, {2, -1, -5}, {-4, 1, -2});
@@ -73,7 +73,7 @@ TEST(WorkedExample, DepthIsInterpolatedByItsReciprocal) {
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
   View view;
-  view.width = view.height = 1001;  // odd: a pixel centre on the axis
+  view.width = view.height = 1001;  // odd, so that a pixel centre is on the axis
   view.world_from_eye = glm::dmat4(1.0);
   view.projection = make_frustum(-0.2, 0.2, -0.2, 0.2, {1, 10});
   const Visible visible = draw_both_ways(surfaces, view);
@@ -83,7 +83,7 @@ TEST(WorkedExample, DepthIsInterpolatedByItsReciprocal) {
 // Gortler's two segments that cross in the middle of the picture: one at -1, one from -0.1 to -1000000.
 TEST(WorkedExample, SegmentsCrossMidScreen) {
   Mesh mesh;
-  // Image-plane y runs from -1 (bottom) to 1 (top). The steep one is nearer below, the level one above.
+  // Image-plane y runs from -1 (bottom) to 1 (top). The steep segment is nearer below, the level one above.
   add_triangle(mesh, {-1, -1, -1}, {1, -1, -1}, {-1, 1, -1});
   add_triangle(mesh, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1});
   const float near = 0.52631578f, far = 10.0f;  // 1/near + 1/far = 2: crosses 1 in the middle
@@ -115,12 +115,12 @@ TEST(WorkedExample, SegmentFromATenthToAMillion) {
   view.width = view.height = 200;
   view.projection = make_frustum(-0.05, 0.05, -0.05, 0.05, {0.05, 4e6});
   const Visible visible = draw_both_ways(surfaces, view);
-  // 1/z runs linearly from 10 to 1e-6 over the picture, so it passes 1 at nine tenths of the way up: row 20.
+  // 1/z falls linearly from 10 to 1e-6 over the picture, so it passes 1 nine tenths of the way up: row 20.
   for (int y = 0; y < 200; ++y) EXPECT_EQ(visible.primitives[visible.index(100, y)] >= 2, y >= 20) << "row " << y;
 }
 
 TEST(WorkedExample, RingOfThreeHasNoOrderYetIsRight) {
-  // Three bars, each passing over the next: at the crossings the higher end wins.
+  // Three bars, each over the next: where two cross, the higher end wins.
   Mesh mesh;
   const double turn = 2.0943951023931953;
   for (int i = 0; i < 3; ++i) {
@@ -135,7 +135,7 @@ TEST(WorkedExample, RingOfThreeHasNoOrderYetIsRight) {
   const Surfaces surfaces(scene);
   View view{301, 301, 1, look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0}), make_orthographic(-1.2, 1.2, -1.2, 1.2, {1, 5}), {}};
   const Visible visible = draw_both_ways(surfaces, view);
-  // Bars 0 and 1 cross where both lines y = -0.5 turned by 0 and 120 degrees meet; likewise the others, turned.
+  // Bars 0 and 1 cross where the line y = -0.5 meets itself rotated by 120 degrees; the others likewise, rotated.
   int over[3] = {};
   for (int i = 0; i < 3; ++i) {
     const double x = 0.5 / std::tan(turn / 4), y = -0.5;  // bar i's end meets bar i + 1's start

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Three pages of static files, with relative addresses, so that any folder of any host will do. The module lies beside
-// them as it is: it is loaded by name, at run time, because there are two of it.
+// Builds three pages of static files with relative addresses, so that any folder of any host works. The module lies
+// beside them unchanged: it is loaded by name at run time, because there are two of it.
 import { defineConfig, type Plugin } from "vite";
 
-/** files.json: what a browser is to keep for when there is no network. */
+/** files.json: the files that a browser keeps for use without a network. */
 const listFiles: Plugin = {
   name: "list-files",
   generateBundle: {

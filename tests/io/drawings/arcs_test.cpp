@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arcs in the formats that have them: which way round, how far, and what is one arc.
+// Arcs in the formats that have them: their direction, their length, and which curves are one arc.
 #include <cmath>
 #include <sstream>
 
@@ -23,7 +23,7 @@ std::string file_of(const Round& round, PageFormat format) {
   return saved(page, format);
 }
 
-/// The first entity of a DXF, and its degrees.
+/// The first entity of a DXF, and its angles in degrees.
 struct DxfArc {
   std::string kind;
   double begin = -1, end = -1;
@@ -51,11 +51,11 @@ std::string svg_of(const Round& round) {
 const double quarter = std::tan(std::acos(-1.0) / 8);
 
 TEST(Arcs, TurnEitherWay) {
-  // About (50, 20) with y down, from the right: on by a quarter to below, and back by one to above.
+  // Arcs about (50, 20) with y down, from the right: a quarter on to below, and a quarter back to above.
   const Round on{{{60, 20}, {50, 30}}, {quarter, 0}}, back{{{60, 20}, {50, 10}}, {-quarter, 0}};
   EXPECT_EQ(svg_of(on), "M60 20a10 10 0 0 1-10 10");
   EXPECT_EQ(svg_of(back), "M60 20a10 10 0 0 0-10-10");
-  // DXF has y up, and arcs anticlockwise.
+  // DXF has y up, and its arcs run anticlockwise.
   EXPECT_EQ(dxf_of(on).begin, 270);
   EXPECT_EQ(std::fmod(dxf_of(on).end, 360), 0);
   EXPECT_EQ(std::fmod(dxf_of(back).begin, 360), 0);
@@ -70,7 +70,7 @@ TEST(Arcs, OfMoreThanHalfACircleTakeTheLongWay) {
 }
 
 TEST(Arcs, AsFlatAsCoordinatesAreRoundedAreLines) {
-  // The bulge is the height over half of the chord: 0.002 and 0.00005 mm.
+  // The bulge is the height divided by half the chord: 0.002 and 0.00005 mm.
   EXPECT_NE(svg_of({{{10, 10}, {30, 10}}, {2e-4, 0}}).find('a'), std::string::npos);
   EXPECT_EQ(svg_of({{{10, 10}, {30, 10}}, {5e-6, 0}}), "M10 10l20 0");
 }
@@ -78,12 +78,12 @@ TEST(Arcs, AsFlatAsCoordinatesAreRoundedAreLines) {
 TEST(Arcs, OfOneCircleAreOneInDxf) {
   EXPECT_EQ(dxf_of({{{60, 20}, {50, 30}, {40, 20}}, {quarter, quarter, 0}}).kind, "ARC");
   EXPECT_EQ(dxf_of({{{60, 20}, {40, 20}}, {1, 1}, true}).kind, "CIRCLE");
-  // Centres or radii that differ by more than rounding.
+  // Centres or radii differ by more than rounding.
   EXPECT_EQ(dxf_of({{{60, 20}, {50, 30}, {40, 20.05}}, {quarter, quarter, 0}}).kind, "POLYLINE");
-  // There and back again, and once and a half around.
+  // One path goes forth and back, another one and a half times around.
   EXPECT_EQ(dxf_of({{{60, 20}, {40, 20}, {60, 20}}, {1, -1, 0}}).kind, "POLYLINE");
   EXPECT_EQ(dxf_of({{{60, 20}, {40, 20}, {60, 20}, {40, 20}}, {1, 1, 1, 0}}).kind, "POLYLINE");
-  // An arc and a line.
+  // A path of an arc and a line.
   EXPECT_EQ(dxf_of({{{60, 20}, {50, 30}, {40, 20}}, {quarter, 0, 0}}).kind, "POLYLINE");
 }
 

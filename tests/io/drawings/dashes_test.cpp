@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where dashes begin and end.
+// Places where dashes begin and end.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -42,17 +42,17 @@ std::vector<Points> cut(const PageGroup& group) {
 }
 
 TEST(RealDashes, BothEndsOfALineAreDrawn) {
-  // Two gaps of 1 and three dashes of 3.
+  // The line holds three dashes of 3 and two gaps of 1.
   EXPECT_EQ(cut(dashed({{0, 5}, {11, 5}}, false)),
             (std::vector<Points>{{{0, 5}, {3, 5}}, {{4, 5}, {7, 5}}, {{8, 5}, {11, 5}}}));
-  // The same stretched by two.
+  // A pattern of twice the size gives three dashes as well.
   EXPECT_EQ(cut(dashed({{5, 0}, {5, 22}}, false, {6, 2})).size(), 3u);
-  // Nearest whole number: 10 is 10/11 of 11.
+  // The number of periods is the nearest whole number: 10 is 10/11 of 11.
   const std::vector<Points> squeezed = cut(dashed({{0, 0}, {10, 0}}, false));
   ASSERT_EQ(squeezed.size(), 3u);
   EXPECT_NEAR(squeezed[0][1].x, 30 / 11.0, 1e-12);
   EXPECT_EQ(squeezed[2][1], glm::dvec2(10, 0));
-  // Too short for a gap.
+  // The line is too short for a gap.
   EXPECT_EQ(cut(dashed({{0, 0}, {4, 0}}, false)), (std::vector<Points>{{{0, 0}, {4, 0}}}));
 }
 
@@ -83,10 +83,10 @@ TEST(RealDashes, BendsOfMoreThan25DegreesAreCorners) {
     return dashes[0][1].x;
   };
   EXPECT_NEAR(first_dash(24), 3, 1e-12);            // three on 11, as on a straight line
-  EXPECT_NEAR(first_dash(26), 3 * 5.5 / 7, 1e-12);  // two on each half, of which one goes around the corner
+  EXPECT_NEAR(first_dash(26), 3 * 5.5 / 7, 1e-12);  // two on each half, where one goes around the corner
 }
 
-// If every dash asked every point, that would be 2e12 questions, which take an hour.
+// Testing every dash against every point would be 2e12 tests, an hour of work.
 TEST(RealDashes, LongPathsOfManyPointsTakeNoLongerThanShortOnes) {
   Points spiral;
   const int count = 1'500'000;
@@ -103,7 +103,7 @@ TEST(RealDashes, LongPathsOfManyPointsTakeNoLongerThanShortOnes) {
 }
 
 TEST(RealDashes, ArcsStayArcs) {
-  // A whole circle of 32 mm: eight dashes of 3 and gaps of 1, to the width of a hair.
+  // A whole circle of 32 mm has eight dashes of 3 and gaps of 1, within a hair's width.
   const double radius = 16 / std::numbers::pi;
   PageGroup circle = dashed({{100 + radius, 50}, {100 - radius, 50}}, true);
   circle.bulges = {1, 1};
@@ -120,7 +120,7 @@ TEST(RealDashes, DotsAndDashesOfAllKindsAndWhatIsNotDashed) {
   PageGroup dot = dashed({{5, 5}}, false);
   dot.add(Points{{6, 6}, {6, 6}}, false);
   EXPECT_EQ(cut(dot), (std::vector<Points>{{{5, 5}}, {{6, 6}}}));
-  // A chain line: 5, 1, 1, 1 and at the end 5 again.
+  // A chain line of 5, 1, 1, 1 ends with another 5.
   const std::vector<Points> chain = cut(dashed({{0, 0}, {21, 0}}, false, {5, 1, 1, 1}));
   ASSERT_EQ(chain.size(), 5u);
   EXPECT_NEAR(chain[1][0].x, 6, 1e-12);
@@ -135,7 +135,7 @@ TEST(RealDashes, DotsAndDashesOfAllKindsAndWhatIsNotDashed) {
 TEST(RealDashes, TooManyAreRefused) {
   const PageGroup group = dashed({{0, 0}, {1e5, 0}}, false, {1e-3, 1e-3});
   EXPECT_THROW((void)with_real_dashes(page_of(group)), Error);
-  // A thousand to the period.
+  // A period has a thousand dashes.
   EXPECT_THROW((void)with_real_dashes(page_of(dashed({{0, 0}, {1e5, 0}}, false, std::vector<double>(2000, 1e-3)))),
                Error);
   PageGroup bad = dashed({{0, 0}, {1, 0}}, false);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each format holds, to the character where it matters.
+// Content of each format, to the character where it matters.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -97,7 +97,7 @@ TEST(Svg, EachLineIsAnElementAndDotsShareSome) {
   EXPECT_EQ(count(svg, "<path d=\"M1 1l1 2\"/>\n"), 5000u);
   EXPECT_EQ(count(svg, "<path d=\"M4 4l0 0\"/>\n"), 1u);
   EXPECT_EQ(count(svg, "M5 5l0 0"), 5000u);
-  EXPECT_EQ(count(svg, "<path"), 5000u + 1u + 2u);  // dots by at most 4096
+  EXPECT_EQ(count(svg, "<path"), 5000u + 1u + 2u);  // at most 4096 dots a path
   EXPECT_EQ(count(svg, "\"/>"), 5000u + 1u + 2u);
 }
 
@@ -146,7 +146,7 @@ TEST(Pdf, PartsAreFilledWithTheirPath) {
   EXPECT_EQ(count(operators, "f\n"), 2u);
 }
 
-/// A triangle, and two that lie over each other as one.
+/// A triangle, and two overlapping ones in one blend group.
 Page page_with_a_sheet() {
   Page page = page_with_parts();
   PageGroup sheet = page.layers[0].groups[0];
@@ -181,7 +181,7 @@ TEST(Pdf, GroupsMayHaveAnOpacity) {
 
 TEST(Json, SaysWhatIsAPart) { EXPECT_EQ(count(saved(page_with_parts(), PageFormat::json), "\"part\": true"), 1u); }
 
-/// Each begins where the table says. \returns their number, and that of the table's head.
+/// Checks that each object begins where the table says. \returns the number of objects, including the table's head.
 std::size_t objects_of(const std::string& pdf) {
   const std::size_t start = std::stoul(pdf.substr(pdf.rfind("startxref\n") + 10));
   std::istringstream table(pdf.substr(start));
@@ -200,12 +200,12 @@ std::size_t objects_of(const std::string& pdf) {
 
 TEST(Pdf, FindsItsObjectsAndItsSize) {
   const std::string pdf = saved(sample_page(), PageFormat::pdf);
-  EXPECT_EQ(pdf.substr(0, 9), "%PDF-1.5\n");  // pdfTeX warns of all above
+  EXPECT_EQ(pdf.substr(0, 9), "%PDF-1.5\n");  // pdfTeX warns of any later version
   EXPECT_TRUE(has(pdf, "/MediaBox [0 0 283.464566 141.732283]"));
   EXPECT_TRUE(has(pdf, "/Type /OCG /Name <FEFF003100200068"));
   EXPECT_EQ(objects_of(pdf), 9u);  // two layers
   EXPECT_FALSE(has(pdf, "Date"));
-  // The length that the stream says it has.
+  // The stream's length is the one that it states.
   const std::size_t begin = pdf.find("stream\n") + 7, end = pdf.find("\nendstream");
   EXPECT_TRUE(has(pdf, "5 0 obj\n" + std::to_string(end - begin) + "\nendobj"));
 }
@@ -218,13 +218,13 @@ std::string saved_together(const std::vector<Page>& pages, PageFormat format) {
 
 TEST(Pdf, HasSeveralPagesWhoseLayersOfOneNameAreOne) {
   Page second = page_with_a_sheet(), third = sample_page();
-  second.width = 6000;  // more than viewers take without a unit
+  second.width = 6000;  // larger than viewers accept without a unit
   third.title = "Third";
-  third.layers.push_back(third.layers[1]);  // twice the same name in one page
+  third.layers.push_back(third.layers[1]);  // two layers of the same name in one page
   const std::string pdf = saved_together({sample_page(), second, third}, PageFormat::pdf);
   EXPECT_EQ(pdf.substr(0, 9), "%PDF-1.6\n");
   EXPECT_TRUE(has(pdf, "/Type /Pages /Kids [ 3 0 R 9 0 R 15 0 R ] /Count 3 >>"));
-  // Two of the first page; one more of the second, with a form; one more of the third.
+  // The first page has two layers; the second one more, with a form; the third one more.
   EXPECT_EQ(count(pdf, "/Type /OCG "), 4u);
   EXPECT_EQ(objects_of(pdf), 1 + 6 + 2 + 3 + 1 + 2 + 3 + 1u);
   EXPECT_TRUE(has(pdf, "/OCGs [ 7 0 R 8 0 R 12 0 R 18 0 R ]"));
@@ -233,7 +233,7 @@ TEST(Pdf, HasSeveralPagesWhoseLayersOfOneNameAreOne) {
   EXPECT_EQ(count(pdf, "/UserUnit 2"), 1u);
   EXPECT_EQ(count(pdf, "/MediaBox [0 0 283.464566 141.732283]"), 2u);
   EXPECT_EQ(count(pdf, "/Type /Page "), 3u);
-  // What a page draws is what it draws alone.
+  // A page in a joint file draws the same as in a file of its own.
   const std::string alone = saved(sample_page(), PageFormat::pdf);
   EXPECT_EQ(operators_of(pdf), operators_of(alone));
   EXPECT_EQ(saved_together({sample_page()}, PageFormat::pdf), alone);
@@ -278,7 +278,7 @@ TEST(Pdf, CurvesKeepToTheirCircle) {
       const double s = 1 - t;
       const glm::dvec2 p = s * s * s * at + 3 * s * s * t * a + 3 * s * t * t * b + t * t * t * c;
       EXPECT_NEAR(glm::distance(p, {50, 50}), 40, 0.001);
-      EXPECT_LE(p.y, 50.001);  // from -x by -y to +x: the way from +x towards +y
+      EXPECT_LE(p.y, 50.001);  // from -x by -y to +x: the direction from +x towards +y
     }
     at = c;
   }
@@ -351,7 +351,7 @@ TEST(Dxf, HoldsLinesArcsAndCirclesWithYUp) {
   EXPECT_EQ(all[10].number(11), 2);
   EXPECT_EQ(all[10].number(21), 47);
   const Entity &arc = all[11], &circle = all[12];
-  // From (60, 30) clockwise to (50, 20), with y up: the quarter from 270 to 360 degrees.
+  // The arc from (60, 30) clockwise to (50, 20), with y up, is the quarter from 270 to 360 degrees.
   EXPECT_EQ(arc.number(10), 50);
   EXPECT_EQ(arc.number(20), 30);
   EXPECT_EQ(arc.number(40), 10);
@@ -365,14 +365,14 @@ TEST(Dxf, SaysItsUnitAndLeavesColoursAndLineTypesToLayers) {
   Page page = sample_page();
   const std::string dxf = saved(page, PageFormat::dxf);
   EXPECT_TRUE(has(dxf, "9\n$INSUNITS\n70\n4\n"));
-  EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n1_HIDDEN-AXLE\n70\n0\n62\n6\n6\nHIDDEN\n"));        // black, as hidden lines are
-  EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n2_VISIBLE-WHEEL\n70\n0\n62\n1\n6\nCONTINUOUS\n"));  // red, as its pen is
+  EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n1_HIDDEN-AXLE\n70\n0\n62\n6\n6\nHIDDEN\n"));        // black, as hidden lines
+  EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n2_VISIBLE-WHEEL\n70\n0\n62\n1\n6\nCONTINUOUS\n"));  // red, as its pen
   EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n2_VISIBLE-RING\n70\n0\n62\n7\n6\nCONTINUOUS\n"));
   for (const Entity& entity : entities_of(dxf)) {
     EXPECT_EQ(entity.codes.count(6), 0u) << entity.kind;
     EXPECT_EQ(entity.codes.count(62), 0u) << entity.kind;
   }
-  // Groups without names share a layer: what differs from it is said.
+  // Groups without names share a layer; entities state what differs from it.
   for (PageGroup& group : page.layers[1].groups) group.name.clear();
   page.layers[1].groups[1].pen.dashes = {1, 1};
   const std::vector<Entity> all = entities_of(saved(page, PageFormat::dxf));
@@ -384,13 +384,13 @@ TEST(Dxf, SaysItsUnitAndLeavesColoursAndLineTypesToLayers) {
 }
 
 TEST(Dxf, LineTypesHaveTheirDashesAndGaps) {
-  // Length 3.75: a dash is positive and a gap negative.
+  // The pattern is 3.75 long: dashes are positive, gaps negative.
   EXPECT_TRUE(has(saved(sample_page(), PageFormat::dxf),
                   "2\nHIDDEN\n70\n0\n3\nDashed, in millimetres\n72\n65\n73\n2\n40\n3.75\n49\n3\n49\n-0.75\n"))
       << saved(sample_page(), PageFormat::dxf);
 }
 
-// Some readers draw line types solid whose names they do not know.
+// Some readers draw line types with unknown names as solid.
 TEST(Dxf, LineTypesHaveStandardNames) {
   Page page{100, 100, "", {{"6 centre lines", {}}}};
   const std::vector<std::vector<double>> patterns = {
@@ -410,7 +410,7 @@ TEST(Dxf, LineTypesHaveStandardNames) {
   EXPECT_EQ(count(dxf, "0\nLTYPE\n"), 6u);
 }
 
-// The circle of a diameter sign is two half circles, one after the other, of a path that is not closed.
+// The circle of a diameter sign is a path of two consecutive half circles that is not closed.
 TEST(Dxf, AWholeTurnIsACircle) {
   Page page{100, 100, "", {{"7 dimensions", {{"", {}}}}}};
   PageGroup& sign = page.layers[0].groups[0];
@@ -440,13 +440,13 @@ TEST(Dxf, BulgesTurnTheOtherWayRound) {
   const std::vector<Entity> all = entities_of(dxf);
   EXPECT_EQ(all[2].number(42), -1);
   EXPECT_EQ(all[1].codes.count(42), 0u);
-  // Layers that would have the same name are told apart.
+  // Layers whose names would be equal are told apart.
   EXPECT_TRUE(has(dxf, "2\nSLOT_WITH_A_RATHER_LONG_NA\n"));
   EXPECT_TRUE(has(dxf, "2\nSLOT_WITH_A_RATHER_LONG\n"));
   EXPECT_TRUE(has(dxf, "2\nLAYER\n"));
 }
 
-/// A page of so many groups of one name.
+/// A page of `count` groups with one name.
 Page crowded_page(std::size_t count) {
   Page page{100, 100, "", {{"2 visible", {}}}};
   PageGroup group{"a wheel that turns about its axle", {}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a page may be, and that its files are whole, the same every time, or not there.
+// Valid and invalid pages; files are complete, equal every time, or absent.
 #include <limits>
 
 #include "frontmost/files.h"

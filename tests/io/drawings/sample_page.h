@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A page with one of each, and files read back.
+// A page with one of each kind of path, and helpers that read files back.
 #pragma once
 
 #include <zlib.h>
@@ -9,7 +9,7 @@
 
 namespace frontmost::test {
 
-/// 100 x 50 mm: a dashed open line, a triangle, an arc, a circle and a dot.
+/// A page of 100 x 50 mm: a dashed open line, a triangle, an arc, a circle and a dot.
 inline Page sample_page() {
   Page page{100, 50, "Sample", {}};
   PageGroup dashed{"axle", {0.25, {}, {3, 0.75}}};
@@ -25,7 +25,7 @@ inline Page sample_page() {
   return page;
 }
 
-/// The bytes of a page as a file.
+/// The bytes of the page's file.
 inline std::string saved(const Page& page, PageFormat format, const Execution& execution = {}) {
   const ScratchFolder folder;
   save(page, folder.file("page"), format, execution);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deep OpenEXR files, read back by OpenEXR's own interface for them.
+// Deep OpenEXR files, read back by OpenEXR's own deep interface.
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfDeepFrameBuffer.h>
 #include <OpenEXR/ImfDeepScanLineInputFile.h>
@@ -17,7 +17,7 @@
 namespace frontmost::test {
 namespace {
 
-/// Up to five samples a pixel; floats and integers.
+/// An image of up to five samples a pixel, with floats and integers.
 DeepImage random_image(int width, int height, std::uint64_t seed) {
   Random random(seed);
   DeepImage image{width, height, Buffer<std::uint64_t>(std::size_t(width * height) + 1, std::uint64_t(0)), {}};
@@ -33,7 +33,7 @@ DeepImage random_image(int width, int height, std::uint64_t seed) {
   return image;
 }
 
-/// What the library reads: whole file, 32 bits a value as they are.
+/// Content of a file as OpenEXR reads it: 32 bits a value, unchanged.
 struct Read {
   int width = 0, height = 0;
   std::vector<std::uint32_t> counts;
@@ -95,15 +95,15 @@ TEST(DeepExr, IsReadBackByOpenExr) {
     ASSERT_EQ(read.values.size(), image.channels.size());
     for (const Channel& channel : image.channels) {
       std::vector<std::uint32_t> values = read.values.at(channel.name);
-      values.pop_back();  // the one to spare
+      values.pop_back();  // the spare one
       EXPECT_EQ(values, bits_of(channel)) << channel.name;
       EXPECT_EQ(read.types.at(channel.name), channel.is_integer() ? Imf::UINT : Imf::FLOAT);
     }
   }
 }
 
-/// One channel of a deep file as OpenEXR flattens it: by its own sorting and compositing, for programs that know
-/// nothing of deep images.
+/// One channel of a deep file as OpenEXR flattens it: by its own sorting and compositing, for programs without support
+/// of deep images.
 std::vector<float> flattened_by_open_exr(const std::string& path, const char* channel) {
   Imf::InputFile in(path.c_str());
   const Imath::Box2i window = in.header().dataWindow();

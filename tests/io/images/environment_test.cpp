@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Environments: the same light from every format, in one shape, and nothing in it that sums cannot bear.
+// Environments: every format gives the same light, in one shape, without values that sums cannot bear.
 #include <cmath>
 
 #include "support/radiance_maker.h"
@@ -17,7 +17,7 @@ class Environment : public testing::Test {
     save(image, folder_.file(name));
     return load_environment(folder_.file(name));
   }
-  /// The error's message without the file's name.
+  /// Error message without the file's name.
   std::string refusal(const Image& image, const std::string& name, ErrorCode code = ErrorCode::unsupported) {
     std::string message;
     EXPECT_EQ(error_of([&] { (void)through(image, name); }, &message), code);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenEXR headers: files that others may write, read here, and headers that say what their file does not hold.
+// OpenEXR headers: files of other programs that are read here, and headers that promise more than their file holds.
 #include <OpenEXR/ImfArray.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -29,7 +29,7 @@ std::string channel(const std::string& name) {
   return name + '\0' + number(2) + std::string(4, '\0') + number(1) + number(1);
 }
 
-/// A header of its own, without pixels: enough to be refused.
+/// A header without pixels: enough to be refused.
 std::string header(const std::string& attributes, std::int32_t version = 2) {
   return "\x76\x2f\x31\x01" + number(version) + attributes + '\0';
 }
@@ -69,7 +69,7 @@ TEST(ExrHeader, ChannelListsAreCounted) {
   for (int i = 0; i < 1025; ++i) many += channel("c" + std::to_string(i));
   EXPECT_EQ(image_error(header(window(0, 0, 1, 1) + attribute("channels", "chlist", many + '\0'))),
             "limit, m: EXR: 1025 channels, not 1 to 1024");
-  // Two lists of 600: the library would add them up.
+  // Two lists of 600 channels, which the library would add up.
   std::string half;
   for (int i = 0; i < 600; ++i) half += channel("c" + std::to_string(i));
   const std::string list = attribute("channels", "chlist", half + '\0'),
@@ -87,11 +87,11 @@ TEST(ExrHeader, WindowsAreHeldAgainstTheFile) {
   const std::string lying = header(one_channel + window(0, 0, 9999, 9999));
   EXPECT_EQ(image_error(lying), "malformed, m: EXR: " + std::to_string(lying.size()) +
                                     " bytes cannot hold 10000 x 10000 pixels of 1 channels");
-  // Of two windows the library takes the last one.
+  // The library takes the last of two windows.
   const std::string twice = header(one_channel + window(0, 0, 1, 1) + window(0, 0, 9999, 9999));
   EXPECT_EQ(image_error(twice), "malformed, m: EXR: " + std::to_string(twice.size()) +
                                     " bytes cannot hold 10000 x 10000 pixels of 1 channels");
-  // Wavelets have no bound of compression, so such a file gets some memory in any case: up to 64 MiB.
+  // Wavelets have no bound of compression, so even such a file gets some memory: up to 64 MiB.
   const std::string wavelets = attribute("compression", "compression", "\4");
   const std::string large = header(one_channel + wavelets + window(0, 0, 4095, 4096));
   EXPECT_EQ(image_error(large), "malformed, m: EXR: " + std::to_string(large.size()) +
@@ -125,7 +125,7 @@ void write_window(const std::string& path, Imf::PixelType type, const Imath::Box
   out.writePixels(height);
 }
 
-// A data window is the part of the picture that a file holds; it becomes the image, wherever it lies.
+// A data window is the part of the picture that a file holds; this part becomes the image, wherever it lies.
 TEST(ExrFiles, WindowsAwayFromTheOrigin) {
   const ScratchFolder folder;
   const std::string path = folder.file("a.exr");
@@ -211,7 +211,7 @@ TEST(ExrFiles, AttributesOfOthersDoNoHarm) {
   EXPECT_EQ(load_image(path).channels[0].floats()[1], 2.0f);
 }
 
-// A thousand channels are the most that load_image() takes, so save() writes no more.
+// load_image() takes at most a thousand channels, so save() writes no more.
 TEST(ExrFiles, ManyChannels) {
   const ScratchFolder folder;
   std::vector<std::string> names;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Truncated, mutated and lying image files: an error or an image, never a crash and never much memory.
+// Truncated, mutated and lying image files: the result is an error or an image, never a crash, and never takes much
+// memory.
 #include <functional>
 
 #include "support/radiance_maker.h"
@@ -47,8 +48,8 @@ std::vector<Sample> samples() {
   return all;
 }
 
-/// Reads from memory of exactly that size, so that AddressSanitizer sees every byte too many.
-/// \returns whether it was read.
+/// Reads from memory of exactly that size, so that AddressSanitizer detects every byte read beyond it. \returns whether
+/// it was read.
 bool survives(const std::string& bytes) {
   const std::vector<std::byte> exact(reinterpret_cast<const std::byte*>(bytes.data()),
                                      reinterpret_cast<const std::byte*>(bytes.data()) + bytes.size());
@@ -67,7 +68,7 @@ TEST(HostileImages, EveryPrefixIsAnError) {
   for (const Sample& sample : samples()) {
     SCOPED_TRACE(sample.name);
     EXPECT_TRUE(survives(sample.bytes));
-    // A PNG is whole without its last bytes as far as pixels go, and libpng asks for them all the same.
+    // The pixels of a PNG are complete without its last bytes, but libpng asks for these all the same.
     for (std::size_t size = 0; size < sample.bytes.size(); ++size)
       EXPECT_FALSE(survives(sample.bytes.substr(0, size))) << size << " bytes";
   }
@@ -81,7 +82,7 @@ TEST(HostileImages, MutationsEndInAnErrorOrAnImage) {
     for (int i = 0; i < 1500; ++i) {
       std::string bytes = sample.bytes;
       for (unsigned k = 0; k <= random() % 4; ++k) {
-        // Headers are where sizes are.
+        // Half of the mutations hit the header, which holds the sizes.
         const std::size_t place = random() % (random() % 2 ? bytes.size() : std::min<std::size_t>(bytes.size(), 160));
         bytes[place] = random() % 3 == 0 ? '\xff' : char(random());
       }
@@ -107,7 +108,7 @@ TEST(HostileImages, SizesThatTheBytesCannotHoldGetNoMemory) {
     std::memcpy(&lying[window + 12], &corner, 4);
     EXPECT_FALSE(survives(lying)) << corner;
   }
-  // A channel list that ends early: what follows in it must not become attributes.
+  // A channel list ends early; its remaining bytes must not become attributes.
   std::string early = exr;
   early[early.find(std::string("chlist\0", 7)) + 7] += 1;
   EXPECT_FALSE(survives(early));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// JPEG and WebP, read back by libjpeg and libwebp: pictures within a stated error, alpha as it is, and what the formats
-// cannot hold refused before a file is there.
+// JPEG and WebP, read back by libjpeg and libwebp: colours within a stated error, and exact alpha. Content that the
+// formats cannot hold is refused before a file exists.
 #include <cmath>
 
 #include "base/srgb.h"
@@ -15,7 +15,7 @@
 namespace frontmost::test {
 namespace {
 
-/// A bright disc with a soft shade and a hard rim on a coloured ground; with alpha, a wedge that becomes clear.
+/// A bright disc with a soft shade and a hard rim on a coloured ground; with alpha, a wedge that fades out.
 Image disc(int width, int height, bool with_alpha) {
   Image image{width, height, {}};
   for (const char* name : {"R", "G", "B", "A"})
@@ -34,7 +34,7 @@ Image disc(int width, int height, bool with_alpha) {
   return image;
 }
 
-/// What a PNG would hold, four bytes a pixel.
+/// Pixels of a PNG of the same image, four bytes each.
 std::vector<std::uint8_t> bytes_by_png(const Image& image) {
   const ScratchFolder folder;
   save(image, folder.file("a.png"));
@@ -84,7 +84,7 @@ class Lossy : public testing::TestWithParam<LossyFormat> {
 };
 
 struct Distance {
-  double mean = 0;  ///< root of the mean square, of colours
+  double mean = 0;  ///< root mean square error of colours
   int most = 0, most_alpha = 0;
 };
 Distance distance_of(const std::vector<std::uint8_t>& actual, const std::vector<std::uint8_t>& expected) {

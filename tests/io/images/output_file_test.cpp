@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files are whole or not there, whatever happens on the way.
+// Files are complete or absent, whatever happens during writing.
 #include "base/output_file.h"
 
 #include <sys/resource.h>
@@ -29,7 +29,7 @@ unsigned mode_of(const std::string& path) {
   return status.st_mode & 0777;
 }
 
-/// The process's umask for as long as it lives.
+/// Sets the process's umask for the object's lifetime.
 class Umask {
  public:
   explicit Umask(mode_t mask) : before_(::umask(mask)) {}
@@ -41,7 +41,7 @@ class Umask {
   mode_t before_;
 };
 
-/// Runs with both ways of keeping the bytes until they are whole.
+/// Tests run with both ways to keep the bytes until the file is complete.
 class Output : public testing::TestWithParam<OutputFile::Staging> {
  protected:
   void write_file(const std::string& path, std::string_view text) {
@@ -151,7 +151,7 @@ TEST_P(Output, FoldersAndFilesWithoutPermissionAreErrors) {
   ::chmod(folder_.path().c_str(), 0755);
 }
 
-// Between opening and naming the folder may change under the writer's feet.
+// The folder may change between opening and naming a file.
 TEST_P(Output, APlaceThatIsGoneWhenTheFileIsWhole) {
   fs::create_directory(folder_.path() / "gone");
   OutputFile file(folder_.file("gone/a.txt"), GetParam());
@@ -202,7 +202,7 @@ TEST_P(Output, ReasonsAreNamed) {
   EXPECT_EQ(reason(folder_.file("file/a.txt")), ": cannot write: " + std::generic_category().message(ENOTDIR));
 }
 
-// Hidden names of others who write the same file, or of a process that died, are passed over.
+// Hidden names of other writers of the same file, or of a process that died, are skipped.
 TEST_P(Output, NamesThatAreTakenArePassedOver) {
   const std::string path = folder_.file("a.txt");
   write_text(path, "old");
@@ -223,7 +223,7 @@ TEST_P(Output, LongNamesAreFine) {
 }
 
 TEST_P(Output, AFullDiskLeavesTheOldFile) {
-  // A limit on file sizes stands for the disk.
+  // A limit on file sizes stands for a full disk.
   const std::string path = folder_.file("a.txt");
   write_text(path, "old");
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
@@ -251,7 +251,7 @@ TEST_P(Output, ManyThreadsMayWriteOneFile) {
     });
   for (std::thread& writer : writers) writer.join();
   const std::string text = read_text(path);
-  EXPECT_EQ(text, std::string(5000, text[0]));  // the last one's, whole
+  EXPECT_EQ(text, std::string(5000, text[0]));  // the last writer's text, complete
   EXPECT_EQ(folder_.entry_count(), 1u);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG files taken apart into chunks and put together otherwise: what may not change a pixel, and what is an error.
+// PNG files taken apart into chunks and reassembled otherwise: changes that may not alter a pixel, and changes that are
+// errors.
 #include <zlib.h>
 
 #include "support/scratch_folder.h"
@@ -73,7 +74,7 @@ std::size_t place_of(const std::vector<Chunk>& chunks, const std::string& type) 
   return 0;
 }
 
-/// The text chunk of that keyword.
+/// The text chunk with this keyword.
 Chunk& text_of(std::vector<Chunk>& chunks, const std::string& keyword) {
   for (Chunk& chunk : chunks)
     if (chunk.type == "tEXt" && chunk.data.substr(0, keyword.size() + 1) == keyword + '\0') return chunk;
@@ -97,7 +98,7 @@ TEST(PngChunks, EveryFileEndsWithIendAndHasGoodChecksums) {
   EXPECT_TRUE(png_of(chunks) == read_text(folder.file("a.png"))) << "the checksums are those of zlib";
 }
 
-// The strips that threads compress by themselves make one zlib stream: 78 01, deflate, Adler-32 of all rows.
+// Strips that threads compress separately form one zlib stream: 78 01, deflate, Adler-32 of all rows.
 TEST(PngChunks, StripsMakeOneStream) {
   const Image image = random_floats(1000, 700, {"R", "G", "B"});  // eight strips
   std::string stream;
@@ -128,7 +129,7 @@ TEST(PngChunks, PixelsMayBeCutAnywhere) {
   expect_same_bits(read(pieces), read(chunks));
 }
 
-// glTF says to ignore gamma and profiles; what cannot be read of them, or would be huge, must not matter either.
+// glTF says to ignore gamma and profiles, so unreadable or huge ones must not matter either.
 TEST(PngChunks, NothingButPixelsDecidesAboutColours) {
   const Image image = random_floats(20, 10, {"R", "G", "B"});
   const std::vector<Chunk> chunks = saved(image);
@@ -232,7 +233,7 @@ TEST(PngTexts, AChannelsNameIsKeptForMapsAlone) {
   const Image renamed = read(chunks);
   EXPECT_EQ(renamed.channels[0].name, "part");
   EXPECT_EQ(renamed.channels[0].integers()[1], 7u);
-  // The same text in a colour picture says nothing: it is colours, whatever they are called.
+  // In a colour picture the same text has no effect: the values are colours, whatever the text says.
   std::vector<Chunk> colours = saved(random_floats(2, 2, {"R", "G", "B"}));
   const Image plain = read(colours);
   colours.insert(colours.begin() + 1, {"tEXt", key + '\0' + "Z"});
@@ -266,7 +267,7 @@ TEST(PngSave, WhatDoesNotFitIsSaidInFull) {
   EXPECT_EQ(folder.entry_count(), 0u);
 }
 
-// The greatest depths of a scale are stored as 65535, those of nothing as 0, and those nearer than half a step as 1.
+// The greatest depths of a scale are stored as 65535, missing ones as 0, and depths below half a step as 1.
 TEST(PngSave, TheEndsOfADepthScale) {
   const float infinity = std::numeric_limits<float>::infinity();
   Image image{6, 1, {}};

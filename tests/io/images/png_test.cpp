@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG files, read back by libpng itself: what is promised are the pixels, and what the numbers of maps mean.
+// PNG files, read back by libpng itself. The pixels and the meaning of the numbers in maps are promised.
 #include <png.h>
 
 #include <cmath>
@@ -154,7 +154,7 @@ TEST_F(Png, DepthsByScaleAreWhatTheCallerSays) {
   EXPECT_NE(message.find("65.536"), std::string::npos) << message;
   millimetres.depth_scale = -1;
   EXPECT_EQ(error_of([&] { save(image, file(), millimetres); }), ErrorCode::bad_argument);
-  expect_same_bits(load_image(file()), read);  // what was there is still there
+  expect_same_bits(load_image(file()), read);  // the previous file is still there
 }
 
 TEST_F(Png, DepthsOfNothingAndOfAPlaneAreFine) {
@@ -247,7 +247,7 @@ TEST_F(Png, BitmapsOfOtherSizesOrFormatsAreRefused) {
   EXPECT_EQ(folder_.entry_count(), 0u);
 }
 
-// Alpha just below where it becomes 255: whether a picture is opaque must be what its bytes say.
+// Alpha just below the value that becomes 255: the stored bytes decide whether a picture is opaque.
 TEST_F(Png, TheLastAlphaThatIsNotOpaque) {
   const float last = 254.5f / 255;
   for (const float alpha : {last, std::nextafter(last, 1.0f)}) {
@@ -263,7 +263,7 @@ TEST_F(Png, TheLastAlphaThatIsNotOpaque) {
 }
 
 TEST_F(Png, NoiseThatCannotBeCompressedFits) {
-  // Bytes of pure noise are where compressed strips are largest.
+  // Compressed strips are largest for bytes of pure noise.
   Image image = random_floats(2000, 300, {"R", "G", "B"});
   for (Channel& channel : image.channels)
     for (float& value : channel.floats()) value = linear_of_srgb8(std::uint8_t(value * 256));

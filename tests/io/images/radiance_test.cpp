@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiance pictures: known values, every way of packing rows, and the words for what is broken.
+// Radiance pictures: known values, every way of packing rows, and the error messages for broken ones.
 #include <cmath>
 
 #include "support/radiance_maker.h"
@@ -19,7 +19,7 @@ RadianceRows random_rows(std::size_t width, std::size_t height, unsigned seed) {
     RadiancePixel pixel = {9, 200, 3, 130};
     for (RadiancePixel& place : row) {
       const unsigned what = random() % 40;
-      // Not 1, 1, 1: that is how runs are told.
+      // Not 1, 1, 1, which marks a run.
       if (what < 4) pixel[what] = std::uint8_t(2 + random() % 250);
       if (what == 5) pixel = {2, std::uint8_t(random() | 2), std::uint8_t(random()), std::uint8_t(random())};
       place = pixel;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Headers of NPY and PFM files: what they may say, and the words for what they may not.
+// Headers of NPY and PFM files: valid ones, and the error messages for invalid ones.
 #include <bit>
 #include <cstring>
 
@@ -16,7 +16,7 @@ struct Outcome {
 };
 
 Outcome read(const std::string& bytes) {
-  // Memory of exactly that size, so that AddressSanitizer sees every byte too many.
+  // The memory has exactly that size, so that AddressSanitizer detects every byte read beyond it.
   const auto* first = reinterpret_cast<const std::byte*>(bytes.data());
   const std::vector<std::byte> exact(first, first + bytes.size());
   Outcome outcome;
@@ -41,7 +41,7 @@ std::string raw(std::initializer_list<T> values, bool big_endian = false) {
   return bytes;
 }
 
-/// An NPY header of any version around a dictionary, and what follows it.
+/// An NPY header of any version around a dictionary, followed by `numbers`.
 std::string npy(const std::string& dictionary, const std::string& numbers, int version = 1) {
   std::string bytes = "\x93NUMPY";
   bytes += {char(version), '\0', char(dictionary.size() & 0xFF), char(dictionary.size() >> 8)};
@@ -65,7 +65,7 @@ TEST(NpyHeader, VersionsOneToThree) {
   }
   EXPECT_EQ(image_error(npy(dictionary, numbers, 0)), "unsupported, m: NPY: version 0");
   EXPECT_EQ(image_error(npy(dictionary, numbers, 4)), "unsupported, m: NPY: version 4");
-  // From version 2 on the length has four bytes; the upper two count as well.
+  // From version 2 on the length has four bytes; all four count.
   std::string large = npy(dictionary, numbers, 2);
   large[10] = 1;
   EXPECT_EQ(image_error(large), "malformed, m: NPY: the header is cut short");
@@ -155,7 +155,7 @@ TEST(PfmHeader, WordsEndWithOneBlankEach) {
     ASSERT_EQ(outcome.error, "") << header;
     EXPECT_EQ(outcome.image.channels[0].floats()[0], 0.5f);
   }
-  // A second blank belongs to the numbers, which may begin with any byte.
+  // A second blank is part of the numbers, which may begin with any byte.
   EXPECT_EQ(image_error("Pf\n1 1\n-1.0\n\n" + one),
             "malformed, m: PFM: the header asks for 4 bytes of numbers, but 5 follow");
   const float blanks = read("Pf\n1 1\n-1.0\n    ").image.channels.at(0).floats()[0];
@@ -194,7 +194,7 @@ TEST(PfmHeader, ThreeChannelsLieSideBySide) {
   }
 }
 
-// Both formats are written through blocks of a megabyte; rows must not be lost where one ends.
+// Both formats are written in blocks of a megabyte; rows that cross a block's end must not be lost.
 TEST(RawBlocks, PicturesOfManyBlocksComeBack) {
   const ScratchFolder folder;
   for (const auto& [width, height] : {std::pair(16384, 17), std::pair(700, 1000), std::pair(1, 16384)}) {

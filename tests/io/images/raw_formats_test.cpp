@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// EXR, PFM and NPY keep every bit; PFM and NPY are read here by a few lines of their own.
+// EXR, PFM and NPY keep every bit; the test reads PFM and NPY by its own short code.
 #include <functional>
 #include <sstream>
 
@@ -34,7 +34,7 @@ TEST_F(RawFormats, ExrKeepsAllChannelsToTheBit) {
   }
 }
 
-// Several strips of several chunks, the last of both cut short.
+// Several strips of several chunks; the last strip and the last chunk are short.
 TEST_F(RawFormats, ExrIsTheSameForAnyNumberOfThreads) {
   Image image = random_floats(5, 201, {"R", "G", "B"});
   for (std::size_t i = 0; i < 500; ++i) image.channels[0].floats()[i] = 0;  // chunks that do shrink
@@ -78,7 +78,7 @@ TEST_F(RawFormats, NpyAndPfmKeepEveryBit) {
 }
 
 TEST_F(RawFormats, PfmStartsAtTheBottomLeft) {
-  // Two columns, three rows, numbered as they are read by people.
+  // Two columns, three rows, numbered in reading order.
   const Image image{2, 3, {}};
   Image numbered = image;
   numbered.channels.push_back(float_channel("Z", {0, 1, 2, 3, 4, 5}));

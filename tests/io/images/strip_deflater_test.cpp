@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is compressed here is unpacked by zlib, and checksums are held against zlib's. Where ISA-L compresses, these
-// tests are built a second time with zlib in its place.
+// zlib unpacks the compressed data, and checksums are compared with zlib's. If ISA-L compresses, these tests are built
+// a second time with zlib in its place.
 #include "io/images/png/strip_deflater.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ Bytes random_bytes(std::size_t count, unsigned seed, unsigned different) {
   return bytes;
 }
 
-/// Runs of all lengths, mostly short ones, of few bytes.
+/// Runs of all lengths, mostly short, of few byte values.
 Bytes random_runs(std::size_t count, unsigned seed) {
   std::mt19937 random(test::noted_seed(seed));
   Bytes bytes;
@@ -39,7 +39,7 @@ Bytes random_runs(std::size_t count, unsigned seed) {
   return bytes;
 }
 
-/// What a filter leaves of a smooth picture: small steps up and down.
+/// Bytes as a PNG filter leaves them for a smooth picture: small steps up and down.
 Bytes small_steps(std::size_t count) {
   std::mt19937 random(test::noted_seed(3));
   std::normal_distribution<double> step(0, 3);
@@ -58,7 +58,7 @@ Bytes compressed(const Bytes& raw, bool last) {
   return compressed(deflater, raw, last);
 }
 
-/// What zlib makes of a raw stream of `count` bytes, and whether it comes to the stream's end.
+/// A raw stream of `count` bytes unpacked by zlib, and whether zlib reached the stream's end.
 struct Inflated {
   Bytes bytes;
   bool ends = false;
@@ -107,7 +107,7 @@ TEST(StripDeflater, ZlibUnpacksAnyBytes) {
   }
 }
 
-// Noise is stored, in blocks of 65535 bytes at most; other blocks end where a table of the library is full.
+// Noise is stored in blocks of at most 65535 bytes; other blocks end when a table of the library is full.
 TEST(StripDeflater, BlocksEndAnywhere) {
   for (const std::size_t blocks : {1, 2, 4, 9})
     for (const int more : {-9, -1, 0, 1, 9}) {
@@ -137,7 +137,7 @@ TEST(StripDeflater, PiecesMakeOneStream) {
   EXPECT_TRUE(back.ends);
 }
 
-// Threads take strips as they come, and a file has the same bytes for any number of them.
+// Threads take strips in any order, and a file has the same bytes for any number of threads.
 TEST(StripDeflater, NothingIsRememberedOfOtherPieces) {
   const Bytes pieces[] = {random_runs(50000, 1), random_bytes(60000, 2, 256), Bytes(40000, 0),
                           small_steps(60000),    random_bytes(300, 3, 9),     Bytes(110, 0),
@@ -153,7 +153,8 @@ TEST(StripDeflater, NothingIsRememberedOfOtherPieces) {
 }
 
 #ifndef FRONTMOST_DEFLATES_BY_ZLIB
-// ISA-L gives small pictures other bytes in one process of a hundred, which a test cannot bring about; zlib never does.
+// In one process of a hundred, ISA-L compresses small pictures to other bytes, which a test cannot provoke; zlib never
+// does.
 TEST(StripDeflater, SmallPiecesAreZlibs) {
   for (const Bytes& piece : {random_runs(110, 4), Bytes(2100, 0), random_runs(8191, 7), random_bytes(1, 5, 2)}) {
     z_stream stream{};
@@ -171,7 +172,8 @@ TEST(StripDeflater, SmallPiecesAreZlibs) {
 }
 #endif
 
-// Measured by ISA-L and zlib: 98.8 and 85.8 kB of small steps, 5.7 and 3.3 of runs, 168.0 and 167.9 of a hundred bytes.
+// Measured sizes by ISA-L and zlib: 98.8 and 85.8 kB for small steps, 5.7 and 3.3 kB for runs, 168.0 and 167.9 kB for a
+// hundred byte values.
 TEST(StripDeflater, WhatComesOutIsSmall) {
   const auto size = [](const Bytes& raw) { return compressed(raw, true).size(); };
   EXPECT_LT(size(small_steps(200000)), 110000u);
@@ -195,10 +197,10 @@ TEST(Checksums, AreZlibs) {
 }
 
 #if defined(__x86_64__)
-/// Which parts of the registers the processor knows to be in use; bit 2 is the upper halves of vectors.
+/// Parts of the registers that the processor tracks as in use; bit 2 stands for the upper halves of vectors.
 [[gnu::target("xsave")]] std::uint64_t used_register_parts() { return _xgetbv(1); }
 
-// As long as they are in use, all that is compiled for SSE is slow on this thread.
+// While the upper halves are in use, code compiled for SSE is slow on this thread.
 TEST(StripDeflater, UpperHalvesOfVectorRegistersAreLeftFree) {
   unsigned a = 0, b = 0, c = 0, d = 0;
   if (!__builtin_cpu_supports("avx") || !__get_cpuid_count(0xD, 1, &a, &b, &c, &d) || !(a & 4))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures as terminal text.
+// Pictures as text in a terminal.
 #include <algorithm>
 
 #include "support/test_images.h"
@@ -46,7 +46,7 @@ TEST(Terminal, ProportionsAreKept) {
 }
 
 TEST(Terminal, MeansAreTakenInLinearLight) {
-  // Black and white in equal parts are sRGB 188, however they lie, with pixels cut at odd places too.
+  // Equal parts of black and white give sRGB 188, however they are arranged, also if cells cut pixels.
   for (const int size : {2, 6, 50}) {
     std::vector<float> checks(std::size_t(size * size));
     for (int i = 0; i < size * size; ++i) checks[std::size_t(i)] = float((i % size + i / size) % 2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formats that are not read: the message names the program that converts them, ready to be pasted into a shell.
+// Formats that are not read: the message names a converter, ready to paste into a shell.
 #include <unistd.h>
 
 #include <fstream>
@@ -65,13 +65,13 @@ TEST(Converters, ExtensionsOfGltfNameTheCommand) {
   EXPECT_THAT(by_extensions({"EXT_meshopt_compression"}, "standard input"),
               HasSubstr("copy model.glb model-plain.glb"));
   EXPECT_THAT(by_extensions({"EXT_texture_webp"}, "a.gltf"), HasSubstr("png --formats webp a.gltf a-plain.glb"));
-  // The one for images decodes meshes as well.
+  // The converter for images decodes meshes as well.
   EXPECT_THAT(by_extensions({"KHR_draco_mesh_compression", "KHR_texture_basisu"}, "a.glb"),
               HasSubstr("ktxdecompress a.glb a-plain.glb"));
   EXPECT_EQ(by_extensions({"EXT_other"}, "a.glb"), "none");
 }
 
-// Whatever its contents, unless the format was said: a zip archive is also 3MF's.
+// The suffix decides, whatever the contents, unless a format is given: a zip archive may also be 3MF.
 TEST(Converters, LoadSaysSoBeforeItReads) {
   const std::string path = std::filesystem::temp_directory_path() / ("toy" + std::to_string(getpid()) + ".usdz");
   std::ofstream(path) << "PK\x03\x04 and OFF 0 0 0";

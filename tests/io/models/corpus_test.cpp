@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The promise of the fuzz targets, without a fuzzer: every seed and every input that once broke a reader, every
-// prefix of it, and thousands of mutations end in a scene or in an Error.
+// The promise of the fuzz targets, checked without a fuzzer. Every input of the corpus, every prefix of it, and
+// thousands of mutations end in a scene or in an Error.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ std::vector<Seed> seeds() {
       std::ifstream in(entry.path(), std::ios::binary);
       all.push_back({format, entry.path().string(), {std::istreambuf_iterator<char>(in), {}}});
     }
-  // Folders come in any order; mutations follow it.
+  // Folders are listed in any order, and mutations depend on the order.
   std::sort(all.begin(), all.end(), [](const Seed& a, const Seed& b) { return a.name < b.name; });
   return all;
 }
@@ -49,7 +49,7 @@ TEST(Corpus, SeedsAreReadOrRefused) {
   const auto all = seeds();
   for (const Seed& seed : all) good += read(seed.format, seed.bytes);
   EXPECT_GE(all.size(), 20u);
-  EXPECT_GE(good, all.size() / 3);  // most seeds get through a reader, not only to its first check
+  EXPECT_GE(good, all.size() / 3);  // most seeds get through a reader, and not only to its first check
 }
 
 TEST(Corpus, EveryPrefixIsReadOrRefused) {
@@ -60,7 +60,7 @@ TEST(Corpus, EveryPrefixIsReadOrRefused) {
   }
 }
 
-// A binary file that ends early must say so; only its last byte may be missed by nobody.
+// A truncated binary file must be an error; only its last byte may be missing unnoticed.
 TEST(Corpus, TruncatedBinariesAreRefused) {
   for (const Seed& seed : seeds()) {
     const bool is_binary =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compressed glTF: the same models by Draco's two methods and by meshoptimizer, what their data may get wrong, and what
-// a build without the decoders says.
+// Compressed glTF: the same models by Draco's two methods and by meshoptimizer, errors in their data, and the message
+// of a build without the decoders.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::json;
 using testing::HasSubstr;
 
-/// A GLB of the corpus, taken apart so that a test may change it.
+/// A GLB of the corpus, split into parts that a test may change.
 struct Parts {
   Json text;
   std::vector<std::byte> binary;
@@ -75,7 +75,7 @@ TEST_P(CompressedBox, IsABoxOfOneByTwoByThree) {
 }
 INSTANTIATE_TEST_SUITE_P(Files, CompressedBox, testing::Values("draco.glb", "meshopt.glb"));
 
-// A torus about z, radii 2 and 0.7, 4 by 3 quads: its normals, texture coordinates and colours follow from its points.
+// A torus about z, radii 2 and 0.7, 4 by 3 quads: normals, texture coordinates and colours follow from the positions.
 TEST_P(CompressedTorus, HasItsAttributes) {
   const Scene scene = Parts(GetParam()).read();
   const Mesh& mesh = scene.meshes[0];
@@ -152,7 +152,7 @@ TEST_F(GltfDraco, WrongNumbersNameTheirPlace) {
 }
 
 TEST_F(GltfDraco, OtherBytesAreNamed) {
-  box.binary[6] = std::byte{1};  // DRACO, major and minor version, type, method, flags
+  box.binary[6] = std::byte{1};  // the header: DRACO, major and minor version, type, method, flags
   EXPECT_EQ(box.error(), std::string(draco_place) + ": version 2.1 of Draco's format is not supported, only 2.2");
   box.binary[0] = std::byte{'X'};
   EXPECT_EQ(box.error(), std::string(draco_place) + ": the buffer view holds no Draco data");
@@ -212,7 +212,7 @@ TEST_F(GltfMeshopt, TheNameOfKhronosIsReadToo) {
   }
   box.text["extensionsRequired"][0] = box.text["extensionsUsed"][0] = "KHR_meshopt_compression";
   EXPECT_EQ(triangle_count(box.read()), 12u);
-  // Version 1 of the vertex format, which that extension allows.
+  // Version 1 of the vertex format, which the extension allows.
   box.binary[32] = std::byte{0xA1};
   EXPECT_EQ(
       box.error(),

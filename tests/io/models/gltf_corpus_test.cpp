@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fuzz targets' seeds, with the outcome that each stands for.
+// Seeds of the fuzz targets, with the expected outcome of each.
 #include <gmock/gmock.h>
 
 #include <filesystem>

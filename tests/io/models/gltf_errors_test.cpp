@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a glTF file may get wrong, one mistake at a time, and the words for each: file, place, reason.
+// Errors of glTF files, one at a time, and the message for each: file, place, reason.
 #include <gmock/gmock.h>
 
 #include "frontmost/files.h"
@@ -11,7 +11,7 @@ namespace {
 using test::GltfMaker;
 using test::Type;
 
-/// "code: place: reason" of the error that reading ends in; "read" if there is none.
+/// "code: place: reason" of the error that loading ends in; "read" if there is none.
 std::string outcome(const std::vector<std::byte>& bytes) {
   LoadOptions options;
   options.format = ModelFormat::gltf;
@@ -155,7 +155,7 @@ TEST(GltfData, BuffersWithoutContents) {
             "malformed: buffers[0]: the GLB has no BIN chunk");
   EXPECT_EQ(outcome_of_json(R"(,"buffers":[{"byteLength":9,"uri":"data:,12345678"}])"),
             "malformed: buffers[0]: byteLength is 9, but there are only 8 bytes");
-  // A file of JSON alone may leave a buffer to an extension. That is an error for those alone who read it.
+  // A file of JSON alone may leave a buffer to an extension; reading the buffer is an error.
   const std::string open =
       R"(,"buffers":[{"byteLength":36}],"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,
          "count":3,"type":"VEC3","componentType":5126}])";
@@ -186,8 +186,8 @@ TEST(GltfData, ViewsLieWithinTheirBuffer) {
       << "the sum would be 1";
 }
 
-// Columns of matrices start at multiples of four bytes, and nothing need follow the last one: three columns of three
-// bytes take 11 bytes, two of two take 6.
+// Columns of matrices start at multiples of four bytes, and no padding need follow the last column: three columns of
+// three bytes take 11 bytes, two of two take 6.
 TEST(GltfData, ColumnsOfMatricesArePadded) {
   const auto matrix = [](const char* shape, int component, int bytes) {
     GltfMaker maker;
@@ -234,7 +234,7 @@ TEST(GltfData, AccessorsOfUnknownTypesAreErrorsOnceTheyAreRead) {
   }
 }
 
-/// Two positions, of which `count` are replaced; views 0 and 1 hold `indices` bytes and `values` bytes.
+/// Two positions, `count` of them replaced; views 0 and 1 hold `indices` bytes and `values` bytes.
 std::string sparse_outcome(int count, int component, std::size_t indices, std::size_t values) {
   GltfMaker maker;
   std::vector<std::byte> bytes(96);
@@ -279,7 +279,7 @@ TEST(GltfData, SparseElementsReplaceThoseOfAView) {
                          "values":{"bufferView":2}})");
   maker.shorts({1, 2, 3});
   maker.show(R"({"attributes":{"POSITION":0},"indices":1})");
-  // Vertex 0 is not in use, so that what is read begins in the middle of the accessor.
+  // Vertex 0 is not in use, so the data to read begins in the middle of the accessor.
   EXPECT_THAT(load(maker.glb(), "t.glb").meshes[0].positions,
               testing::ElementsAre(glm::vec3(2), glm::vec3(7, 8, 9), glm::vec3(4)));
 }
@@ -295,7 +295,7 @@ TEST(GltfData, DataUrisKnowBothAlphabets) {
   // 255 239 190 is "/+++" or "_---": the digits 63 and 62 of base64 (RFC 4648, sections 4 and 5).
   EXPECT_EQ(first_position("data:;base64,/+++AAAAAAAAAAAA"), glm::vec3(255, 239, 190));
   EXPECT_EQ(first_position("data:;base64,_---AAAAAAAAAAAA"), glm::vec3(255, 239, 190));
-  // A percent sign that begins no escape stands for itself, also at the end.
+  // A percent sign that begins no escape stands for itself, even at the end.
   EXPECT_EQ(first_position("data:,%41%4a%4A567890123"), glm::vec3('A', 'J', 'J'));
   EXPECT_EQ(first_position("data:,%zz4567890%1"), glm::vec3('%', 'z', 'z'));
 }
@@ -419,7 +419,7 @@ std::string copies_outcome(const std::vector<std::pair<const char*, Type>>& attr
   GltfMaker maker;
   maker.floats({0, 0, 0, 1, 0, 0, 0, 1, 0});
   maker.add("meshes", R"({"primitives":[{"attributes":{"POSITION":0}}]})");
-  // The view has bytes, few of them: an accessor of no elements lies in it, and has nothing to read behind it.
+  // The view has a few bytes. An accessor without elements lies in it, and reads nothing behind it.
   const int view = maker.view(std::vector<float>(8).data(), 32);
   std::string names;
   for (std::size_t i = 0; i < attributes.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layers of glTF's materials, and sets of texture coordinates.
+// Layers of glTF materials, and sets of texture coordinates.
 #include <gmock/gmock.h>
 
 #include "io/image_bytes.h"
@@ -16,8 +16,8 @@ using testing::SizeIs;
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-/// A triangle with as many sets of texture coordinates, of which set k begins at (k, k), with an image, which textures
-/// 0 to 2 show, and textures 3 and 4 that show nothing.
+/// A triangle with `sets` sets of texture coordinates, where set k begins at (k, k). Textures 0 to 2 show an image,
+/// textures 3 and 4 nothing.
 GltfMaker layered_maker(int sets) {
   GltfMaker maker;
   maker.floats({0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -42,7 +42,7 @@ Scene with_material(GltfMaker maker, const std::string& json) {
   maker.add("materials", json);
   return load_glb(maker);
 }
-/// The material of extensions that say this.
+/// A scene whose material has these extensions.
 Scene with_layers(const std::string& extensions) {
   return with_material(layered_maker(1), R"({"name":"m","extensions":{)" + extensions + "}}");
 }
@@ -93,7 +93,7 @@ TEST(GltfTexcoords, ASetThatIsNotThereIsTold) {
   EXPECT_EQ(scene.meshes.at(0).texcoord_set(1), nullptr);
 }
 
-// Primitives of one mesh may use different sets; what one of them lacks is 0, and morph targets move every set.
+// Primitives of one mesh may use different sets. Missing coordinates are 0, and morph targets move every set.
 TEST(GltfTexcoords, PrimitivesShareTheSetsOfTheirMesh) {
   GltfMaker maker = layered_maker(2);
   const int moved = maker.floats({10, 10, 10, 10, 10, 10}, "VEC2");
@@ -208,7 +208,8 @@ TEST(GltfLayers, NumbersOfTheMaterialItselfAreToldAndLimited) {
       Contains("t.glb: materials[0] (m): occlusionTexture.strength is out of range, the nearest in range counts"));
 }
 
-// A factor is the most that its texture allows: without it a model with one window would be glass altogether.
+// A factor is the maximum that its texture scales down: without the texture, a model with one window would be all
+// glass.
 TEST(GltfLayers, ALayerIsNotThereWithoutItsTexture) {
   for (const int texture : {3, 4}) {
     const std::string use = R"({"index":)" + std::to_string(texture) + "}";
@@ -228,14 +229,14 @@ TEST(GltfLayers, ALayerIsNotThereWithoutItsTexture) {
     EXPECT_FALSE(m.is_see_through());
     EXPECT_THAT(scene.warnings, Contains("t.glb: materials[0] (m): has no transmission without its texture"));
   }
-  // Bumps are only missed.
+  // A missing bump texture only loses the bumps.
   const Scene scene =
       with_layers(R"("KHR_materials_clearcoat":{"clearcoatFactor":1,"clearcoatNormalTexture":{"index":3}})");
   EXPECT_EQ(scene.materials.at(0).clearcoat.factor, 1.0f);
   EXPECT_FALSE(scene.materials[0].clearcoat.normal_texture.is_set());
 }
 
-// Its colour was all that the mirror had, and white it would hide the base.
+// The texture gave the mirror its colour; without it a white mirror would hide the base.
 TEST(GltfLayers, SpecularAndGlossinessWithoutItsTextureIsNoMirror) {
   const Scene scene = with_layers(R"("KHR_materials_pbrSpecularGlossiness":{"glossinessFactor":0.75,
       "specularGlossinessTexture":{"index":3}})");
@@ -246,7 +247,7 @@ TEST(GltfLayers, SpecularAndGlossinessWithoutItsTextureIsNoMirror) {
   EXPECT_THAT(scene.warnings, Contains("t.glb: materials[0] (m): has no specular layer without its texture"));
 }
 
-// As Khronos' own tools convert it: a mirror of the specular colour over a matt base.
+// Converted as by Khronos' own tools: a mirror of the specular colour over a matt base.
 TEST(GltfLayers, SpecularAndGlossinessAreAMirrorOverAMattBase) {
   const Scene scene = with_material(layered_maker(1), R"({"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1],
       "metallicRoughnessTexture":{"index":0}},"extensions":{"KHR_materials_pbrSpecularGlossiness":{

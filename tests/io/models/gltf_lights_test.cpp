@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// KHR_lights_punctual: what its lights are by default, where nodes put them, and what becomes of those that are wrong.
+// KHR_lights_punctual: defaults of lights, their poses by nodes, and the handling of invalid ones.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using testing::IsEmpty;
 
 constexpr double quarter_turn = 0.5 * std::numbers::pi;
 
-/// A file of a triangle and these lights, and a node for each light that begins with the same members.
+/// Loads a file of a triangle, these lights, and a node for each light that begins with the members in `node`.
 Scene load_lights(const std::vector<std::string>& lights, const std::string& node = "") {
   GltfMaker maker;
   std::string list;

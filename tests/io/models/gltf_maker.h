@@ -13,14 +13,14 @@
 
 namespace frontmost::test {
 
-/// What an accessor's numbers are.
+/// Type of an accessor's elements: shape and component type.
 struct Type {
   const char* shape = "VEC3";
   int component = 5126;
   std::string more = {};  ///< further members, as JSON
 };
 
-/// A file whose arrays are filled with JSON texts, and whose numbers lie in one buffer.
+/// A file whose arrays are filled with JSON texts and whose numbers lie in one buffer.
 class GltfMaker {
  public:
   /// Adds an element to a top-level array. \returns its index.
@@ -28,7 +28,7 @@ class GltfMaker {
     arrays_[array].push_back(json);
     return int(arrays_[array].size()) - 1;
   }
-  /// Sets another top-level member.
+  /// Sets a top-level member.
   void set(const std::string& member, const std::string& json) { members_[member] = json; }
 
   /// Adds bytes to the buffer. \returns the index of their buffer view.
@@ -54,7 +54,7 @@ class GltfMaker {
     return accessor(values, {shape, 5126, ""}, values.size() / std::size_t(width));
   }
   int shorts(const std::vector<std::uint16_t>& values) { return accessor(values, {"SCALAR", 5123, ""}, values.size()); }
-  /// A mesh of one primitive, and a scene of one node that shows it.
+  /// Adds a mesh of one primitive, and a scene of one node that shows it.
   void show(const std::string& primitive) {
     add("meshes", R"({"primitives":[)" + primitive + "]}");
     add("nodes", R"({"mesh":0})");

@@ -81,7 +81,7 @@ TEST(GltfMaterials, DefaultsAreThoseOfTheFormat) {
   EXPECT_FALSE(m.base_color_texture.is_set());
 }
 
-/// What a material with all textures but the one that chooses the coordinates is left with, and the warnings.
+/// Checks a material that lost all textures but its base colour texture, and the warnings.
 void expect_no_glow_and_no_metal(const Scene& scene, const std::string& who) {
   const Material& m = scene.materials.at(0);
   for (const TextureUse* use :
@@ -95,7 +95,8 @@ void expect_no_glow_and_no_metal(const Scene& scene, const std::string& who) {
               testing::Contains("t.glb: " + who + ": is no metal without its metallic-roughness texture"));
 }
 
-// An emissive factor is nearly always white and its texture nearly always black: without it nothing else is seen.
+// An emissive factor is usually white and its texture mostly black: without the texture the glow would outshine all
+// else.
 TEST(GltfMaterials, WhatATextureLimitsIsNotThereWithoutIt) {
   const auto members = [](const std::string& use) {
     return R"("metallicFactor":1,"roughnessFactor":0.75,"metallicRoughnessTexture":)" + use + R"(},"normalTexture":)" +
@@ -107,7 +108,7 @@ TEST(GltfMaterials, WhatATextureLimitsIsNotThereWithoutIt) {
   expect_no_glow_and_no_metal(load_glb(other_set), "materials[0] (lamp)");
   EXPECT_TRUE(load_glb(other_set).materials[0].base_color_texture.is_set());
 
-  // An image that cannot be decoded, which is found out last of all, and a texture without any.
+  // One image cannot be decoded, which is found last of all; one texture has no image.
   for (const char* texture : {R"({"source":1})", "{}"}) {
     GltfMaker broken = textured_maker();
     broken.add("images", R"({"uri":"nowhere.png"})");
@@ -136,11 +137,11 @@ TEST(GltfMaterials, ImagesAreSharedUnlessSamplersDiffer) {
   EXPECT_THAT(scene.textures[scene.materials[0].base_color_texture.texture].pixels, SizeIs(1));
 }
 
-// Two images in one place are one, whose pixels count once for each sampler that they are used with.
+// Two identical images at one place are one; its pixels count once for each sampler that uses them.
 TEST(GltfMaterials, ImagesThatGrowTooMuchAreLeftOut) {
   for (const int sampler_count : {1, 2}) {
     GltfMaker maker;
-    // Half of what is free of charge, in some thousand bytes.
+    // The image takes half of the free allowance of pixels, in a few thousand bytes.
     const test::PngFlavour flavour{.width = 8192, .height = 6144, .color_type = 0, .bits = 1};
     const std::vector<std::byte> png = test::encode_png(flavour, std::vector<std::uint8_t>(1024 * 6144));
     ASSERT_LT(png.size(), 10'000u);
@@ -183,7 +184,7 @@ TEST(GltfMaterials, ImagesThatCannotBeReadAreWarnings) {
   maker.add("textures", R"({"source":2})");
   maker.add("textures", R"({"source":3})");
   maker.add("textures", R"({"extensions":{"KHR_texture_basisu":{"source":0}}})");
-  // The good image is the last that is used, so that its number changes.
+  // The good image is used last, so that its number changes.
   for (const int i : {1, 2, 3, 4, 0})
     maker.add("materials", R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":)" + std::to_string(i) + "}}}");
   const Scene scene = load_glb(maker);
@@ -232,7 +233,7 @@ TEST(GltfMaterials, WrongReferencesAreErrors) {
   }
 }
 
-/// Bytes "SIZE width height": grey, so wide and high.
+/// Decodes bytes "SIZE width height" as a grey image of that size.
 class GreyDecoder : public ImageDecoder {
  public:
   [[nodiscard]] glm::ivec2 size(std::span<const std::byte> file) const override {
@@ -248,7 +249,7 @@ class GreyDecoder : public ImageDecoder {
   int scale = 1;
 };
 
-/// Three bytes, which no decoder of the library's knows, as the texture of a triangle.
+/// Loads a triangle whose texture is in an encoding that the library does not know.
 Scene load_by(const ImageDecoder* decoder, std::vector<std::byte> image) {
   GltfMaker maker;
   maker.floats({0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -271,7 +272,7 @@ TEST(GltfMaterials, ImagesAreDecodedByTheCaller) {
   EXPECT_EQ(scene.textures[0].width, 3);
   EXPECT_EQ(scene.textures[0].height, 2);
   EXPECT_EQ(scene.textures[0].pixels.at(5), glm::u8vec4(7, 7, 7, 255));
-  // The library itself does not know such bytes.
+  // The library itself does not know this encoding.
   EXPECT_THAT(load_by(nullptr, image).warnings, testing::ElementsAre(HasSubstr("neither PNG nor JPEG nor WebP")));
 }
 

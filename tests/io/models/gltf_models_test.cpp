@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF files that others made: what their makers say is in them must be found, and what the official validator calls
-// broken must be refused or is known to be harmless.
+// glTF files of others: the reader must find the content that their makers state. Files that the official validator
+// rejects must be refused, or be known as harmless.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// A row of the models' README: counted by others, with other programs.
+/// A row of the models' README, counted by others with other programs.
 struct KnownGltf {
   const char* file;
   std::uint64_t triangles;
@@ -140,7 +140,7 @@ TEST(GltfModels, AssetGeneratorSetsDrawTheUnitSquare) {
          fs::directory_iterator(test::model(std::string("reference/gltf-asset-generator/") + set))) {
       if (entry.path().extension() != ".gltf") continue;
       const Scene scene = load(entry.path().string());
-      if (triangle_count(scene) == 0) {  // points and lines
+      if (triangle_count(scene) == 0) {  // a model of points and lines
         EXPECT_FALSE(scene.warnings.empty()) << entry.path();
         continue;
       }
@@ -163,8 +163,8 @@ TEST(GltfModels, AssetGeneratorSetsDrawTheUnitSquare) {
   EXPECT_EQ(drawn, 5u + 7u + 8u + 1u);
 }
 
-/// Errors of the validator that do not keep a file from being read rightly: rules for the sake of GPUs, members that
-/// are of no use, and names that are passed over.
+/// Validator errors that do not prevent correct reading: rules for the sake of GPUs, members without effect, and names
+/// that are skipped.
 const std::set<std::string> harmless = {
     "ACCESSOR_MATRIX_ALIGNMENT",
     "ACCESSOR_NORMALIZED_INVALID",
@@ -191,13 +191,13 @@ const std::set<std::string> harmless = {
     "UNSATISFIED_DEPENDENCY",
     "VALUE_MULTIPLE_OF",
 };
-/// The same for whole files, where the code alone says too little.
+/// Files that are harmless although their error code alone does not show it.
 const std::set<std::string> harmless_files = {
     "bom.glb", "bom.gltf",    // a byte order mark before the JSON
     "invalid_uri_data.gltf",  // ";;base64", a stray semicolon
-    "zero_bytelength.gltf",   // buffers and views of nothing
+    "zero_bytelength.gltf",   // empty buffers and views
 };
-/// Valid, but not for us: network addresses are never followed.
+/// Valid files that are refused, as network addresses are never followed.
 const std::set<std::string> refused_though_valid = {"non_relative_uri.gltf"};
 
 bool only_harmless(const fs::path& file, const nlohmann::json& report) {
@@ -209,7 +209,7 @@ bool only_harmless(const fs::path& file, const nlohmann::json& report) {
 
 std::size_t error_count(const nlohmann::json& report) { return report["issues"]["numErrors"]; }
 
-// Nothing that the official report finds no error in is refused, but for network addresses and meshes without bytes.
+// No file without errors in the official report is refused, except for network addresses and meshes without bytes.
 TEST(GltfModels, WhatTheValidatorPassesIsRead) {
   FRONTMOST_NEEDS_MODELS();
   std::size_t passed = 0, read = 0, elsewhere = 0;
@@ -248,7 +248,7 @@ TEST(GltfModels, TheValidatorsVerdictIsOurs) {
       EXPECT_TRUE(expected) << file << " was accepted: " << report["issues"]["messages"];
       ++accepted;
     } catch (const Error& error) {
-      // The validator also judges files whose meshes have their bytes nowhere.
+      // The validator also accepts files whose meshes have no bytes anywhere.
       const bool has_contents = std::string(error.what()).find("has no contents") == std::string::npos;
       EXPECT_FALSE(expected && has_contents) << error.what();
       ++refused;

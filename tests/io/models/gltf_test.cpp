@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF by parts: small files made here, with answers known beforehand.
+// glTF piece by piece: small generated files with known answers.
 #include <gmock/gmock.h>
 
 #include "frontmost/files.h"
@@ -31,7 +31,7 @@ std::string error_of(const GltfMaker& maker, ErrorCode code = ErrorCode::file_ma
   return error_of(maker.glb(), code);
 }
 
-/// Five points on a line of x, enough for every kind of primitive.
+/// Five points on a line along x, enough for every kind of primitive.
 GltfMaker points_maker() {
   GltfMaker maker;
   maker.floats({0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0, 4, 0, 0});
@@ -40,7 +40,7 @@ GltfMaker points_maker() {
 
 TEST(Gltf, StripsAndFansKeepTheirWinding) {
   for (const auto& [mode, triangles] :
-       {std::pair(4, std::vector<glm::uvec3>{{2, 1, 0}}),  // of vertices 2 to 4, the others are not in use
+       {std::pair(4, std::vector<glm::uvec3>{{2, 1, 0}}),  // vertices 2 to 4; the others are not in use
 
         std::pair(5, std::vector<glm::uvec3>{{4, 3, 2}, {3, 1, 2}, {2, 1, 0}}),
         std::pair(6, std::vector<glm::uvec3>{{3, 2, 4}, {2, 1, 4}, {1, 0, 4}})}) {
@@ -79,7 +79,7 @@ TEST(Gltf, PrimitivesBecomeOneMeshInOrder) {
   maker.add("materials", R"({"name":"red"})");
   maker.show(indexed + std::string(R"(,{"attributes":{"POSITION":3,"NORMAL":2},"indices":4,"material":0},)") + indexed);
   const Mesh mesh = load_glb(maker).meshes[0];
-  // The first and the last share their vertices, of which only 2 to 4 are used.
+  // The first and the last primitive share their vertices; only 2 to 4 are used.
   EXPECT_THAT(mesh.positions,
               ElementsAre(glm::vec3(2, 0, 0), glm::vec3(3, 0, 0), glm::vec3(4, 0, 0), glm::vec3(9), glm::vec3(8)));
   EXPECT_THAT(mesh.triangles, ElementsAre(glm::uvec3(0, 1, 2), glm::uvec3(3, 4, 3), glm::uvec3(0, 1, 2)));
@@ -139,11 +139,11 @@ TEST(Gltf, SparseAccessorsReplaceElements) {
   maker.bare_accessor({"VEC3", 5126, ""}, 6, sparse);
   maker.shorts({3, 4, 5});
   maker.show(indexed);
-  // Without a buffer view all others are zero. Only vertices 3 to 5 are in use.
+  // Without a buffer view all other elements are zero. Only vertices 3 to 5 are in use.
   EXPECT_THAT(load_glb(maker).meshes[0].positions, ElementsAre(glm::vec3(0), glm::vec3(6), glm::vec3(0)));
 }
 
-/// MAT2 of bytes, MAT3 of bytes and MAT3 of shorts have padding between their columns, and none behind the last one.
+/// MAT2 of bytes, MAT3 of bytes and MAT3 of shorts have padding between columns, and none after the last one.
 TEST(Gltf, MatricesArePaddedByColumn) {
   const struct {
     Type type;
@@ -366,14 +366,14 @@ TEST(Gltf, SkinsArePosedByTheirJoints) {
   ASSERT_EQ(scene.instances.size(), 1u);
   EXPECT_EQ(scene.instances[0].world_from_mesh, glm::dmat4(1.0)) << "the node of a skinned mesh does not move it";
   const Mesh& mesh = scene.meshes[0];
-  // Joint 0 lifts by one. Joint 1 turns z -5 about x to z 5, moves by (0, 4, 5). The last vertex is half of each,
-  // although its weights sum to a half only.
+  // Joint 0 lifts by one. Joint 1 turns z -5 about x to z 5, and moves by (0, 4, 5). The last vertex takes half of
+  // each, although its weights only sum to a half.
   EXPECT_THAT(mesh.positions, ElementsAre(glm::vec3(0, 0, 1), glm::vec3(1, 4, 10), glm::vec3(0, 2, 5.5f)));
   EXPECT_EQ(mesh.normals.values[0], glm::vec3(0, 0, 1));
   EXPECT_EQ(mesh.normals.values[1], glm::vec3(0, 0, -1));
 }
 
-/// Two primitives, the first with joints, below a node that moves them; vertices in the coordinates of the file.
+/// Two primitives, the first with joints, below a node that moves them; returns vertices in the file's coordinates.
 std::vector<glm::dvec3> skinned_vertices(const std::string& translation) {
   GltfMaker maker;
   maker.floats({0, 0, 0, 1, 0.3f, 0, 0, 1, 0.7f});
@@ -405,7 +405,7 @@ TEST(Gltf, SkinnedMeshesFarFromZeroKeepTheirShape) {
     ASSERT_EQ(far.size(), 6u);
     for (std::size_t i = 0; i < 3; ++i)
       EXPECT_LT(glm::length(far[i] - move - home[i]), 4e-6) << text << ", vertex " << i;
-    // Without joints they stay where the file has them, as far as floats can tell that from where the others are.
+    // Vertices without joints stay at their place in the file, as exactly as floats far away allow.
     for (std::size_t i = 3; i < 6; ++i) EXPECT_LT(glm::length(far[i] - home[i]), 8) << text << ", vertex " << i;
   }
 }
@@ -508,7 +508,7 @@ TEST(Gltf, OtherVersionsAreNamed) {
 }
 
 TEST(Gltf, DataUrisHoldBuffers) {
-  // Three corners (0 0 0, 1 0 0, 0 1 0) as bytes, in base64 and with percent escapes.
+  // Three vertices (0 0 0, 1 0 0, 0 1 0) as bytes, in base64 and with percent escapes.
   for (const char* uri :
        {"data:application/octet-stream;base64,AAAAAAABAAAAAAEA", "data:,%00%00%00%00%01%00%00%00%00%01%00%00"}) {
     const std::string text =
@@ -579,7 +579,7 @@ TEST(Gltf, MutationsEndInASceneOrAnError) {
   for (int round = 0; round < 3000; ++round) {
     std::vector<std::byte> bytes = seed;
     for (int change = 0; change <= round % 3; ++change) {
-      const bool plausible = next() % 4 != 0;  // most mutations would only break the JSON
+      const bool plausible = next() % 4 != 0;  // otherwise most mutations would only break the JSON
       bytes[next() % bytes.size()] = plausible ? std::byte(digits[next() % digits.size()]) : std::byte(next());
     }
     try {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small files that would cost much: every one must be refused or read at a cost in proportion to its size. Each of
-// these took gigabytes, or minutes, once; with those costs back, this test does not end.
+// Small files that could cost much. Each must be refused, or be read at a cost in proportion to its size; read naively,
+// each takes gigabytes or minutes, so that this test would not end.
 #include "io/input_file.h"
 #include "io/models/model_source.h"
 #include "model_bytes.h"
@@ -21,7 +21,7 @@ std::string repeated(const std::string& text, int count) {
 /// `count` JSON values in an array.
 std::string array_of(const std::string& json, int count) { return "[" + json + repeated("," + json, count - 1) + "]"; }
 
-/// A glTF file whose accessor 0 is three points at the origin, with more accessors and other members.
+/// A glTF file with these members and accessors; its accessor 0 is three points at the origin.
 std::string gltf(const std::string& members, const std::string& more_accessors = {}) {
   return R"({"asset":{"version":"2.0"},"accessors":[{"count":3,"componentType":5126,"type":"VEC3"})" + more_accessors +
          "]," + members + "}";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// load() itself: where bytes come from, and which format they are in.
+// load() itself: the sources of bytes, and the detection of formats.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -50,7 +50,7 @@ TEST(Load, KnowsFormatsByContent) {
   }
 }
 
-// Editors of Windows write one before every text.
+// Editors on Windows write a byte order mark before every text.
 TEST(Load, AByteOrderMarkIsPassedOver) {
   const std::string mark = "\xEF\xBB\xBF";
   test::ByteWriter binary_ply;
@@ -116,7 +116,7 @@ TEST(Load, BuiltinScenes) {
 TEST(Load, PipesAreStreams) {
   const std::string path = temporary("pipe.stl");
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
-  // More than the pipe and the first block hold.
+  // The text is longer than the pipe and the first block.
   std::string text = "solid\n";
   const std::size_t count = 3000;
   for (std::size_t i = 0; i < count; ++i) text += one_stl.substr(6, one_stl.size() - 15);
@@ -140,7 +140,7 @@ TEST(Load, StandardInput) {
   EXPECT_EQ(scene.name, "stdin");
 }
 
-// Mapped files give their pages back on the way; what is read must not change by that.
+// Mapped files release their pages during reading, which must not change the result.
 TEST(Load, LargeFilesEqualMemory) {
   std::string text = "v 0 0 0\nv 1 0 0\n";
   for (int i = 0; i < 200'000; ++i) text += "v " + std::to_string(i) + " 1 0\nf 1 2 -1\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models written by hand into memory, and their loading.
+// Models written into memory by hand, and functions that load them.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ inline Scene load_text(const std::string& text, std::optional<ModelFormat> forma
   return load(bytes_of(text), "model", {.format = format, .up = {}});
 }
 
-/// The words of the error that loading ends in; "read" if there is none. Each error names its file and its reason.
+/// Message of the error that loading ends in; "read" if there is none. Each error names its file and its reason.
 inline std::string error_of(const std::string& text, std::optional<ModelFormat> format) {
   try {
     (void)load_text(text, format);

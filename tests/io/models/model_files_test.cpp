@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every STL, PLY, OBJ and OFF file of the model collection has its known outcome.
+// Every STL, PLY, OBJ and OFF file of the model collection gives its known outcome.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,8 +18,8 @@ struct Known {
   std::size_t objects;
 };
 
-// The table of the collection, measured there with another program. Objects that share vertices of an OBJ file get
-// their own (pandora, spider, regr), and there are 66 = sum of (corners - 2) triangles in wallhole.
+// The collection's table, measured with another program. Objects that share vertices of an OBJ file get vertices of
+// their own (pandora, spider, regr). wallhole has 66 = sum of (corners - 2) triangles.
 constexpr Known known_files[] = {
     {"organic/stanford-bunny.obj", 69451, 35947, 1},
     {"organic/stanford-bunny-ascii.ply", 69451, 35947, 1},
@@ -130,7 +130,7 @@ TEST(ModelFiles, BrokenOnesNameFilePlaceAndReason) {
   }
 }
 
-/// The corners of all triangles, in order.
+/// Vertices of all triangles, in order.
 std::vector<glm::vec3> corners(const Scene& scene) {
   std::vector<glm::vec3> all;
   for (const Mesh& mesh : scene.meshes)
@@ -147,8 +147,8 @@ TEST(ModelFiles, TheBunniesAgree) {
   EXPECT_EQ(obj.up, Axis::y);
   EXPECT_EQ(ply.up, Axis::y);
   EXPECT_EQ(stl.up, Axis::z);
-  // One scan in three files, triangle by triangle: OBJ was rounded to six decimals, then STL made of it by a
-  // quarter turn about x in floats.
+  // The three files hold one scan, triangle by triangle. The OBJ was rounded to six decimals, and the STL was made from
+  // it by a quarter turn about x in floats.
   const std::vector<glm::vec3> exact = corners(ply), rounded = corners(obj), turned = corners(stl);
   ASSERT_EQ(rounded.size(), exact.size());
   ASSERT_EQ(turned.size(), exact.size());

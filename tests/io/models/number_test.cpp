@@ -17,7 +17,7 @@
 namespace frontmost {
 namespace {
 
-/// Parses from a buffer of exactly the text's size. \returns the characters taken, or -1.
+/// Parses from a buffer of exactly the text's size. \returns the number of characters taken, or -1.
 std::ptrdiff_t parse(const std::string& text, float& value) {
   const std::unique_ptr<char[]> exact(new char[text.size()]);
   std::copy(text.begin(), text.end(), exact.get());
@@ -83,7 +83,7 @@ TEST(ParseFloat, KnowsNanAndInfinityInEverySpelling) {
   }
 }
 
-// strtof of the C library rounds correctly, slowly.
+// The C library's strtof is slow but rounds correctly.
 TEST(ParseFloat, RoundsLikeTheCLibrary) {
   std::mt19937_64 random(test::noted_seed(1));
   std::size_t compared = 0;
@@ -103,7 +103,7 @@ TEST(ParseFloat, RoundsLikeTheCLibrary) {
   EXPECT_EQ(compared, 300'000u);
 }
 
-// Half way between two floats, and one digit to either side: where rounding twice would show.
+// Numbers half way between two floats, and one digit to either side: rounding twice would show here.
 TEST(ParseFloat, RoundsHalfWaysOnce) {
   std::mt19937 random(test::noted_seed(2));
   for (int i = 0; i < 20'000; ++i) {

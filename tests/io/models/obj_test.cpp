@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 const std::string square_corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-/// A folder of its own that vanishes with the test.
+/// A temporary folder that the destructor removes.
 class Folder {
  public:
   Folder() {
@@ -46,7 +46,7 @@ TEST(Obj, SeparateIndicesNegativeIndicesAndFaces) {
   EXPECT_THAT(mesh.face_ids, ElementsAre(0, 0, 1));
   EXPECT_THAT(mesh.normals.triangles, ElementsAre(glm::uvec3(0, 0, 0), glm::uvec3(0, 0, 1), glm::uvec3(1, 1, 0)));
   EXPECT_EQ(mesh.texcoords.values.at(1), glm::vec2(1, 0.75f));  // v goes down here
-  // The second face has no texture coordinates: its corners take one that is made up.
+  // The second face has no texture coordinates; its vertices take a made-up one.
   EXPECT_THAT(mesh.texcoords.triangles, ElementsAre(glm::uvec3(0, 1, 1), glm::uvec3(0, 1, 0), glm::uvec3(2, 2, 2)));
   EXPECT_EQ(mesh.texcoords.values.size(), 3u);
 }
@@ -215,12 +215,12 @@ TEST(Obj, AByteOrderMarkHidesNoStatement) {
   EXPECT_TRUE(scene.warnings.empty());
 }
 
-/// A model with one material, and images for it.
+/// A square with one material, and images for it.
 class TexturedSquare {
  public:
   TexturedSquare() { write("model.obj", "mtllib m.mtl\n" + square_corners + "usemtl leaf\nf 1 2 3 4\n"); }
   void write(const std::string& name, const std::string& text) { folder_.write(name, text); }
-  /// A grey picture, row by row; or a red one with these alphas.
+  /// Writes a grey picture, row by row, or a red one with these alphas.
   void picture(const std::string& name, int width, const std::vector<float>& values, bool are_alphas = false) {
     const int height = int(values.size()) / width;
     Buffer<float> grey(values.size(), 0.0f), red(values.size(), 0.0f);
@@ -268,13 +268,13 @@ TEST(Obj, MapDIsTheAlphaOfTheColours) {
   EXPECT_EQ(scene.materials[0].alpha_cutoff, 0.5f);
   EXPECT_EQ(scene.materials[0].base_color, glm::vec4(1));
   EXPECT_EQ(scene.materials[0].base_color_texture.scale, glm::vec2(2));
-  // The smaller image gives the alphas: they are interpolated, and the values of the file itself choose the mode.
+  // The smaller image gives the alphas. They are interpolated, and the file's own values choose the mode.
   square.picture("small.png", 2, {0, 1});
   square.picture("wide.png", 4, {1, 1, 1, 1}, true);
   scene = square.load_with("map_d small.png\nmap_Kd -clamp on wide.png\n");
   EXPECT_THAT(alphas_of(scene), ElementsAre(0, 64, 191, 255));
   EXPECT_EQ(scene.materials[0].alpha, Material::Alpha::mask);
-  // With a factor, nothing is a hole at half of it.
+  // With a factor, half of it is not a threshold for holes.
   scene = square.load_with("map_d mask.png\nmap_Kd red.png\nd 0.4\n");
   EXPECT_EQ(scene.materials[0].alpha, Material::Alpha::blend);
   EXPECT_EQ(scene.materials[0].base_color, glm::vec4(1, 1, 1, 0.4f));
@@ -306,10 +306,10 @@ TEST(Obj, TheValuesOfMapDChooseTheAlphaMode) {
   EXPECT_EQ(mode("map_d soft.png\n"), Material::Alpha::blend);
   EXPECT_EQ(mode("map_d full.png\n"), Material::Alpha::opaque);
   EXPECT_EQ(square.load_with("map_d full.png\n").textures.size(), 0u);
-  // An image with alpha means it, whatever its colours are.
+  // If an image has an alpha channel, its alpha counts, whatever its colours are.
   EXPECT_EQ(mode("map_d cut.png\n"), Material::Alpha::mask);
   EXPECT_EQ(mode("map_Kd grey.png\nmap_d glass.png\n"), Material::Alpha::blend);
-  // The same file for both: only its alpha counts.
+  // If both maps use one file, only its alpha counts.
   EXPECT_EQ(mode("map_Kd cut.png\nmap_d cut.png\n"), Material::Alpha::mask);
   EXPECT_EQ(mode("map_Kd glass.png\nmap_d glass.png\n"), Material::Alpha::blend);
   EXPECT_EQ(mode("map_Kd grey.png\nmap_d grey.png\n"), Material::Alpha::opaque);
@@ -323,7 +323,7 @@ TEST(Obj, AMapDThatCannotBeUsedIsAWarning) {
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("material leaf: texture left out: none.png: cannot be found")));
   EXPECT_EQ(scene.materials[0].alpha, Material::Alpha::opaque);
   EXPECT_TRUE(scene.materials[0].base_color_texture.is_set());
-  // Two short files: a row and a column would make a gigabyte together.
+  // The files are short, but a row and a column together would need a gigabyte.
   square.picture("row.png", 16384, std::vector<float>(16384, 0.0f));
   square.picture("column.png", 1, std::vector<float>(16384, 0.0f));
   scene = square.load_with("map_Kd row.png\nmap_d column.png\n");

@@ -44,7 +44,7 @@ TEST(Off, KeywordAndEdgeCountMayBeMissing) {
   EXPECT_EQ(triangle_count(load_text("3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2", ModelFormat::off)), 1u);
 }
 
-// As in ModelNet40.
+// Files of ModelNet40 have counts without a blank.
 TEST(Off, CountsMayFollowTheKeywordWithoutABlank) {
   const std::string rows = "3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   for (const char* keyword : {"OFF", "OFF ", "COFF", "NCSTOFF"})
@@ -55,7 +55,7 @@ TEST(Off, CountsMayFollowTheKeywordWithoutABlank) {
 }
 
 TEST(Off, PrefixesComeInAnyOrder) {
-  // Geomview's order of numbers, as Open3D writes them; and that of MeshLab: colour, normal, texture coordinates.
+  // Number order of Geomview, which Open3D writes; and that of MeshLab: colour, normal, texture coordinates.
   const std::string count = " 1 0 0\n";
   for (const std::string& text :
        {"CNOFF" + count + "0 0 0  0 0 1  255 0 0 255", "NCOFF" + count + "0 0 0  0 0 1  255 0 0 255",
@@ -84,7 +84,7 @@ TEST(Off, ColorsThatTheKeywordDoesNotNameAreReadOrTold) {
   EXPECT_THAT(colors("255 0 0", "0 255 0 # green"), ElementsAre(glm::vec4(1, 0, 0, 1), glm::vec4(0, 1, 0, 1)));
   EXPECT_THAT(colors("1 0 0 1", "0 0 1 0.5"), ElementsAre(glm::vec4(1, 0, 0, 1), glm::vec4(0, 0, 1, 0.5f)));
   EXPECT_TRUE(scene_of("", "").warnings.size() == 1) << "no triangles";
-  // Normals, a texture coordinate, a colour for one vertex alone.
+  // A normal, a texture coordinate or a colour for only one vertex.
   for (const auto& [a, b] : {std::pair{"0 0 1", "0 0.6 0.8"},
                              {"-0.5 0.5 0.5", "1 0 0"},
                              {"0.5 0.5", "1 1"},

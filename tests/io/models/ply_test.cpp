@@ -99,7 +99,7 @@ constexpr TypeName type_names[] = {{"char", true},  {"uchar", true},  {"short", 
                                    {"int8", true},  {"uint8", true},  {"int16", true},    {"uint16", true},
                                    {"int32", true}, {"uint32", true}, {"float32", false}, {"float64", false}};
 
-/// A whole number as a type of PLY.
+/// Writes a whole number as a type of PLY.
 void put_as(const std::string& type, int value, ByteWriter& out) {
   if (type == "char" || type == "int8") out.put(std::int8_t(value));
   if (type == "uchar" || type == "uint8") out.put(std::uint8_t(value));
@@ -200,7 +200,7 @@ TEST(Ply, LineEndsOfEverySystem) {
     for (const char c : unix_text) text += c == '\n' ? end : std::string(1, c);
     EXPECT_EQ(triangle_count(load_text(text)), 1u);
   }
-  // A binary row may start with the byte 10 after a header of single returns, where \r\n would swallow it.
+  // After a header of single \r line ends, a binary row may start with the byte 10, which reading \r\n would swallow.
   ByteWriter out;
   out.text =
       "ply\rformat binary_little_endian 1.0\relement vertex 1\rproperty uchar x\rproperty uchar y\rproperty uchar "

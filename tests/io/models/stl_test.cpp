@@ -10,7 +10,7 @@ using test::load_text;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Triangle k has its corners at (k, 0, 0), (k + 1, 0, 0), (k, 1, 0), and k in its last two bytes.
+/// Triangle k has vertices (k, 0, 0), (k + 1, 0, 0), (k, 1, 0), and k in its last two bytes.
 std::string binary_stl(const std::string& header, std::uint32_t promised, std::uint32_t count) {
   ByteWriter out;
   out.text = header;
@@ -29,7 +29,7 @@ std::string facet(const std::string& x) {
 }
 
 TEST(Stl, BinaryKeepsOrderCountAndCorners) {
-  // More than one block of the reader.
+  // The file is longer than one block of the reader.
   const std::uint32_t count = 20'001;
   const Scene scene = load_text(binary_stl("made by hand", count, count), ModelFormat::stl);
   ASSERT_EQ(scene.meshes.size(), 1u);
@@ -50,7 +50,7 @@ TEST(Stl, BinaryFilesMayStartWithSolid) {
   const Scene scene = load_text(binary_stl("solid part one", 5, 5));
   EXPECT_EQ(triangle_count(scene), 5u);
   EXPECT_EQ(scene.meshes[0].name, "part one");
-  // Also when the size does not settle it.
+  // The keyword does not decide either if the file's size leaves the format open.
   EXPECT_EQ(triangle_count(load_text(binary_stl("solid part one", 5, 5) + "tail")), 5u);
 }
 
@@ -114,7 +114,7 @@ TEST(Stl, FacetsBehindASolidBelongToNone) {
   EXPECT_EQ(triangle_count(load_text(solid + "solid two\n" + facet("0") + "endsolid\n", ModelFormat::stl)), 2u);
 }
 
-/// The colours of triangles with these last two bytes.
+/// Colours of triangles with these last two bytes.
 std::vector<glm::vec4> colors_of(const std::string& header, const std::vector<std::uint16_t>& attributes) {
   std::string text = binary_stl(header, std::uint32_t(attributes.size()), std::uint32_t(attributes.size()));
   for (std::size_t i = 0; i < attributes.size(); ++i) std::memcpy(&text[84 + 50 * i + 48], &attributes[i], 2);
@@ -144,7 +144,7 @@ TEST(Stl, AttributesAreColors) {
     EXPECT_TRUE(colors_of(header, {0, 0, 0}).empty());
   EXPECT_TRUE(colors_of("a part", {1, 0x7FFF, 17}).empty()) << "no colours, whatever they are";
   EXPECT_TRUE(colors_of(std::string(74, ' ') + "COLOR=", {1}).empty()) << "the header ends before the colour";
-  // In a later block of the reader.
+  // The colours begin in a later block of the reader.
   std::vector<std::uint16_t> many(20'001, 0);
   many.back() = 0x801F;
   EXPECT_THAT(colors_of("a part", many), testing::AllOf(testing::SizeIs(many.size()), testing::Contains(blue)));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The promise of the fuzz target, without a fuzzer: every seed, every prefix of it, and thousands of mutations end in a
-// scene or in an Error.
+// The promise of the fuzz target, checked without a fuzzer: every seed, every prefix of it, and thousands of mutations
+// end in a scene or in an Error.
 #include <gtest/gtest.h>
 
 #include <algorithm>

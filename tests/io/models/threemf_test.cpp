@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// 3MF by parts: small packages made here, with answers known beforehand.
+// 3MF piece by piece: small generated packages with known answers.
 #include <zlib.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ Scene read(const std::string& model) { return read(package_of(model)); }
 std::string error_of(const ZipMaker& zip) { return test::error_of(zip.bytes(), ModelFormat::threemf); }
 std::string error_of(const std::string& model) { return error_of(package_of(model)); }
 
-/// One object of a tetrahedron, which is built.
+/// A package of one object, a tetrahedron, with a build item.
 std::string one_object(const std::string& attributes = {}, const std::string& resources = {}) {
   return "<resources>" + resources + R"(<object id="1" type="model" )" + attributes + ">" + tetrahedron +
          R"(</object></resources><build><item objectid="1"/></build>)";
@@ -85,7 +85,8 @@ TEST(ThreeMf, TheNamespaceMayBeMissing) {
   }
 }
 
-// Row vectors: the last three numbers are the way, and a component's transform comes before that of what holds it.
+// Transforms act on row vectors: the last three numbers are the translation, and a component's transform acts before
+// its parent's.
 TEST(ThreeMf, ItemsAndComponentsAreTransformed) {
   const std::string resources =
       R"(<object id="1">)" + tetrahedron +
@@ -106,7 +107,7 @@ TEST(ThreeMf, ItemsAndComponentsAreTransformed) {
   EXPECT_EQ(scene.instances[2].name, "object 1");
 }
 
-// As of every format: what lies far from zero for its size keeps its details.
+// A model far from zero for its size keeps its details, as in every format.
 TEST(ThreeMf, LargeCoordinatesKeepTheirDetails) {
   std::string model = model_of(one_object());
   for (const auto& [from, to] : {std::pair{R"(x="0")", R"(x="100000000.01")"},
@@ -136,7 +137,7 @@ TEST(ThreeMf, PartsNameObjectsOfOthers) {
   EXPECT_DOUBLE_EQ(scene.instances[0].world_from_mesh[0][0], 25.4) << "inches, in a model of millimetres";
 }
 
-// As in OBJ, and as every other text format has them.
+// Numbers have the spelling of OBJ and all other text formats.
 TEST(ThreeMf, NumbersAreSpeltAsInEveryFormat) {
   for (const char* number :
        {"1", "+.5", "-1.5e-3", "  2 ", "1e400", "-1e999", "1e-400", "nan", "-INF", "1.#INF", "1.#QNAN", "nan(ind)",
@@ -333,7 +334,7 @@ TEST(ThreeMf, PackedPartsAreUnpacked) {
   EXPECT_EQ(triangle_count(read(zip)), 4u);
 }
 
-// 300 MB of blanks in 300 kB: refused by what the archive says, and where it lies, by what comes out.
+// 300 MB of blanks in 300 kB: refused by the size that the archive states or, if that lies, by the unpacked size.
 TEST(ThreeMf, PartsThatUnpackToFarTooMuchAreRefused) {
   const std::string blanks(300'000'000, ' ');
   const std::string packed = deflated(model_of("<resources>" + blanks + "</resources>"));

@@ -36,12 +36,12 @@ double signed_area(const Polygon& polygon) {
 
 struct Result {
   std::vector<glm::uvec3> triangles;
-  std::size_t flat = 0;  ///< of zero area
+  std::size_t flat = 0;  ///< triangles of zero area
   double area = 0;
 };
 
-/// Checks what holds for every polygon in the xy plane that does not cross itself: n - 2 triangles, every corner used,
-/// all turned like the polygon, so that their areas add up without overlap.
+/// Checks the result for a simple polygon in the xy plane: n - 2 triangles, every vertex used, all wound like the
+/// polygon, so that their areas add up without overlap.
 Result check(const Polygon& polygon) {
   Triangulator triangulate;
   const auto span = triangulate(polygon);
@@ -82,7 +82,7 @@ TEST(Triangulate, ConvexPolygonsAreFans) {
 }
 
 TEST(Triangulate, ConcaveQuadsAreCutAtTheirReflexCorner) {
-  // An arrow head; the reflex corner is tried in all four places.
+  // An arrow head, with the reflex vertex in all four places.
   const Polygon arrow{{0, 0, 0}, {2, -1, 0}, {0, 2, 0}, {-2, -1, 0}};
   for (std::size_t turn = 0; turn < 4; ++turn) {
     Polygon polygon = arrow;
@@ -93,7 +93,7 @@ TEST(Triangulate, ConcaveQuadsAreCutAtTheirReflexCorner) {
 }
 
 TEST(Triangulate, CornersOnALineNeedNoFlatTriangles) {
-  // A square with a corner in the middle of each side, and a triangle with many corners on one side.
+  // A square with a vertex in the middle of each side, and a triangle with many vertices on one side.
   EXPECT_EQ(check({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}}).flat, 0u);
   Polygon comb{{0, 5, 0}};
   for (int i = 0; i < 20; ++i) comb.emplace_back(i, 0, 0);
@@ -101,7 +101,7 @@ TEST(Triangulate, CornersOnALineNeedNoFlatTriangles) {
 }
 
 TEST(Triangulate, EveryPlaneAndDirection) {
-  // An L in many planes: areas agree, and normals point the polygon's way.
+  // An L shape in many planes: areas agree, and normals point the polygon's way.
   const std::vector<glm::dvec2> shape{{0, 0}, {2, 0}, {2, 0.5}, {0.5, 0.5}, {0.5, 2}, {0, 2}};
   std::mt19937 random(test::noted_seed(4));
   std::normal_distribution<double> normal;
@@ -146,7 +146,7 @@ TEST(Triangulate, RandomStarsAndSpirals) {
   check(spiral);
 }
 
-// Staircases and combs on a coarse grid: many corners on one line, many touching.
+// Staircases and combs on a coarse grid: many vertices are collinear, and many touch.
 TEST(Triangulate, RandomRectilinearSkylines) {
   std::mt19937 random(test::noted_seed(6));
   for (int i = 0; i < 300; ++i) {
@@ -169,8 +169,8 @@ TEST(Triangulate, RandomRectilinearSkylines) {
 }
 
 TEST(Triangulate, OutlinesThatTouchThemselves) {
-  // Two squares that meet at a corner, a spike outside and one inside, an outline that passes a corner twice, a hole
-  // that touches the outline, two squares joined by a bridge with a bend, and a hole with such a bridge.
+  // Two squares that meet at a vertex, a spike outside and one inside, an outline that passes a vertex twice, a hole
+  // that touches the outline, two squares joined by a bent bridge, and a hole with such a bridge.
   EXPECT_EQ(check({{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {4, 2, 0}, {4, 4, 0}, {2, 4, 0}, {2, 2, 0}, {0, 2, 0}}).area, 8);
   EXPECT_EQ(check({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, 4, 0}, {2, 8, 0}, {2, 4, 0}, {0, 4, 0}}).area, 16);
   EXPECT_EQ(check({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, 4, 0}, {2, 1, 0}, {2, 4, 0}, {0, 4, 0}}).area, 16);
@@ -198,8 +198,8 @@ TEST(Triangulate, OutlinesThatTouchThemselves) {
 using Loop = std::vector<glm::ivec2>;
 constexpr glm::ivec2 steps[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
 
-/// The boundary of random cells of a grid, which lie on its left. Where two cells meet at a corner alone it goes on to
-/// the left or to the right, so that loops touch themselves and each other there and never cross.
+/// Boundary of random cells of a grid, with the cells on its left. Where two cells meet only at a corner, the boundary
+/// turns left or right, so that loops touch themselves and each other there and never cross.
 std::vector<Loop> boundary_of_cells(int size, std::mt19937& random) {
   std::set<std::pair<int, int>> cells;
   for (int i = 0; i < size * size; ++i)
@@ -228,8 +228,8 @@ std::vector<Loop> boundary_of_cells(int size, std::mt19937& random) {
   return loops;
 }
 
-/// From corners that the loops pass once, goes a step of the grid: to a corner of another loop that is passed once,
-/// too, which makes one loop of both, else there and back.
+/// Adds detours from vertices that the loops pass once, by one step of the grid. A step to such a vertex of another
+/// loop makes one loop of both; any other step goes there and back.
 void add_bridges_and_spikes(std::vector<Loop>& loops, int count, std::mt19937& random) {
   const auto is_passed_once = [&](const glm::ivec2& corner) {
     std::ptrdiff_t passes = 0;
@@ -255,8 +255,8 @@ void add_bridges_and_spikes(std::vector<Loop>& loops, int count, std::mt19937& r
   }
 }
 
-/// The corners of a loop. Those of the grid may be moved, so little that its edges do not meet elsewhere. Else some of
-/// those on a straight line are left out, so that edges lie on parts of others. A few are there twice in a row.
+/// The vertices of a loop. With `is_moved`, grid points are moved so little that no edges meet elsewhere. Otherwise
+/// some vertices on straight lines are left out, so that edges overlap others. A few vertices occur twice in a row.
 Polygon outline_of(const Loop& loop, bool is_moved, std::mt19937& random) {
   std::map<std::pair<int, int>, glm::vec3> places;
   Polygon outline;
@@ -271,7 +271,7 @@ Polygon outline_of(const Loop& loop, bool is_moved, std::mt19937& random) {
   return outline;
 }
 
-/// How often an outline winds around a point.
+/// Winding number of an outline around a point.
 int winding(const Polygon& outline, const glm::dvec2& p) {
   int turns = 0;
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -294,7 +294,7 @@ void expect_filled_as_it_winds(const Polygon& outline, int size, std::mt19937& r
   }
 }
 
-/// An outline is one loop of edges of a grid that touches itself in all ways, and crosses itself nowhere.
+/// The outline is one loop of grid edges that touches itself in all ways but never crosses itself.
 template <class Use>
 void for_each_touching_outline(int rounds, std::uint64_t seed, Use use) {
   std::mt19937 random(std::uint32_t(test::noted_seed(seed)));
@@ -314,11 +314,11 @@ TEST(Triangulate, RandomOutlinesThatTouchThemselvesAreFilledAsTheyWind) {
   for_each_touching_outline(1000, 9, expect_filled_as_it_winds);
 }
 
-// In a tilted plane corners are rounded, and edges that should touch cross a little.
+// In a tilted plane vertices are rounded, and edges that should touch cross a little.
 TEST(Triangulate, TouchingOutlinesInTiltedPlanesKeepTheirArea) {
   const glm::vec3 u(0.3f, -0.1f, 0.7f), v(0.2f, 0.9f, -0.4f), origin(3, 1, 2);
   for_each_touching_outline(300, 10, [&](const Polygon& outline, int, std::mt19937&) {
-    if (outline.size() > 500) return;  // more than can be tried
+    if (outline.size() > 500) return;  // too many to try
     Polygon tilted;
     for (const glm::vec3& p : outline) tilted.push_back(origin + u * p.x + v * p.y);
     Triangulator triangulate;
@@ -347,8 +347,8 @@ TEST(Triangulate, DegenerateAndCrossingPolygonsKeepTheirCount) {
   }
 }
 
-// A saw around a disc: every other corner is a blocker. Within the budget of work, which once ended at a few ten
-// thousand corners, each triangle turns the polygon's way; a fan over what is left would not.
+// A saw around a disc, where every other vertex blocks. Within the budget of work, each triangle is wound like the
+// polygon, which would not hold for a fan over the rest.
 TEST(Triangulate, ManyJaggedCornersAreCutRightly) {
   std::mt19937 random(test::noted_seed(8));
   std::uniform_real_distribution<double> radius(0.8, 1);
@@ -360,7 +360,7 @@ TEST(Triangulate, ManyJaggedCornersAreCutRightly) {
   check(saw);
 }
 
-// The budget of work ends what would take hours, and the count still holds.
+// The budget of work ends what would take hours, and the number of triangles still holds.
 TEST(Triangulate, HostilePolygonsEndSoon) {
   std::mt19937 random(test::noted_seed(7));
   Polygon tangle;

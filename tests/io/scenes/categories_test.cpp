@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file of categories says which object has which, and what is wrong with it is told with the place.
+// A file of categories assigns one to each object; errors name their place in the file.
 #include "io/scenes/scene_folder.h"
 
 namespace frontmost::test {
@@ -13,7 +13,7 @@ void give(const std::string& text, Scene& scene) {
   load_categories(std::as_bytes(std::span(text)), "kinds.json", scene);
 }
 
-/// By object: the name and the number of its category.
+/// For each object, the name and the number of its category.
 std::vector<std::string> categories_of(const Scene& scene) {
   std::vector<std::string> categories;
   for (const Instance& instance : scene.instances) {

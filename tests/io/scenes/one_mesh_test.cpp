@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The objects of a model as one mesh are what they were: the same corners, attributes, materials and polygons.
+// Joining the objects of a model into one mesh keeps vertices, attributes, materials and polygons.
 #include "io/scenes/one_mesh.h"
 
 #include <gtest/gtest.h>
@@ -9,8 +9,7 @@
 namespace frontmost::test {
 namespace {
 
-/// A quad of two triangles and a lone triangle, placed three times: once as it is, once mirrored, once turned and
-/// grown.
+/// A quad of two triangles and a lone triangle, placed three times: unchanged, mirrored, and turned and enlarged.
 Scene model_of_parts() {
   Scene scene;
   scene.name = "model";

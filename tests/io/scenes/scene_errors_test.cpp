@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is wrong with a scene file is told with the file, the place in it and the reason; and files made to do harm are
-// refused before they take memory or lead elsewhere.
+// Errors in a scene file are reported with file, place and reason. Malicious files are refused before they take memory
+// or lead outside their folder.
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -154,7 +154,7 @@ TEST(SceneErrors, OtherFoldersAreReadFromWhereTheyAreAllowed) {
   EXPECT_THAT(error("../parts/link.off", {folder.file("parts")}), HasSubstr("lies outside the scene file's folder"));
   EXPECT_THAT(error("../partsonly.off", {folder.file("parts")}), HasSubstr("lies outside the scene file's folder"));
   EXPECT_THAT(error(relative, {folder.file("absent")}), HasSubstr("absent: not a folder; --allow-outside"));
-  // Other formats name files by themselves, whoever wrote them: the option is not for them.
+  // Files of other formats name files by themselves, whoever wrote them, so the option does not apply to them.
   folder.write("scenes/m.obj", "mtllib ../pair.mtl\nv 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");
   LoadOptions options;
   options.allow_outside = {folder.path().string()};
@@ -177,7 +177,7 @@ TEST(SceneErrors, CountsAreLimitedBeforeMemoryIsAskedFor) {
   for (int i = 0; i < (1 << 20); ++i) many += ",{}";
   EXPECT_EQ(folder.error_of_object(many), "objects: 1048577 are more than 1048576");
   EXPECT_THAT(folder.error_of(R"({"objects": )" + std::string(300, '[')), HasSubstr("nested deeper than 256"));
-  // Each is some thirty bytes, and would be a hundred and twenty thousand triangles.
+  // Each reference takes some thirty bytes, and would give a hundred and twenty thousand triangles.
   std::string cities = R"({"model": "builtin:city"})";
   for (int i = 0; i < 2000; ++i) cities += R"(,{"model": "builtin:city"})";
   EXPECT_THAT(folder.error_of_object(cities), HasSubstr("far more than a file of this size should make"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene file says is what the scene is: models at their places, shared, renamed, counted and painted.
+// Scenes follow their scene file: models at their places, shared, renamed, counted and painted.
 #include "io/scenes/scene_folder.h"
 
 namespace frontmost::test {
@@ -32,7 +32,7 @@ TEST(SceneFile, PlacesModelsInOrderAndSharesTheirMeshes) {
 
 TEST(SceneFile, PosesAreMatricesByRowsAsThoseOfCameras) {
   SceneFolder folder;
-  // A quarter turn about z, and moved: x to y, y to -x.
+  // A quarter turn about z, and a translation: x goes to y, y to -x.
   folder.write("pose.txt",
                "\xEF\xBB\xBF"
                "0 -1 0 7; 1 0 0 8\n0 0 1 9\n[0 0 0 1]\n");
@@ -67,7 +67,7 @@ TEST(SceneFile, UnitsAreScaledAndModelsTurnedOnlyWhereTheFileSaysSo) {
   EXPECT_THAT(scaled.warnings, testing::IsEmpty());
   const Scene told = folder.load_scene(R"({"metres_per_unit": 0.001, "up": "z", "objects": [
       {"model": "metre.gltf", "metres_per_unit": 0.01, "up": "y"}, {"model": "corner.stl", "up": "z"}]})");
-  // y goes to z, and the front, which a y-up model has towards z, to -y.
+  // y goes to z; a y-up model's front, towards z, goes to -y.
   EXPECT_EQ(world_corners(told)[1], glm::dvec3(10, 0, 0));
   EXPECT_EQ(world_corners(told)[2], glm::dvec3(0, 0, 20));
   EXPECT_EQ(world_corners(told)[5], glm::dvec3(0, 2, 0));

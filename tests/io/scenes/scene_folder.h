@@ -35,16 +35,16 @@ class SceneFolder {
   [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }
   [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
 
-  /// Of a scene file with this text.
+  /// Loads a scene file with this text.
   [[nodiscard]] Scene load_scene(const std::string& text) {
     write("scene.json", text);
     return load(file("scene.json"));
   }
-  /// The scene of these objects alone.
+  /// Loads a scene of these objects alone.
   [[nodiscard]] Scene load_objects(const std::string& objects) {
     return load_scene(R"({"objects": [)" + objects + "]}");
   }
-  /// What the loading of a text says, after the file's name; "read" if nothing.
+  /// Error message of loading `text`, after the file's name; "read" if there is none.
   [[nodiscard]] std::string error_of(const std::string& text) {
     try {
       (void)load_scene(text);
@@ -63,7 +63,7 @@ class SceneFolder {
   ScratchFolder folder_;
 };
 
-/// The corners of all triangles in world space, object by object.
+/// Vertices of all triangles in world space, object by object.
 inline std::vector<glm::dvec3> world_corners(const Scene& scene) {
   std::vector<glm::dvec3> corners;
   for (const Instance& instance : scene.instances) {

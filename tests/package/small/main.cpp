@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A z-buffer of meshes that the program makes itself, by the parts core and methods alone.
+// A z-buffer of meshes that the program generates, with the parts core and methods only.
 #include <frontmost/core.h>
 #include <frontmost/methods.h>
 

@@ -33,7 +33,7 @@ export function accountTable(answer: Answer): HTMLElement {
     more > 0 && element("p", { class: "soft" }, `+ ${more} ${say(words.more)}`));
 }
 
-/** A row for every two objects of which one hides something of the other, the largest shares first. */
+/** A table of pairs of objects where one hides part of the other, the largest shares first. */
 export function hidingTable(answer: Answer): HTMLElement | null {
   const pairs: Answer[] = answer.objects.flatMap((object: Answer) => object.hidden_by.map((hider: Answer) => ({ name: object.name, hider: hider.name, share: hider.share })));
   if (pairs.length === 0) return null;
@@ -42,7 +42,7 @@ export function hidingTable(answer: Answer): HTMLElement | null {
     element("table", { class: "hiding" }, element("thead", {}, element("tr", {}, element("th", {}, say(words.object)), element("th", {}, say(words.hiddenBy)), element("th", { style: "text-align:right" }, say(words.share)))), body));
 }
 
-/** Of every object how many of its triangles no view sees. */
+/** A table of the number of triangles of each object that no view sees. */
 export function neverSeenTable(answer: Answer): HTMLElement {
   const rows: [string, number, number][] = answer.names.map((name: string, i: number) => [name, answer.triangles_by_object[i] - answer.seen_by_object[i], answer.triangles_by_object[i]]);
   const body = element("tbody", {}, ...rows.sort((a, b) => b[1] - a[1]).slice(0, mostRows).map(([name, never, all]) =>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two pictures of one view beside each other, Frontmost's and WebGL's; the pixels at which they see different triangles
-// are marked, and each is explained.
+// Frontmost's and WebGL's pictures of one view side by side. Pixels where they show different triangles are marked, and
+// each difference is explained.
 import type { Answer } from "./answer.ts";
 import type { Client } from "./client.ts";
 import { element } from "./dom.ts";
@@ -49,7 +49,7 @@ function explained(one: PixelDifference, { subpixelBits }: Drawn): string {
   ][one.reason]);
 }
 
-/** What is about a pixel, each triangle in a colour of its own. */
+/** An enlarged view of the pixels around one, with a unique colour for each triangle. */
 function loupe(label: string, numberAt: (x: number, y: number) => number, { x, y }: PixelDifference): HTMLElement {
   const reach = 6, side = 2 * reach + 1, canvas = element("canvas", { width: side, height: side, role: "img", "aria-label": label });
   const pen = canvas.getContext("2d")!;
@@ -70,7 +70,7 @@ function pane(title: string, image: ImageData, differences: PixelDifference[], c
   const marks = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   marks.setAttribute("viewBox", `0 0 ${image.width} ${image.height}`);
   marks.setAttribute("aria-hidden", "true");
-  // Where there are thousands, dots can still be told apart; of more than some thousand, some are shown.
+  // With thousands of marks, dots can still be told apart; beyond `mostMarks`, only some are shown.
   const every = Math.ceil(differences.length / mostMarks);
   const radius = (image.width / 100) * Math.min(1, Math.max(0.2, Math.sqrt(60 / differences.length)));
   const circle = ({ x, y }: PixelDifference, color: string, wide: number) => `<circle cx="${x + 0.5}" cy="${y + 0.5}" r="${radius.toFixed(1)}" fill="none" stroke="var(${color})" stroke-width="${(radius * wide).toFixed(1)}"/>`;
@@ -91,7 +91,7 @@ function pane(title: string, image: ImageData, differences: PixelDifference[], c
 }
 
 export interface Seen { client: Client; image: ImageData; eye: Vector }
-/** Of the last view; `close` is called when it is done with. */
+/** Compares the last view with WebGL's picture; `close` is called when the comparison is closed. */
 export async function besideWebGL({ client, image, eye }: Seen, close: () => void): Promise<HTMLElement> {
   const view = await client.ask({ ask: "triangles" });
   const drawn = drawByWebGL(view, eye);

@@ -21,7 +21,7 @@ export class Client {
     this.waiting.delete(id);
     if (answer.error) one?.reject(new AskError(answer.error));
     else one?.resolve(answer);
-    // What ran out of memory or stack cannot go on; the next question begins anew.
+    // After running out of memory or stack the module cannot continue; the next question starts a new one.
     if (answer.fatal) this.restart();
   }
 
@@ -30,14 +30,14 @@ export class Client {
     this.waiting.clear();
   }
 
-  /** Ends whatever is being worked on, and forgets the model. */
+  /** Stops the current work and forgets the model. */
   restart(): void {
     this.worker.terminate();
     this.fail("stopped");
     this.worker = this.start();
   }
 
-  /** `bytes` are given away. */
+  /** Asks a question; `bytes` are transferred to the worker. */
   ask(question: Question, bytes?: ArrayBuffer): Promise<Answer> {
     const id = this.next++;
     return new Promise((resolve, reject) => {

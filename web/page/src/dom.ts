@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elements by one call, and the bar that every page begins with.
+// Makes elements by one call, and the bar at the top of every page.
 import { language, say, switchLanguage, type Text } from "./language.ts";
 
 type Child = Node | string | null | undefined | false;
@@ -16,7 +16,7 @@ export function element<K extends keyof HTMLElementTagNameMap>(tag: K, attribute
   return made;
 }
 
-/** One of several, as buttons that exclude each other. */
+/** A choice of one among several options, as radio buttons. */
 export function choices(name: string, label: string, options: [string, string][], chosen: string, change: (value: string) => void): HTMLElement {
   const group = element("div", { class: "choices", role: "radiogroup", "aria-label": label });
   for (const [value, text] of options) {
@@ -38,7 +38,7 @@ export function slider(label: string, range: { min: number; max: number; step: n
   return { field: element("label", { class: "field" }, element("span", {}, label), input, output), input };
 }
 
-/** Sliders of a figure's settings: each changes the one that it is for, and tells. */
+/** Sliders for a figure's settings: each changes its setting and then calls `changed`. */
 export function sliders<K extends string>(settings: Record<K, number>, changed: () => void) {
   return (label: string, key: K, min: number, max: number, step: number, show: (value: number) => string): HTMLElement =>
     slider(label, { min, max, step, value: settings[key] }, show, (value) => {
@@ -77,8 +77,8 @@ export function bar(page: "workbench" | "lessons"): HTMLElement {
       element("button", { class: "button plain", lang: language === "en" ? "zh-Hans" : "en", onclick: switchLanguage }, language === "en" ? "中文" : "English")));
 }
 
-/** Once a page has been loaded, all of them work without a network. What came before there was anybody to keep it is asked
- * for again, which the browser answers from what it holds. */
+/** After one page has been loaded, all pages work without a network. Files loaded before the service worker existed are
+ * requested again; the browser answers from its cache. */
 export async function keepForLater(): Promise<void> {
   if (!("serviceWorker" in navigator) || !isSecureContext) return;
   try {
@@ -92,6 +92,6 @@ export async function keepForLater(): Promise<void> {
       if (file.endsWith(".html")) await fetch(file); // may have changed
       else if (!(await caches.match(file))) await fetch(file, { cache: "force-cache" });
   } catch {
-    // Then the page needs the network the next time, too.
+    // The page then needs the network next time, too.
   }
 }

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are dropped or chosen: a model, and the files that it names beside it or in folders below.
+// Files that are dropped or chosen: a model, and the files that it names, beside it or in folders below.
 import type { Answer } from "./answer.ts";
 import type { Client } from "./client.ts";
 
 export interface NamedFile { name: string; file: File }
 
-/** Suffixes of models, and of what they name. What comes first is the model where there are several. */
+/** Suffixes of models and of the files that they name. If there are several models, the first suffix wins. */
 const models = [".glb", ".gltf", ".obj", ".stl", ".ply", ".off"];
 const named = [...models, ".mtl", ".bin", ".png", ".jpg", ".jpeg"];
 export const accepted = named.join(",");
-/** A folder that holds more is not one of a model. */
+/** A folder with more files is not a model's folder. */
 const mostFiles = 5000;
 const rank = ({ name }: NamedFile) => {
   const of = models.findIndex((suffix) => name.toLowerCase().endsWith(suffix));
   return of < 0 ? Infinity : of + 100 * name.split("/").length;
 };
 
-/** Adds to `found` a file, or those in a folder that a model may be or name. */
+/** Adds a file to `found`, or the files of a folder that may belong to a model. */
 async function find(entry: FileSystemEntry, path: string, found: NamedFile[]): Promise<void> {
   if (entry.isFile) {
     if (path !== "" && !named.some((suffix) => entry.name.toLowerCase().endsWith(suffix))) return;
@@ -33,7 +33,7 @@ async function find(entry: FileSystemEntry, path: string, found: NamedFile[]): P
   }
 }
 
-/** All that was dropped, folders with what is in them. To be called before anything is waited for. */
+/** All dropped files, including those in folders. Must be called before any await. */
 export async function dropped(transfer: DataTransfer): Promise<NamedFile[]> {
   const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter((entry) => entry !== null && entry !== undefined);
   const plain = chosen(transfer.files), found: NamedFile[] = [];
@@ -46,7 +46,7 @@ export function chosen(files: FileList): NamedFile[] {
   return [...files].map((file) => ({ name: file.name, file }));
 }
 
-/** \returns what the module tells of the model, and its name. */
+/** Opens a model. \returns its name and the module's answer. */
 export async function openFiles(client: Client, files: NamedFile[]): Promise<{ name: string; opened: Answer }> {
   const model = files.reduce((best, one) => (rank(one) < rank(best) ? one : best)), { name } = model;
   if (files.length === 1) return { name, opened: await client.ask({ ask: "open", name }, await model.file.arrayBuffer()) };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels of PNG, JPEG and WebP files as they are stored: neither multiplied by alpha nor brought to the screen's colours, as a
+// Pixels of PNG, JPEG and WebP files as stored: neither multiplied by alpha nor converted to the screen's colours, as a
 // canvas would.
 
-/** Pixels as the header of a WebP states them: lossy, lossless or extended; 0 where it does not. */
+/** Number of pixels in the header of a WebP (lossy, lossless or extended); 0 if the header states none. */
 function pixelsOfWebp(view: DataView): number {
   if (view.byteLength < 30) return 0;
   const size24 = (at: number) => 1 + view.getUint16(at, true) + 65536 * view.getUint8(at + 2);
@@ -13,7 +13,7 @@ function pixelsOfWebp(view: DataView): number {
   return (view.getUint16(26, true) & 0x3fff) * (view.getUint16(28, true) & 0x3fff);
 }
 
-/** Pixels as an image's header states them; 0 where it does not. */
+/** Number of pixels in an image's header; 0 if the header states none. */
 function pixelsOf(file: Uint8Array): number {
   const view = new DataView(file.buffer, file.byteOffset, file.byteLength);
   if (file[0] === 0x52) return pixelsOfWebp(view);
@@ -21,17 +21,17 @@ function pixelsOf(file: Uint8Array): number {
   for (let at = 2; at + 9 < file.length && file[at] === 0xff; ) {
     const marker = file[at + 1];
     if (marker === 0xff) {
-      ++at; // bytes that fill
+      ++at; // fill bytes
       continue;
     }
-    // A start of a frame, of which there are several kinds.
+    // A start-of-frame marker, which has several kinds.
     if (marker >= 0xc0 && marker <= 0xcf && ![0xc4, 0xc8, 0xcc].includes(marker)) return view.getUint16(at + 5) * view.getUint16(at + 7);
     at += 2 + view.getUint16(at + 2);
   }
   return 0;
 }
 
-/** As many pixels as the library takes for all textures of a model: asked before any is decoded. */
+/** Limits the pixels of a model's textures to the library's limit, before any is decoded. */
 export class PixelBudget {
   private left = 2 ** 26;
   take(file: Uint8Array): void {
@@ -68,7 +68,7 @@ async function byDecoder(data: Uint8Array<ArrayBuffer>, type: string): Promise<P
   }
 }
 
-/** Where there is no decoder a texture gives back what it was given. */
+/** Decodes through a WebGL texture, which returns the stored values, if there is no image decoder. */
 async function byWebGL(data: Uint8Array<ArrayBuffer>, type: string): Promise<Pixels> {
   const bitmap = await createImageBitmap(new Blob([data], { type }), { premultiplyAlpha: "none", colorSpaceConversion: "none" });
   const { width, height } = bitmap, gl = new OffscreenCanvas(1, 1).getContext("webgl2");

@@ -16,7 +16,7 @@ export function say(text: Text): string {
   return text[language];
 }
 
-/** The same address in the other language. */
+/** Opens the page's address in the other language. */
 export function switchLanguage(): void {
   const other = language === "en" ? "zh" : "en";
   localStorage.setItem("lang", other);

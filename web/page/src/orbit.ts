@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The eye turned about what it looks at: by mouse, touch and keys.
+// Turns the eye about its target by mouse, touch and keys.
 export type Vector = [number, number, number];
 export interface Camera {
   width: number; height: number;
@@ -20,7 +20,7 @@ function turned(v: Vector, axis: Vector, angle: number): Vector {
   return plus(plus(times(v, c), times(cross(axis, v), s)), times(axis, dot(axis, v) * (1 - c)));
 }
 
-/** About the model's up, then up and down, never over the poles. */
+/** Turns about the model's up axis, then up and down, but never over the poles. */
 export function orbit(camera: Camera, worldUp: Vector, right: number, up: number): void {
   let from = turned(minus(camera.eye, camera.target), worldUp, -right);
   const side = unit(cross(worldUp, from));
@@ -36,7 +36,7 @@ export function dolly(camera: Camera, factor: number): void {
   camera.eye = plus(camera.target, times(minus(camera.eye, camera.target), factor));
 }
 
-/** By shares of the picture's height. */
+/** Moves by shares of the picture's height. */
 export function pan(camera: Camera, right: number, up: number): void {
   const away = minus(camera.target, camera.eye);
   const height = 2 * Math.hypot(...away) * Math.tan((camera.angle * Math.PI) / 360);
@@ -51,11 +51,12 @@ export interface OrbitOptions {
   worldUp: () => Vector;
   moved: () => void;
   pointed?: (x: number, y: number) => void;
-  /** In a page that is read: one finger up and down scrolls it (style.css), and so does the wheel until it is clicked. */
+  /** For a page with text: one finger up and down scrolls it (style.css), and so does the wheel until the picture is
+   * clicked. */
   isInPage?: boolean;
 }
 
-/** Listens on an element, which should be focusable. */
+/** Listens to an element, which should be focusable. */
 export function listen(target: HTMLElement, { camera, worldUp, moved, pointed, isInPage }: OrbitOptions): void {
   const fingers = new Map<number, { x: number; y: number }>();
   let travelled = 0, atFirst: Camera | undefined;
@@ -90,7 +91,7 @@ export function listen(target: HTMLElement, { camera, worldUp, moved, pointed, i
     if (wasOne && travelled < 5 && event.type === "pointerup") pointed?.(event.offsetX, event.offsetY);
   };
   target.addEventListener("pointerup", lift);
-  // What began to turn until it was known that the page is scrolled.
+  // The browser takes over the touch to scroll the page: a turn that began meanwhile is undone.
   target.addEventListener("pointercancel", (event) => {
     const now = camera();
     if (fingers.size === 1 && travelled > 0 && now && atFirst) {

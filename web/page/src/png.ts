@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG of exact pixels. A canvas would not do: it multiplies by alpha, and loses the colours of what is nearly transparent.
+// Writes PNG of exact pixels. A canvas multiplies by alpha, and so loses the colours of nearly transparent pixels.
 const table = Array.from({ length: 256 }, (_, n) => {
   for (let k = 0; k < 8; ++k) n = n & 1 ? 0xedb88320 ^ (n >>> 1) : n >>> 1;
   return n >>> 0;
@@ -28,7 +28,7 @@ async function zlib(bytes: Uint8Array): Promise<Uint8Array> {
 export async function png({ width, height, data }: ImageData): Promise<Blob> {
   const size = width * 4, rows = new Uint8Array(height * (size + 1));
   for (let y = 0; y < height; ++y) {
-    rows[y * (size + 1)] = 2; // each byte less the one above it
+    rows[y * (size + 1)] = 2; // filter: each byte minus the one above it
     for (let x = 0; x < size; ++x)
       rows[y * (size + 1) + 1 + x] = data[y * size + x] - (y > 0 ? data[(y - 1) * size + x] : 0);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is taken away: files of the view, and the command that makes it again.
+// Files of the view to download, and the command that reproduces it.
 import type { Client } from "./client.ts";
 import { element } from "./dom.ts";
 import { say } from "./language.ts";
@@ -7,7 +7,7 @@ import { plus, type Camera, type Vector } from "./orbit.ts";
 import { png } from "./png.ts";
 import { words } from "./words.ts";
 
-/** What `frontmost render` is to be told to see the same, to the bit. Numbers have all of their digits. */
+/** The `frontmost render` command that gives the same picture, to the bit. Numbers have all of their digits. */
 export function commandLine(model: string, camera: Camera, origin: Vector): string {
   const list = (v: Vector) => v.map((n) => String(n)).join(",");
   const quoted = /^[\w.:/-]+$/.test(model) ? model : `'${model.replaceAll("'", `'\\''`)}'`;

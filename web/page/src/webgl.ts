@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The triangles of a view, drawn by WebGL: its own picture, and the number of the triangle at each pixel.
+// The triangles of a view drawn by WebGL: its picture, and the triangle number at each pixel.
 import type { Answer } from "./answer.ts";
 
 const vertexSource = `#version 300 es
@@ -32,7 +32,7 @@ void main() {
 
 export interface Drawn {
   picture: ImageData;
-  /** From 1 on; 0 where there is none. The top row comes first. */
+  /** Triangle numbers from 1 on; 0: none. Top row first. */
   numbers: Uint32Array<ArrayBuffer>;
   renderer: string;
   subpixelBits: number;
@@ -73,14 +73,14 @@ function attribute(gl: WebGL2RenderingContext, at: number, bytes: ArrayBuffer, s
   gl.vertexAttribPointer(at, size, type, normalized, 0, 0);
 }
 
-/** WebGL's first row is the lowest. */
+/** Reverses the rows, as WebGL's first row is the lowest. */
 function flipped<T extends Uint8Array<ArrayBuffer> | Uint32Array<ArrayBuffer>>(from: T, to: T, height: number): T {
   const row = from.length / height;
   for (let y = 0; y < height; ++y) to.set(from.subarray(y * row, (y + 1) * row), (height - 1 - y) * row);
   return to;
 }
 
-/** `view` answers "triangles". */
+/** Draws `view`, the answer to the question "triangles". */
 export function drawByWebGL(view: Answer, eye: readonly number[]): Drawn {
   const { width, height } = view;
   const gl = new OffscreenCanvas(1, 1).getContext("webgl2", { antialias: false });

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The workbench: a model, its picture, and what may be asked of it.
+// The workbench: a model, its picture, and questions about it.
 //
-//   turning      a quick picture for every move: one sample, and as fine as this machine draws it in time
-//   at rest      the same view with four samples a pixel, its hash, edges where they are asked for
+//   turning      a quick picture for every move: one sample, as fine as this machine can draw in time
+//   at rest      the same view with four samples a pixel, its hash, and edges if requested
 import type { Answer, Question } from "./answer.ts";
 import { Client, toImage } from "./client.ts";
 import { accepted, chosen, dropped, openFiles, type NamedFile } from "./files.ts";
@@ -14,14 +14,15 @@ import { besideWebGL } from "./beside.ts";
 import { accountTable, hidingTable, hitList, neverSeenTable } from "./answers.ts";
 import { scenes, views, words } from "./words.ts";
 
-/** What pictures are like while the view turns, the quickest first: as large as can be drawn thirty times a second, pixels
- * sharing colours; then, where sixty a second leave time for it, with shadows, and with a colour for every pixel. */
+/** Quality of pictures while the view turns, quickest first. The first steps grow up to the largest size that can be
+ * drawn thirty times a second, with pixels sharing colours. If sixty pictures a second are possible, the next steps add
+ * shadows, then a colour for every pixel. */
 interface Quality {
   scale: number;
   coarse: boolean;
   shadows: boolean;
-  milliseconds: number; // that it may take
-  more: number; // times as long as the one before, about
+  milliseconds: number; // allowed time
+  more: number; // approximate cost relative to the previous step
 }
 const qualities: Quality[] = [0.35, 0.39, 0.42, 0.47, 0.51, 0.56, 0.62, 0.68, 0.75, 0.83, 0.91, 1].map((scale) => ({ scale, coarse: true, shadows: false, milliseconds: 30, more: 1.21 }));
 qualities.push({ scale: 1, coarse: true, shadows: true, milliseconds: 14, more: 1.3 }, { scale: 1, coarse: false, shadows: true, milliseconds: 14, more: 2 });
@@ -31,8 +32,8 @@ let model: Answer;
 let modelArgument = "";
 let camera: Camera | undefined;
 let show = "picture", layer = 1, withHidden = false;
-let quality = 4; // of pictures while turning; the first one shows how fast this machine is
-let requests = 0; // of pictures, so far
+let quality = 4; // of pictures while turning; the first picture shows how fast this machine is
+let requests = 0; // number of pictures requested so far
 let isDrawing = false, wanted: "none" | "quick" | "fine" = "none";
 let restTimer = 0;
 let lastImage: ImageData | undefined;
@@ -60,7 +61,7 @@ function complain(error: unknown): void {
   message.hidden = false;
 }
 
-/** Shows that something goes on, and what went wrong. */
+/** Shows that work is in progress, and its error, if any. */
 async function working<T>(work: () => Promise<T>): Promise<T | undefined> {
   busy.hidden = false;
   try {
@@ -96,7 +97,7 @@ function paintEdges(answer: Answer, width: number, height: number): void {
     pen.beginPath();
     pen.strokeStyle = getComputedStyle(document.body).color;
     pen.globalAlpha = hidden ? 0.35 : 1;
-    // Where thousands of lines come together thinner ones can still be told apart.
+    // Where thousands of lines come together, thinner ones can still be told apart.
     pen.lineWidth = (hidden ? 1 : 1.6) * Math.min(1, Math.max(0.35, Math.sqrt(20000 / parts.length)));
     pen.setLineDash(hidden ? [5, 4] : []);
     for (let i = 0; i < parts.length; i += 5) {
@@ -114,7 +115,7 @@ function drawQuestion(kind: "quick" | "fine"): Question {
   const one: Camera = { ...camera!, width: Math.max(8, Math.round(width * shrink)), height: Math.max(8, Math.round(height * shrink)) };
   delete one.near;
   delete one.far;
-  // While it turns, edges have triangles' depth to be followed by.
+  // While the view turns, the depth map stands in for edges.
   const what = show === "edges" ? "depth" : show;
   if (kind === "fine" && what === "picture") one.samples = 4;
   return { ask: "draw", camera: one, show: what, layer, hash: kind === "fine", shadows: kind === "fine" || quick.shadows, coarse: kind === "quick" && quick.coarse };
@@ -127,8 +128,8 @@ function tell(answer: Answer, kind: "quick" | "fine"): void {
     ...(kind === "fine" ? [part(`${say(words.hash)} ${answer.hash}`)] : []));
 }
 
-/** One step up where the next picture would still be in time; down as many as this one was late, but three at most, as one
- * may be late by chance. */
+/** Raises quality by one step if the next picture would still be in time. Lowers it by as many steps as this picture
+ * was late, but by at most three, as lateness may be accidental. */
 function adaptQuality(passed: number): void {
   const next = qualities[quality + 1];
   if (next && passed * next.more < next.milliseconds) ++quality;
@@ -138,7 +139,7 @@ function adaptQuality(passed: number): void {
 async function drawOnce(kind: "quick" | "fine"): Promise<void> {
   const question = drawQuestion(kind), begin = performance.now();
   const answer = await client.ask(question);
-  if (wanted === "quick" && kind === "fine") return; // it turns again
+  if (wanted === "quick" && kind === "fine") return; // the view turns again
   lastImage = toImage(answer);
   paint(lastImage);
   tell(answer, kind);
@@ -160,7 +161,7 @@ async function drawOnce(kind: "quick" | "fine"): Promise<void> {
   }
 }
 
-/** One picture at a time; of those asked for meanwhile, the last. */
+/** Draws one picture at a time; of the requests meanwhile, only the last is kept. */
 function request(kind: "quick" | "fine"): void {
   if (!camera) return;
   closeBeside();
@@ -184,14 +185,14 @@ async function drawWanted(): Promise<void> {
     } catch (error) {
       complain(error);
     }
-    // No more than one for each that the browser shows; it shows one while the next is drawn.
+    // Makes at most one picture for each frame of the browser, which shows one while the next is drawn.
     await shown;
   }
   busy.hidden = true;
   isDrawing = false;
 }
 
-/** A view at rest, with its hash, as questions about it need. */
+/** Waits for a view at rest, with its hash, which questions about the view need. */
 async function settle(): Promise<void> {
   clearTimeout(restTimer);
   request("fine");
@@ -224,7 +225,7 @@ async function openBuiltin(name: string): Promise<void> {
 }
 
 let opening: Promise<unknown> = Promise.resolve();
-/** One model after the other, as the files of one must not be taken for those of another. */
+/** Opens models one after another, so that the files of one are not mistaken for those of another. */
 function openAll(files: NamedFile[] | Promise<NamedFile[]>): Promise<unknown> {
   return (opening = opening.then(() => openThese(files)));
 }
@@ -263,7 +264,7 @@ function closeBeside(): void {
   beside?.remove();
   beside = undefined;
 }
-/** Over the stage, until it is closed or the view is another one. */
+/** Shows WebGL's comparison over the stage, until it is closed or the view changes. */
 async function askWebGL(): Promise<void> {
   await working(async () => {
     await settle();
@@ -273,7 +274,7 @@ async function askWebGL(): Promise<void> {
         closeBeside();
         canvas.focus();
       });
-      if (requests !== asked) return; // it turns again
+      if (requests !== asked) return; // the view turns again
       closeBeside();
       beside = made;
       stage.append(made);
@@ -323,7 +324,7 @@ function choose(value: string): void {
 
 const copyButton = element("button", { class: "button" }, say(words.copy));
 copyButton.addEventListener("click", async () => {
-  // Only secure pages may write; elsewhere it is chosen, to be copied by hand.
+  // Only secure pages may write to the clipboard; elsewhere the command is selected, to be copied by hand.
   if (!navigator.clipboard) return getSelection()?.selectAllChildren(command);
   await navigator.clipboard.writeText(command.textContent ?? "");
   copyButton.textContent = say(words.copied);

@@ -19,7 +19,7 @@ async function loadModule(base: string, name: string): Promise<Module> {
   const { default: create } = await import(/* @vite-ignore */ `${base}${name}.mjs`);
   return create({ locateFile: (file: string) => base + file });
 }
-/** With threads where the page may have memory that they share, and gets it: some phones give less of it. */
+/** Loads the module with threads if the page may share memory and gets it: some phones provide less. */
 async function load(base: string): Promise<Module> {
   if (self.crossOriginIsolated)
     try {
@@ -30,14 +30,14 @@ async function load(base: string): Promise<Module> {
   return loadModule(base, "frontmost");
 }
 
-/** All of its memory. A thread that asked for more has told nobody. */
+/** A view of all memory, made each time, as a thread may have grown the memory without notice. */
 const memory = (m: Module): Uint8Array => (m.wasmMemory ? new Uint8Array(m.wasmMemory.buffer) : m.HEAPU8);
 const bytesAt = (m: Module, { at, bytes }: { at: number; bytes: number }) => memory(m).slice(at, at + bytes) as Uint8Array<ArrayBuffer>;
 
-/** Loaded once, from where the first question says that it is. */
+/** Loaded once, from the base address in the first question. */
 let module: Promise<Module> | undefined;
 
-/** Copies planes out of the module's memory, of which the next question may dispose. */
+/** Copies planes out of the module's memory, which the next question may free. */
 function takePlanes(m: Module, answer: Answer, planes: ArrayBuffer[]): void {
   for (const [key, value] of Object.entries<Answer>(answer)) {
     if (value === null || typeof value !== "object" || typeof value.at !== "number" || typeof value.bytes !== "number") continue;
@@ -62,7 +62,7 @@ function ask(m: Module, question: Question, bytes?: Uint8Array): Answer {
   return answer;
 }
 
-/** A model whose textures have to be decoded first is opened once more when they are. */
+/** Opens a model again after its textures have been decoded. */
 async function withImages(m: Module, answer: Answer): Promise<Answer> {
   while (answer.images) {
     const files: Uint8Array<ArrayBuffer>[] = answer.images.map((place: { at: number; bytes: number }) => bytesAt(m, place));
@@ -89,7 +89,7 @@ async function answerTo({ base, question, bytes }: Asked): Promise<Answer> {
 
 let last: Promise<unknown> = Promise.resolve();
 self.onmessage = (event: MessageEvent<Asked>) => {
-  // One after the other, also where a question waits for images.
+  // Answers one question after another, even if a question waits for images.
   last = last.then(async () => {
     const planes: ArrayBuffer[] = [];
     let answer: Answer;

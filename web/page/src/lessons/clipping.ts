@@ -9,7 +9,7 @@ import type { Vector } from "../orbit.ts";
 import type { Lesson } from "./list.ts";
 
 const size: [number, number] = [480, 360];
-/** The picture lies in the middle of a larger plate, so that what sticks out of it shows. */
+/** Margin around the picture in its plate, so that parts outside the picture are visible. */
 const margin: [number, number] = [120, 90];
 const planes: Text[] = [{ en: "nothing yet", zh: "尚未裁剪" }, { en: "near: z + w ≥ 0", zh: "近平面：z + w ≥ 0" }, { en: "far: w − z ≥ 0", zh: "远平面：w − z ≥ 0" }, { en: "left: w + x ≥ 0", zh: "左：w + x ≥ 0" },
   { en: "right: w − x ≥ 0", zh: "右：w − x ≥ 0" }, { en: "bottom: w + y ≥ 0", zh: "下：w + y ≥ 0" }, { en: "top: w − y ≥ 0", zh: "上：w − y ≥ 0" }];

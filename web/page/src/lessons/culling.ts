@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why anything is hidden: back faces, the view volume, occlusion.
+// Reasons why surfaces are hidden: back faces, the view volume, occlusion.
 import type { Answer } from "../answer.ts";
 import { choices, element } from "../dom.ts";
 import { say } from "../language.ts";
@@ -69,7 +69,7 @@ function cullingFigure(): HTMLElement {
   ], latest);
 }
 
-/** A wall, its normal, and an eye to be dragged around it: seen from above. */
+/** A wall with its normal, seen from above, and an eye that can be dragged around it. */
 function facingFigure(): HTMLElement {
   const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   svg.setAttribute("viewBox", "-160 -110 320 220");

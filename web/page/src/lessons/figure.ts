@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What figures of lessons are made of: plates with pictures, steps that play, a line that says what happens, and
-// questions of which the last alone is answered.
+// Building blocks of the lessons' figures: plates with pictures, steps that play, a status line, and questions of which
+// only the last is answered.
 import type { Answer, Question } from "../answer.ts";
 import { Client, toImage } from "../client.ts";
 import { choices, element } from "../dom.ts";
@@ -8,12 +8,12 @@ import { say, type Text } from "../language.ts";
 import { listen, type Camera, type Vector } from "../orbit.ts";
 
 let shared: Client | undefined;
-/** One module for all figures of a page. */
+/** The module, shared by all figures of a page. */
 export function client(): Client {
   return (shared ??= new Client());
 }
 
-/** Says in a figure why there is no answer. */
+/** Shows in a figure why there is no answer. */
 export class Trouble {
   readonly root = element("p", { class: "trouble", role: "alert", hidden: true });
 
@@ -28,7 +28,7 @@ export class Trouble {
   }
 }
 
-/** Asks with what is wanted last, when the one before is answered. */
+/** Sends the latest request once the previous one is answered. */
 export class Latest extends Trouble {
   private next: Question | undefined;
   private isBusy = false;
@@ -59,7 +59,7 @@ export interface Plate {
   root: HTMLElement;
   canvas: HTMLCanvasElement;
   show(answer: Answer, key?: string, size?: [number, number]): void;
-  /** Shapes of SVG over the picture, in its pixels. */
+  /** Draws SVG shapes over the picture, in its pixel coordinates. */
   mark(...shapes: string[]): void;
 }
 export function plate(title: string, label = title): Plate {
@@ -82,7 +82,7 @@ export function plate(title: string, label = title): Plate {
   };
 }
 
-/** Lines [x, y, x, y] of an answer, as a shape. */
+/** An SVG shape of an answer's lines [x, y, x, y]. */
 export function lines(of: number[][], color: string, width = 1.5, more = ""): string {
   const path = of.map(([x, y, toX, toY]) => `M${x.toFixed(2)} ${y.toFixed(2)}L${toX.toFixed(2)} ${toY.toFixed(2)}`).join("");
   return `<path d="${path}" fill="none" stroke="var(${color})" stroke-width="${width}" stroke-linecap="round" ${more}/>`;
@@ -91,18 +91,18 @@ export function dot(x: number, y: number, color: string, radius = 4): string {
   return `<circle cx="${x.toFixed(2)}" cy="${y.toFixed(2)}" r="${radius}" fill="var(${color})" stroke="var(--panel)"/>`;
 }
 
-/** What a canvas with keys says of them to those who do not see it. */
+/** Adds a canvas's keys to its label, for screen readers. */
 function named(canvas: HTMLCanvasElement, keys: Text): void {
   canvas.setAttribute("aria-label", `${canvas.getAttribute("aria-label")}. ${say(keys)}`);
 }
 
-/** The pixel at a place of the element, within the picture. */
+/** The picture's pixel at a position of the element. */
 export function pixelAt(canvas: HTMLCanvasElement, { offsetX, offsetY }: { offsetX: number; offsetY: number }): [number, number] {
   const within = (at: number, length: number, count: number) => Math.max(0, Math.min(count - 1, Math.floor((at / length) * count)));
   return [within(offsetX, canvas.clientWidth, canvas.width), within(offsetY, canvas.clientHeight, canvas.height)];
 }
 
-/** A pixel of pictures of one size that is chosen by pointing, by touch, and by the arrow keys. */
+/** Lets users choose a pixel in pictures of one size, by pointing, by touch, and by the arrow keys. */
 export function pointing(plates: Plate[], [x, y]: [number, number], take: (x: number, y: number) => void): void {
   for (const { canvas } of plates) {
     const go = (toX: number, toY: number) => {
@@ -125,7 +125,7 @@ export function pointing(plates: Plate[], [x, y]: [number, number], take: (x: nu
   }
 }
 
-/** Names and values, one below the other. */
+/** A list of names and values, one pair a line. */
 export function facts(): { root: HTMLElement; set(rows: [string, string | number][]): void } {
   const root = element("dl", { class: "facts" });
   return {
@@ -135,7 +135,7 @@ export function facts(): { root: HTMLElement; set(rows: [string, string | number
 }
 
 export interface Steps { root: HTMLElement; set(step: number): void; limit(most: number): void; readonly step: number }
-/** Play, pause, forwards, back, and a slider. `show` is called for every step. */
+/** Buttons for play, pause, forward and back, and a slider. `show` is called for every step. */
 export function steps(most: number, show: (step: number) => void, pause = 350): Steps {
   let step = 0, timer = 0;
   const words = {
@@ -195,13 +195,13 @@ export function figure(pictures: HTMLElement[], controls: HTMLElement[], trouble
   return element("figure", { class: "figure" }, element("div", { class: pictures.length > 3 ? "picture pairs" : "picture" }, ...pictures), element("div", { class: "controls" }, trouble?.root, ...controls));
 }
 
-/** What a figure may take that does all anew at every step. */
+/** Most triangles for a figure that computes everything again at every step. */
 export const manyTriangles = 10000;
 
-/** The model of one's own that was opened last, by any figure of the page: the module holds one. */
+/** The user's model, opened last by any figure of the page: the module holds only one. */
 let own: { name: string; triangles: number } | undefined;
 
-/** Scenes to choose from, and a file of one's own, of which the figure shows so many triangles at most. */
+/** A choice of scenes, and of a user's file, where the figure shows at most `most` triangles. */
 export function sceneChoices(name: string, scenes: [string, Text][], chosen: string, change: (scene: string) => void, most = Infinity): HTMLElement {
   const picker = element("input", { type: "file", accept: ".stl,.ply,.obj,.off,.glb,.gltf", class: "sr" });
   const note = element("p", { class: "soft", role: "status" }), trouble = new Trouble();
@@ -238,12 +238,12 @@ export function sceneChoices(name: string, scenes: [string, Text][], chosen: str
 }
 
 interface Framing { angle?: number; beside?: Vector[]; most?: number }
-/** A camera that shows all of a scene from a direction, and points beside it. */
+/** A camera that shows the whole scene from a direction, and the points beside it. */
 export async function framed(scene: string, forward: Vector, [width, height]: [number, number], more: Framing = {}): Promise<Camera> {
   return client().ask({ ask: "lesson.frame", scene, width, height, forward, ...more });
 }
 
-/** A camera that goes once around a scene when it is dragged. `moved` is called with what it is now. */
+/** A camera that dragging moves around a scene. `moved` is called after each change. */
 export class Eye {
   camera: Camera | undefined;
   constructor(target: HTMLCanvasElement, moved: () => void, pointed?: (x: number, y: number) => void) {
@@ -253,14 +253,14 @@ export class Eye {
     listen(target, { camera: () => this.camera, worldUp: () => this.camera?.world_up ?? ([0, 1, 0] as Vector), moved, pointed, isInPage: true });
   }
 
-  /** Shows all of a scene, from a direction. */
+  /** Moves the camera so that it shows the whole scene from a direction. */
   async place(scene: string, forward: Vector, size: [number, number], more: Framing = {}): Promise<void> {
     this.camera = undefined;
     this.camera = await framed(scene, forward, size, more);
   }
 }
 
-/** A colour of the page's. */
+/** A colour of the page's style sheet. */
 export function ink(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }

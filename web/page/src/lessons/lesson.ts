@@ -7,7 +7,7 @@ import { lessons, type Part } from "./list.ts";
 const words = { contents: { en: "All lessons", zh: "全部课程" }, of: { en: "Lesson", zh: "第" } };
 
 function part({ title, prose, figure }: Part): HTMLElement {
-  // Words of the texts between asterisks are what a lesson introduces.
+  // Asterisks in texts enclose terms that a lesson introduces.
   const paragraph = (text: string) => element("p", {}, ...text.split("*").map((piece, i) => (i % 2 ? element("em", {}, piece) : piece)));
   return element("section", {}, title && element("h2", {}, say(title)), element("div", { class: "prose" }, ...prose.map((text) => paragraph(say(text)))), figure?.());
 }

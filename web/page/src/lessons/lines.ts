@@ -12,7 +12,7 @@ const kinds: [string, Text][] = [["--soft", { en: "boundaries: a side of one tri
 const keys = ["boundaries", "silhouettes", "borders", "creases", "intersections"];
 
 interface Part { edge: number; kind: number; hiddenBy: number; line: number[]; begin: number; end: number }
-/** Nine numbers each, as web/lessons/lines.cpp has them. */
+/** Parts of edges, nine numbers each, as web/lessons/lines.cpp writes them. */
 function partsOf(answer: Answer): Part[] {
   const numbers = new Float32Array(answer.parts), parts: Part[] = [];
   for (let i = 0; i < numbers.length; i += 9) {
@@ -51,18 +51,18 @@ function kindsFigure(): HTMLElement {
     })], latest);
 }
 
-/** The edge that is cut into the most parts. */
+/** The edge that is cut into most parts. */
 function richest(parts: Part[]): number {
   const counts = new Map<number, number>();
   for (const { edge } of parts) counts.set(edge, (counts.get(edge) ?? 0) + 1);
   return [...counts].sort((a, b) => b[1] - a[1])[0]?.[0] ?? -1;
 }
 
-/** How a part is drawn that so many surfaces hide. */
+/** Colour, width and dashes of a part that `hiddenBy` surfaces hide. */
 const styleOf = (hiddenBy: number): [string, number, string] => hiddenBy === 0 ? ["--ink", 2.2, ""] : hiddenBy === 1 ? ["--blue", 1.6, `stroke-dasharray="7 5"`] : ["--bad", 1.4, `stroke-dasharray="1.5 4.5"`];
 
 const mostRows = 16;
-/** A row for every triangle that hides something of an edge, those that hide the most, and below them how many do. */
+/** A row for each triangle that hides part of an edge, the largest parts first, and the counts below. */
 function chart(answer: Answer, parts: Part[]): string {
   const all: Answer[] = answer.intervals, rest = all.length - mostRows, shareOf = (row: Answer) => row.end - row.begin;
   const rows = rest > 0 ? [...all].sort((a, b) => shareOf(b) - shareOf(a)).slice(0, mostRows).sort((a, b) => a.begin - b.begin) : all, left = 104, width = size[0] - left - 24, height = Math.min(30, 250 / Math.max(1, rows.length));

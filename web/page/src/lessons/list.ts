@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lessons there are, in their order.
+// The list of lessons, in order.
 import type { Text } from "../language.ts";
 import { clipping } from "./clipping.ts";
 import { culling } from "./culling.ts";
@@ -13,7 +13,7 @@ import { rays } from "./rays.ts";
 import { shadows } from "./shadows.ts";
 import { zbuffer } from "./zbuffer.ts";
 
-/** A part of a lesson: words, and a figure where there is one. */
+/** A part of a lesson: paragraphs, and optionally a figure. */
 export interface Part { title?: Text; prose: Text[]; figure?: () => HTMLElement }
 export interface Lesson { id: string; title: Text; lead: Text; parts: Part[] }
 

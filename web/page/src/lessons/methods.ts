@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which method when: times and memory of all of them, measured here.
+// When to use which method: times and memory of all methods, measured in the browser.
 import { element } from "../dom.ts";
 import { say, type Text } from "../language.ts";
 import { client, figure, sceneChoices, Trouble } from "./figure.ts";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Occlusion culling: objects from the eye outwards, the cells that they cover, and what is proved hidden.
+// Occlusion culling: objects from the eye outwards, the cells that they cover, and objects proved hidden.
 import type { Answer } from "../answer.ts";
 import { choices, element, slider } from "../dom.ts";
 import { say } from "../language.ts";
@@ -9,7 +9,7 @@ import type { Lesson } from "./list.ts";
 
 const size: [number, number] = [480, 320];
 
-/** Cells of one row that are covered and lie side by side are one shape. */
+/** A shape of the covered cells; adjacent cells of a row are joined. */
 function mask(answer: Answer): string {
   const { cells, across, cell } = answer;
   let path = "";
@@ -96,7 +96,7 @@ function sweepFigure(): HTMLElement {
       scene = value;
       isNew = true;
       eye.camera = undefined;
-      // What has many triangles for its cells covers none.
+      // The other scenes have many triangles for a cell, which then cover no large cell.
       cells.input.value = value === "town" ? "3" : "1";
       cells.input.dispatchEvent(new Event("input"));
       void latest.during(place);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The painter's algorithm: polygons one over the other, in an order that is right or is not.
+// The painter's algorithm: polygons painted one over another, in a right or a wrong order.
 import type { Answer } from "../answer.ts";
 import { choices, element } from "../dom.ts";
 import { say, type Text } from "../language.ts";
@@ -89,7 +89,7 @@ const tests: Text[] = [
   { en: "3, exchanged. Is Q wholly behind the plane of P?", zh: "交换后 3. Q 是否完全在 P 的平面之后？" }, { en: "4, exchanged. Is P wholly before the plane of Q?", zh: "交换后 4. P 是否完全在 Q 的平面之前？" }];
 const verdicts: Record<string, Text> = { p: { en: "P is painted first.", zh: "先画 P。" }, q: { en: "They are exchanged: Q is painted first.", zh: "交换：先画 Q。" }, cut: { en: "No test holds, and the exchange does not help: one of them is cut.", zh: "无一成立，交换也无济于事：切开其中之一。" } };
 
-/** Depths from near to far of both, as bars. */
+/** Depth ranges of both triangles, as bars. */
 function depthBars({ p, q }: Answer): string {
   const low = Math.min(p.near, q.near), high = Math.max(p.far, q.far), x = (depth: number) => 34 + ((depth - low) / (high - low || 1)) * (size[0] - 60);
   const bar = (one: Answer, name: string, y: number, color: string) => `<text x="12" y="${y + 11}" fill="var(${color})">${name}</text><rect x="${x(one.near)}" y="${y}" width="${Math.max(2, x(one.far) - x(one.near))}" height="12" rx="3" fill="var(${color})" opacity=".75"/>`;

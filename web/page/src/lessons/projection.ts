@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Projection and depth: 1/z along a segment, what formats tell apart, and plates that fight.
+// Projection and depth: 1/z along a segment, the resolution of formats, and plates that fight.
 import type { Answer } from "../answer.ts";
 import { choices, element, slider, sliders } from "../dom.ts";
 import { say } from "../language.ts";
@@ -7,7 +7,7 @@ import type { Camera, Vector } from "../orbit.ts";
 import { dot, Eye, figure, framed, ink, Latest, lines, plate } from "./figure.ts";
 import type { Lesson } from "./list.ts";
 
-/** A wall from above that can be dragged by its ends, and beside it the depths that the picture finds. */
+/** A wall seen from above, whose ends can be dragged, and beside it the depths in the picture. */
 function segmentFigure(): HTMLElement {
   const plan = plate(say({ en: "From above: drag the ends. Arrow keys move the left one, with Shift the right one", zh: "俯视：拖动两端。方向键移动左端，按住 Shift 移动右端" })), graph = plate(say({ en: "Depth across the picture", zh: "画面上的深度" }));
   const said = element("p", { class: "said", "aria-live": "polite" });
@@ -36,7 +36,7 @@ function segmentFigure(): HTMLElement {
     pen.setLineDash([]);
     pen.strokeStyle = ink("--blue");
     pen.lineWidth = 2;
-    pen.beginPath(); // the picture, at unit distance
+    pen.beginPath(); // the picture plane, at unit distance
     pen.moveTo(eye.x - 2.2 * unitOf, eye.y - unitOf);
     pen.lineTo(eye.x + 2.2 * unitOf, eye.y - unitOf);
     pen.stroke();
@@ -223,7 +223,7 @@ function fightFigure(): HTMLElement {
     }).field], latest);
 }
 
-/** The viewing volume pulled about, and what it shows. */
+/** A viewing volume that can be changed, and its picture. */
 function frustumFigure(): HTMLElement {
   const seen = plate(say({ en: "The picture", zh: "画面" })), aside = plate(say({ en: "The viewing volume from beside. Drag to turn", zh: "从旁边看视域。拖动旋转" }));
   const said = element("p", { class: "said", "aria-live": "polite" });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray casting: one ray through a tree of boxes, on to the light, and what each level of the tree saves.
+// Ray casting: one ray through a tree of boxes and on to the light, and the savings of each level of the tree.
 import type { Answer } from "../answer.ts";
 import { element } from "../dom.ts";
 import { say, type Text } from "../language.ts";

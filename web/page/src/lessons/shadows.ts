@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shadows: a map of what the light sees, its texels and its bias, beside exact rays.
+// Shadows: a depth map from the light, its texels and its bias, beside exact rays.
 import type { Answer } from "../answer.ts";
 import { element, sliders } from "../dom.ts";
 import { say } from "../language.ts";

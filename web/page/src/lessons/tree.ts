@@ -6,10 +6,10 @@ import { say } from "../language.ts";
 import { Eye, facts, figure, Latest, lines, plate, sceneChoices, steps } from "./figure.ts";
 
 const size: [number, number] = [400, 300];
-/** Pairs are as many as their squares, and nodes have to be told apart. */
+/** The number of pairs grows with the square, and nodes must stay distinguishable. */
 export const mostTriangles = 200;
 
-/** What is painted already is full, what is next has a ring; children before a plane hang to the left. */
+/** Draws the tree: painted nodes are filled, the next one has a ring; children before a plane hang to the left. */
 function drawn({ nodes, order }: Answer, step: number): string {
   const inOrder: number[] = [], place = new Map<number, [number, number]>();
   const walk = (number: number): void => {
