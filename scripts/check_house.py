@@ -55,9 +55,10 @@ class House:
                 self.part_of_room[match[1]] = part
                 rooms[match[1]] = self.named(match[2])
         self.parts, self.rooms = self.closed(parts), self.closed(rooms)
-        # If every room of a part has a header of its name, the arrows between rooms hold for the headers too.
         of_part = {part: {room for room in rooms if self.part_of_room[room] == part} for part in parts}
-        self.room_of_header = {room: room for part, within in of_part.items() if within <= self.part_of_header.keys() for room in within}
+        # If most rooms of a part have headers of their names, the arrows between rooms hold for these headers too.
+        self.room_of_header = {room: room for within in of_part.values() for room in within & self.part_of_header.keys()
+                               if 2 * len(within & self.part_of_header.keys()) > len(within)}
         # Headers that only include others are for users, not for the library.
         self.gathering = {"frontmost"} | {part for part in parts if len(of_part[part]) > 1 and part not in rooms}
 

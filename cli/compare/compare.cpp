@@ -29,7 +29,7 @@ constexpr Option compare_options[] = {
        if (g.text.empty()) throw UsageError("the folder's name is empty");
        s.compare.folder = g.string();
      }},
-    {"runs", 0, "N", "Run every method N times, for medians; by default 5 times, and once where that takes over 2 s.",
+    {"runs", 0, "N", "Run every method N times, for medians; by default 5 times, or until a run takes over 2 s.",
      Group::compare, for_compare,
      [](Settings& s, const Given& g) {
        s.compare.runs = g.integer({1, 1e4});

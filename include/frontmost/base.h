@@ -63,8 +63,9 @@ enum class Isa : std::uint8_t { best, scalar, sse4, avx2, avx512, neon, wasm };
 /// Instruction sets that this build contains and this machine can run, slowest first, never `best`.
 [[nodiscard]] std::span<const Isa> available_isas();
 
-/// Callbacks that watch long work. Both are called after every small piece of work, by several threads at a time, so
-/// they must be quick and thread-safe. An exception that a callback throws ends the work and is thrown again.
+/// Callbacks that watch long work. `cancelled` is called before every small piece of work, `progress` now and then,
+/// both by several threads at a time, so they must be quick and thread-safe. An exception that a callback throws ends
+/// the work and is thrown again.
 struct Watch {
   /// Receives the name of the current stage ("load", "surfaces", ...) and the part of it that is done, 0 to 1.
   std::function<void(std::string_view stage, double fraction)> progress;

@@ -34,7 +34,7 @@ class ImageDecoder {
 };
 
 struct LoadOptions {
-  std::optional<ModelFormat> format;  ///< none: by suffix, or, for memory and standard input, by content
+  std::optional<ModelFormat> format;  ///< none: by suffix, or by content if that tells none
   std::optional<Axis> up;             ///< none: the scene file's, or the format's: z for STL and 3MF, y for others
   const ImageDecoder* image_decoder = nullptr;  ///< borrowed during load(); null: PNG, JPEG and WebP
   /// Folders, beside its own, in or below which a scene file may name models and poses.

@@ -31,11 +31,11 @@ inline constexpr int edge_kind_count = 5;
 
 struct LineOptions {
   /// Radians, 0 to pi: an edge is a crease if the normals of its triangles differ by more, but never if the triangles
-  /// are coplanar. None: an edge is a crease if its surfaces differ by at least 18 degrees, less what each surface
-  /// turns by beside the edge. 12 degrees suffice if both surfaces turn evenly and by at most half as much, 9 degrees
-  /// if a crease continues along the edge. Slivers take the normals of their surfaces. Triangles at more than 34
-  /// degrees always form a crease, those at less than 15 never. One or two edges that end in the air are no crease,
-  /// unless they are longer than a twentieth of the scene's diagonal.
+  /// are coplanar. None: an edge is a crease if it bends by at least 18 degrees more than half of what each surface
+  /// bends by at its next edge. 12 degrees suffice if both surfaces bend evenly and by at most half as much as the
+  /// edge, 9 degrees if a crease continues along the edge. Slivers take the normals of their surfaces. Triangles at
+  /// more than 34 degrees always form a crease, those at less than 15 never. One or two edges that end in the air are
+  /// no crease, unless they are longer than a twentieth of the scene's diagonal.
   std::optional<double> crease_angle = std::nullopt;
   /// True: DrawnPart::hidden_by counts surfaces. False: it is 0 or 1, which costs less.
   bool counts_hidden = false;
@@ -370,7 +370,7 @@ struct Rounds {
 //   domes, cones. Cylinders are separate, and whole spheres, which have no axis of their own, are left out.
 
 /// Finds the circles and cylinders of which at least 160 degrees exist, and other surfaces of revolution. Near-linear.
-/// \throws Error limit_exceeded for more than 2^30 triangles.
+/// \throws Error limit_exceeded for more than 2^29 triangles.
 [[nodiscard]] Rounds find_rounds(const Surfaces& surfaces, const Execution& execution = {});
 
 struct CentreLineOptions {

@@ -267,6 +267,7 @@ namespace shading {
 struct PreparedScene;
 PreparedScene& prepared(Shader& shader, const Execution& execution);  // for draw_figure() in sheets.h
 }  // namespace shading
+
 /// Shades pictures of the same surfaces one after another. Each member returns the same bytes as the function of its
 /// name. Keeps data that do not depend on the view: mip levels, smooth normals, shadow casters, the studio; and each
 /// light's shadow map while the light sees the same. From the second picture of a size on, opaque scenes need no
@@ -274,7 +275,6 @@ PreparedScene& prepared(Shader& shader, const Execution& execution);  // for dra
 /// come into sight. Memory: the last picture; a third of the visible texels; 12 bytes a triangle of meshes without
 /// normals; up to 8.25 MiB for each of up to 17 shadow maps; half a megabyte a thread; where needed, surfaces of the
 /// opaque part of a scene with glass, and an index for rays. Not for several threads at once.
-/// with glass, and an index for rays. Not for several threads at once.
 class Shader {
  public:
   /// Borrows the surfaces and their scene, which must not change except by Surfaces::move(). Each call shows moved

@@ -2,8 +2,8 @@
 // Reports: the contents of a scene and the defects of its meshes; how much of each object is seen, and what hides it.
 //
 // Model files often have holes, duplicate faces and faces that are inside out, which matters to printers, solvers and
-// drawings. All counts compare positions of vertices as stored, bit for bit, so any two programs that count in this way
-// agree:
+// drawings. All counts compare positions of vertices as they are stored, without a tolerance, so any two programs that
+// count in this way agree:
 //
 //    +---+---+     an edge of two triangles joins them to a shell
 //    | / | / |     an edge of one triangle is a boundary: the rim of a hole

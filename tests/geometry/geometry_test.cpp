@@ -45,14 +45,28 @@ TEST(Places, TheFirstOfEqualOnesIsFoundAsByAllPairs) {
   EXPECT_TRUE(first_at_place({}, {}).empty());
 }
 
-TEST(Places, ThreadsFindTheSameAndManyThatAreNotFiniteTakeNoTime) {
-  std::vector<glm::vec3> positions(400000, glm::vec3(kNan));  // comparing each NaN with all others would take too long
-  for (std::size_t i = 0; i < positions.size(); i += 2)
-    positions[i] = {float(i % 977), float(i % 613), -float(i % 2003)};
-  const Buffer<std::uint32_t> one = first_at_place(positions, {.threads = 1});
-  const Buffer<std::uint32_t> four = first_at_place(positions, {.threads = 4});
-  EXPECT_TRUE(std::equal(one.begin(), one.end(), four.begin(), four.end()));
-  EXPECT_EQ(one[399999], 399999u);
+TEST(Places, ThreadsThatMeetAtOnePlaceFindTheSame) {
+  std::vector<glm::vec3> positions(400000);
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = {float(i % 37), float(i % 29), -float(i % 2)};
+  for (const int threads : {1, 4}) {
+    const Buffer<std::uint32_t> first = first_at_place(positions, {.threads = threads});
+    for (std::size_t i = 0; i < positions.size(); ++i) ASSERT_EQ(first[i], i % (37 * 29 * 2)) << threads << " threads";
+  }
+}
+
+TEST(Places, ManyThatAreNotFiniteAreNotComparedWithEachOther) {
+  const std::vector<glm::vec3> positions(400000, glm::vec3(kNan));  // all pairs would take minutes
+  const Buffer<std::uint32_t> first = first_at_place(positions, {});
+  for (std::uint32_t i = 0; i < first.size(); ++i) ASSERT_EQ(first[i], i);
+}
+
+TEST(Places, SortingFindsWhatTheTableFinds) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const std::vector<glm::vec3> positions = some_positions(seed, 500);
+    const Buffer<std::uint32_t> table = first_at_place(positions, {}),
+                                sorted = detail::first_at_place_by_sorting(positions);
+    ASSERT_TRUE(std::equal(table.begin(), table.end(), sorted.begin(), sorted.end())) << "seed " << seed;
+  }
 }
 
 /// The triangle beyond an edge, by comparison of all pairs of edges.
@@ -105,6 +119,28 @@ TEST(EdgeNeighbours, AreThoseFoundByAllPairs) {
   EXPECT_GT(alike, 200);
   EXPECT_GT(turned, 200);
   EXPECT_GT(none, 200);
+}
+
+TEST(EdgeNeighbours, OfALargeGridAreTheSameForAllThreads) {
+  constexpr std::uint32_t size = 150;
+  std::vector<glm::uvec3> triangles;
+  for (std::uint32_t y = 0; y < size; ++y)
+    for (std::uint32_t x = 0; x < size; ++x) {
+      const std::uint32_t a = y * (size + 1) + x, b = a + 1, c = a + size + 1, d = c + 1;
+      triangles.emplace_back(a, b, d);
+      triangles.emplace_back(a, d, c);
+    }
+  for (const int threads : {1, 4}) {
+    const EdgeNeighbours neighbours(triangles, (size + 1) * (size + 1), {.threads = threads});
+    for (std::uint32_t y = 0; y < size; ++y)
+      for (std::uint32_t x = 0; x < size; ++x) {
+        const std::uint32_t t = 2 * (y * size + x);
+        ASSERT_EQ(neighbours.across(t, 0), y == 0 ? no_index : t - 2 * size + 1);
+        ASSERT_EQ(neighbours.across(t, 1), x + 1 == size ? no_index : t + 3);
+        ASSERT_EQ(neighbours.across(t, 2), t + 1);
+        ASSERT_EQ(neighbours.across(t + 1, 0), t);
+      }
+  }
 }
 
 TEST(DisjointSets, TheLeastNumberLeadsASetWhateverTheOrderAndTheThreads) {

@@ -140,6 +140,10 @@ class ContestMap {
     numbers_.resize(contests.size());
     std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
     farthest_.assign(starts_.size() - 1, std::numeric_limits<double>::infinity());
+    squares_.reserve(farthest_.size());
+    for (int y = 0; y < rows_; ++y)
+      for (int x = 0; x < columns_; ++x)
+        squares_.emplace_back(question.rays, glm::ivec2(x, y) * kCell, glm::ivec2(x, y) * kCell + (kCell - 1));
     for (std::size_t i = 0; i < contests.size(); ++i) {
       const std::size_t cell = cell_of(contests[i]);
       numbers_[next[cell]++] = i;
@@ -148,11 +152,12 @@ class ContestMap {
     }
   }
 
-  /// Visits the contests in the cells that a rectangle of the screen, in pixels, touches. Skips cells where the
-  /// triangle is behind all claims.
+  /// Visits the contests in the cells that a triangle and its rectangle of the screen, in pixels, meet. Skips cells
+  /// where the triangle is behind all claims.
   template <class Visit>
-  void in_rect(const glm::dvec2& low, const glm::dvec2& high, const ViewedTriangle& triangle,
+  void in_rect(const glm::dvec2& low, const glm::dvec2& high, const std::array<glm::vec3, 3>& corners,
                const Visit& visit) const {
+    std::optional<ViewedTriangle> triangle;
     const auto cell = [](double at, int count) { return int(std::clamp(std::floor(at / kCell), 0.0, count - 1.0)); };
     if (high.x < 0 || high.y < 0 || low.x > view_.width || low.y > view_.height) return;
     const int last_x = cell(high.x, columns_), last_y = cell(high.y, rows_);
@@ -160,11 +165,10 @@ class ContestMap {
       for (int x = cell(low.x, columns_); x <= last_x; ++x) {
         const std::size_t c = std::size_t(y) * std::size_t(columns_) + std::size_t(x);
         if (starts_[c] == starts_[c + 1]) continue;
-        const glm::ivec2 first(x * kCell, y * kCell);
-        const SampleSquare cell_square(question_.rays, first, first + (kCell - 1));
-        if (triangle.nearness(cell_square).greatest.high < farthest_[c]) continue;
-        if (triangle.meeting(cell_square) == LineMeeting::misses) continue;
-        for (std::size_t i = starts_[c]; i < starts_[c + 1]; ++i) visit(numbers_[i]);
+        if (!triangle) triangle.emplace(corners, question_.rays);
+        if (triangle->nearness(squares_[c]).greatest.high < farthest_[c]) continue;
+        if (triangle->meeting(squares_[c]) == LineMeeting::misses) continue;
+        for (std::size_t i = starts_[c]; i < starts_[c + 1]; ++i) visit(numbers_[i], *triangle);
       }
   }
 
@@ -178,7 +182,8 @@ class ContestMap {
   const View& view_;
   int columns_, rows_;
   std::vector<std::size_t> starts_, numbers_;
-  std::vector<double> farthest_;  ///< by cell: least nearness of the remaining claims
+  std::vector<double> farthest_;       ///< by cell: nearness of the farthest of the remaining claims
+  std::vector<SampleSquare> squares_;  ///< by cell, around the squares of all of its samples
 };
 
 /// A rectangle of the screen, in pixels, around the visible part of a triangle.
@@ -255,9 +260,9 @@ void hear_all_triangles(const Question& question, const std::vector<Contest>& co
       const std::array<glm::vec3, 3> corners = question.surfaces.corners(id);
       if (!are_finite(corners)) continue;
       const ScreenRect rect = rects.of(corners);
-      const ViewedTriangle triangle(corners, question.rays);
-      map.in_rect(rect.low, rect.high, triangle,
-                  [&](std::size_t number) { testify(question, id, triangle, contests[number], impossible[number]); });
+      map.in_rect(rect.low, rect.high, corners, [&](std::size_t number, const ViewedTriangle& triangle) {
+        testify(question, id, triangle, contests[number], impossible[number]);
+      });
     }
   });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Groups equal items: the one tool for welding vertices, and for finding edges and duplicates.
+// Groups equal items: edges by their vertices, and duplicate triangles.
 //
 // Items are distributed to buckets by a hash of their key; within a bucket, in the cache, once more by other bits of
 // the hash; the groups of about four items that result are sorted. The hash only spreads the work: if keys were chosen

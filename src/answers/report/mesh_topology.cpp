@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "base/orientation.h"
+#include "base/parallel.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/places.h"
 #include "report/group.h"

@@ -9,7 +9,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
@@ -54,7 +56,7 @@ class Buckets {
   [[nodiscard]] std::span<const Item> operator[](std::size_t bucket) const {
     return {items_.data() + first_[bucket], first_[bucket + 1] - first_[bucket]};
   }
-  /// The same items, which may be put into another order or changed.
+  /// The items of a bucket, which may be reordered or changed.
   [[nodiscard]] std::span<Item> operator[](std::size_t bucket) {
     return {items_.data() + first_[bucket], first_[bucket + 1] - first_[bucket]};
   }

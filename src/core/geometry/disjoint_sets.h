@@ -36,6 +36,7 @@ class DisjointSets {
       std::uint32_t parent = parents_[i].load(std::memory_order_relaxed);
       if (parent == i) return i;
       const std::uint32_t above = parents_[parent].load(std::memory_order_relaxed);
+      if (above == parent) return parent;
       // If another thread has written this parent meanwhile, nothing is written.
       parents_[i].compare_exchange_weak(parent, above, std::memory_order_relaxed);
       i = above;

@@ -23,12 +23,12 @@ struct EdgeSide {
 };
 
 void join(const EdgeSide& a, const EdgeSide& b, Buffer<std::uint32_t>& beyond) {
-  const std::uint32_t are_alike = (a.number ^ b.number) >> 31;
-  beyond[a.side()] = b.side() / 3 << 1 | are_alike;
-  beyond[b.side()] = a.side() / 3 << 1 | are_alike;
+  const std::uint32_t is_wound_alike = (a.number ^ b.number) >> 31;
+  beyond[a.side()] = b.side() / 3 << 1 | is_wound_alike;
+  beyond[b.side()] = a.side() / 3 << 1 | is_wound_alike;
 }
 
-/// The same as join_pairs(), by asking all pairs.
+/// Does what join_pairs() does, by comparing all pairs.
 void join_few(std::span<const EdgeSide> sides, Buffer<std::uint32_t>& beyond) {
   for (std::size_t i = 0; i < sides.size(); ++i) {
     std::size_t found = 0, partner = i;
@@ -53,11 +53,17 @@ void join_pairs(std::span<EdgeSide> sides, Buffer<std::uint32_t>& beyond) {
   }
 }
 
+std::size_t checked_count(std::span<const glm::uvec3> triangles) {
+  if (triangles.size() > EdgeNeighbours::most_triangles)
+    throw Error(ErrorCode::limit_exceeded, "mesh", "more than 536870912 triangles to join at their edges");
+  return triangles.size();
+}
+
 }  // namespace
 
 EdgeNeighbours::EdgeNeighbours(std::span<const glm::uvec3> triangles, std::size_t vertex_count,
                                const Execution& execution)
-    : beyond_(3 * triangles.size(), no_index) {
+    : beyond_(3 * checked_count(triangles), no_index) {
   const auto list_sides = [&](std::size_t t, const auto& add) {
     const glm::uvec3& c = triangles[t];
     if (c.x == c.y || c.y == c.z || c.z == c.x) return;

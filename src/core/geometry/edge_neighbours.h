@@ -17,12 +17,13 @@ namespace frontmost {
 /// Side k of a triangle leads from its vertex k to the next.
 class EdgeNeighbours {
  public:
-  /// A side and two flags share 32 bits.
+  /// 3 * triangle + side and a flag share 32 bits.
   static constexpr std::size_t most_triangles = std::size_t(1) << 29;
 
   EdgeNeighbours() = default;
-  /// Triangles by their welded vertices; one with the same vertex twice has no neighbours, and is none. Precondition:
-  /// at most most_triangles, vertices below vertex_count. O(triangles * log triangles at a vertex), in parallel.
+  /// `triangles` are welded: vertices at one place have one number, below vertex_count. A triangle that has a vertex
+  /// twice neither has neighbours nor is one. O(triangles * log triangles at a vertex), in parallel.
+  /// \throws Error limit_exceeded for more than most_triangles.
   EdgeNeighbours(std::span<const glm::uvec3> triangles, std::size_t vertex_count, const Execution& execution);
 
   /// The only other triangle with this side; no_index where there is none, or several.
@@ -30,7 +31,7 @@ class EdgeNeighbours {
     const std::uint32_t found = beyond_[3 * triangle + side];
     return found == no_index ? no_index : found >> 1;
   }
-  /// Whether that triangle runs along the side in the other direction. Precondition: there is one.
+  /// Whether that triangle is wound alike: it runs along the side in the other direction. Precondition: there is one.
   [[nodiscard]] bool is_wound_alike(std::size_t triangle, std::size_t side) const {
     return (beyond_[3 * triangle + side] & 1) != 0;
   }

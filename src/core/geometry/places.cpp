@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // All threads fill one table with open addressing. A slot holds the lowest vertex of its place: whichever thread comes
-// first, the lowest vertex stays, by compare and exchange. So the result does not depend on threads.
+// first, the lowest vertex stays, by compare and exchange. So the result does not depend on threads. A file may hold
+// positions that were chosen to collide; if a search passes thousands of slots, the positions are sorted instead.
 #include "geometry/places.h"
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cstring>
+#include <numeric>
+#include <tuple>
 #include <vector>
 
 #include "base/parallel.h"
@@ -14,17 +18,20 @@ namespace frontmost {
 namespace {
 
 constexpr std::size_t kAtOnce = 8192;
+/// Slots of a search; among keys without a pattern a hundred are rare.
+constexpr std::size_t kMostProbes = 4096;
 
 class PlaceTable {
  public:
   explicit PlaceTable(std::span<const glm::vec3> positions)
       : positions_(positions), slots_(std::bit_ceil(2 * positions.size() + 2)) {}
 
-  /// \returns the slot of the vertex's place. For many threads.
+  /// \returns the slot of the vertex's place; no_index after too long a search. For many threads.
   std::uint32_t enter(std::uint32_t vertex) {
     const glm::vec3& p = positions_[vertex];
     const std::size_t mask = slots_.size() - 1;
-    for (std::size_t i = hash_of(p) & mask;; i = (i + 1) & mask) {
+    std::size_t i = hash_of(p) & mask;
+    for (std::size_t probes = 0; probes < kMostProbes; ++probes, i = (i + 1) & mask) {
       std::uint32_t held = slots_[i].load(std::memory_order_relaxed);
       if (held == 0 && slots_[i].compare_exchange_strong(held, vertex + 1, std::memory_order_relaxed))
         return std::uint32_t(i);
@@ -33,6 +40,7 @@ class PlaceTable {
       }
       return std::uint32_t(i);
     }
+    return no_index;
   }
   [[nodiscard]] std::uint32_t lowest_in(std::uint32_t slot) const {
     return slots_[slot].load(std::memory_order_relaxed) - 1;
@@ -57,13 +65,37 @@ class PlaceTable {
 
 }  // namespace
 
+Buffer<std::uint32_t> detail::first_at_place_by_sorting(std::span<const glm::vec3> positions) {
+  std::vector<std::uint32_t> order(positions.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto finite_end =
+      std::partition(order.begin(), order.end(), [&](std::uint32_t v) { return is_finite(positions[v]); });
+  const auto key_of = [&](std::uint32_t v) {
+    return std::tuple(positions[v].x + 0.0f, positions[v].y + 0.0f, positions[v].z + 0.0f, v);
+  };
+  std::sort(order.begin(), finite_end, [&](std::uint32_t a, std::uint32_t b) { return key_of(a) < key_of(b); });
+  Buffer<std::uint32_t> first(positions.size());
+  for (auto v = order.begin(); v != order.end(); ++v) {
+    const bool is_new = v >= finite_end || v == order.begin() || positions[*v] != positions[v[-1]];
+    first[*v] = is_new ? *v : first[v[-1]];
+  }
+  return first;
+}
+
 Buffer<std::uint32_t> first_at_place(std::span<const glm::vec3> positions, const Execution& execution) {
+  if (positions.size() >= std::size_t(1) << 31)
+    throw Error(ErrorCode::limit_exceeded, "mesh", "more than 2147483647 vertices to weld");
   PlaceTable table(positions);
   Buffer<std::uint32_t> first(positions.size());
+  std::atomic<bool> is_crowded{false};
   parallel_for(execution, positions.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v)
-      if (is_finite(positions[v])) first[v] = table.enter(std::uint32_t(v));
+    for (std::size_t v = begin; v < end && !is_crowded; ++v) {
+      if (!is_finite(positions[v])) continue;
+      first[v] = table.enter(std::uint32_t(v));
+      if (first[v] == no_index) is_crowded = true;
+    }
   });
+  if (is_crowded) return detail::first_at_place_by_sorting(positions);
   parallel_for(execution, positions.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       first[v] = is_finite(positions[v]) ? table.lowest_in(first[v]) : std::uint32_t(v);

@@ -13,4 +13,9 @@ namespace frontmost {
 /// threads; the same for any number of them.
 [[nodiscard]] Buffer<std::uint32_t> first_at_place(std::span<const glm::vec3> positions, const Execution& execution);
 
+namespace detail {
+/// Computes first_at_place() by sorting, whose time nobody's choice of positions makes quadratic.
+[[nodiscard]] Buffer<std::uint32_t> first_at_place_by_sorting(std::span<const glm::vec3> positions);
+}  // namespace detail
+
 }  // namespace frontmost

@@ -37,7 +37,7 @@ struct SmoothMesh {
   }
 };
 
-/// O(triangles log triangles at a vertex). \throws Error limit_exceeded for more than EdgeNeighbours::most_triangles.
+/// O(triangles log triangles at a vertex). \throws Error limit_exceeded as EdgeNeighbours does.
 [[nodiscard]] SmoothMesh smooth_mesh(const Surfaces& surfaces, const Execution& execution);
 
 /// An edge and its triangles; `right` may be no_index.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parts that touch have different hatching, as drawing standards require. Two angles and three spacings give six
-// styles. Each part, in the order of numbers, gets the style that its neighbours in all sections use least. So a part
-// looks the same wherever it is cut. Thin walls are hatched densely and look filled, because few lines of wide hatching
-// would cross them.
+// styles. Each part, in the order of numbers, gets the style that the earlier parts beside it, in any section, use
+// least. So a part looks the same wherever it is cut. Thin walls are hatched densely and look filled, because few lines
+// of wide hatching would cross them.
 #include <algorithm>
 
 #include "frontmost/lines.h"

@@ -27,10 +27,11 @@ struct WeldedTriangle {
   bool is_double_sided;
 };
 
-std::vector<WeldedTriangle> seen_triangles(const PlacedScene& placed, std::uint32_t instance) {
+std::vector<WeldedTriangle> seen_triangles(const PlacedScene& placed, std::uint32_t instance,
+                                           const Execution& execution) {
   const Scene& scene = *placed.scene;
   const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
-  const Buffer<std::uint32_t> first = first_at_place(mesh.positions, {.threads = 1});
+  const Buffer<std::uint32_t> first = first_at_place(mesh.positions, execution);
   std::vector<WeldedTriangle> seen;
   seen.reserve(mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -177,8 +178,8 @@ class PartWriter {
 };
 
 /// By triangle and side, the only other triangle there, if it is wound alike.
-std::vector<glm::uvec3> neighbours_of(const OccluderMesh& mesh) {
-  const EdgeNeighbours edges(mesh.triangles, mesh.positions.size(), {.threads = 1});
+std::vector<glm::uvec3> neighbours_of(const OccluderMesh& mesh, const Execution& execution) {
+  const EdgeNeighbours edges(mesh.triangles, mesh.positions.size(), execution);
   std::vector<glm::uvec3> neighbours(mesh.triangles.size());
   for (std::size_t t = 0; t < neighbours.size(); ++t)
     neighbours[t] = {edges.across(t, 0), edges.across(t, 1), edges.across(t, 2)};
@@ -187,10 +188,11 @@ std::vector<glm::uvec3> neighbours_of(const OccluderMesh& mesh) {
 
 }  // namespace
 
-OccluderMesh occluder_mesh(const PlacedScene& placed, std::uint32_t instance, ObjectUnit unit) {
+OccluderMesh occluder_mesh(const PlacedScene& placed, std::uint32_t instance, ObjectUnit unit,
+                           const Execution& execution) {
   const Scene& scene = *placed.scene;
   const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
-  std::vector<WeldedTriangle> seen = seen_triangles(placed, instance);
+  std::vector<WeldedTriangle> seen = seen_triangles(placed, instance, execution);
   std::uint32_t parts = 1;
   if (unit == ObjectUnit::parts) parts = tell_parts_apart(mesh.positions.size(), seen);
   if (unit == ObjectUnit::clusters) parts = ClusterCutter(mesh.positions, seen).cut();
@@ -199,7 +201,7 @@ OccluderMesh occluder_mesh(const PlacedScene& placed, std::uint32_t instance, Ob
   std::vector<std::vector<std::uint32_t>> touching_parts;
   if (unit == ObjectUnit::clusters) touching_parts = touching(mesh.positions.size(), seen, out.parts.size());
   PartWriter(mesh.positions, seen, out).write(touching_parts);
-  out.neighbours = neighbours_of(out);
+  out.neighbours = neighbours_of(out, execution);
   for (OccluderPart& part : out.parts)
     for (std::uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t)
       for (int side = 0; side < 3; ++side) part.is_closed = part.is_closed && out.neighbours[t][side] != no_index;

@@ -29,7 +29,7 @@ struct OccluderPart {
 };
 
 struct OccluderMesh {
-  std::vector<glm::vec3> positions;  ///< each position once
+  std::vector<glm::vec3> positions;  ///< each position once for each part that has it
   std::vector<glm::uvec3> triangles;
   std::vector<glm::uvec3> neighbours;
   std::vector<OccluderPart> parts;  ///< at least one
@@ -61,7 +61,8 @@ void OccluderMesh::visit_around(std::uint32_t triangle, int corner, const Visit&
 
 /// The occluder mesh of an instance. It has one part, or one for each connected part, or one for each cluster.
 /// O(triangles), or O(triangles log triangles) with several parts.
-[[nodiscard]] OccluderMesh occluder_mesh(const PlacedScene& placed, std::uint32_t instance, ObjectUnit unit);
+[[nodiscard]] OccluderMesh occluder_mesh(const PlacedScene& placed, std::uint32_t instance, ObjectUnit unit,
+                                         const Execution& execution = {});
 
 /// The most triangles of a cluster.
 inline constexpr std::size_t most_in_cluster = 128;

@@ -70,7 +70,7 @@ struct Occlusion::State {
       if (user[scene.instances[i].mesh] == no_index) user[scene.instances[i].mesh] = i;
     parallel_for(execution, meshes.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t m = begin; m < end; ++m)
-        if (user[m] != no_index) meshes[m] = occluder_mesh(placed_scene(surfaces), user[m], unit);
+        if (user[m] != no_index) meshes[m] = occluder_mesh(placed_scene(surfaces), user[m], unit, execution);
     });
   }
 

@@ -5,16 +5,21 @@
 #include "geometry/places.h"
 
 namespace frontmost::faces_detail {
+namespace {
+
+constexpr std::size_t kTrianglesAtOnce = 8192;
+
+}  // namespace
 
 EdgeNeighbours mesh_sides(const Mesh& mesh, const Execution& execution) {
-  if (mesh.triangles.size() > EdgeNeighbours::most_triangles)
-    throw Error(ErrorCode::limit_exceeded, "mesh " + mesh.name, "more than 536870912 triangles to join");
   const Buffer<std::uint32_t> first = first_at_place(mesh.positions, execution);
   std::vector<glm::uvec3> triangles(mesh.triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const glm::uvec3& c = mesh.triangles[t];
-    triangles[t] = {first[c.x], first[c.y], first[c.z]};
-  }
+  parallel_for(execution, triangles.size(), kTrianglesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const glm::uvec3& c = mesh.triangles[t];
+      triangles[t] = {first[c.x], first[c.y], first[c.z]};
+    }
+  });
   return {triangles, mesh.positions.size(), execution};
 }
 

@@ -12,7 +12,7 @@ namespace frontmost::faces_detail {
 /// \throws Error limit_exceeded for more than EdgeNeighbours::most_triangles.
 [[nodiscard]] EdgeNeighbours mesh_sides(const Mesh& mesh, const Execution& execution);
 
-/// By mesh; a mesh without an instance has none.
+/// By mesh. Precondition of asking one: its mesh has an instance.
 [[nodiscard]] std::vector<EdgeNeighbours> sides_of_meshes(const Scene& scene, const Execution& execution);
 
 }  // namespace frontmost::faces_detail

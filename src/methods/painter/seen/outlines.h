@@ -76,7 +76,7 @@ class OutlineClipper {
   /// From this many parts on, parts should not be split any more: only wholly hidden parts are removed.
   static constexpr std::size_t most_parts = 48;
   /// Steps that a Poll counts for each part from which a cover is subtracted.
-  static constexpr std::size_t steps_of_part = 4;
+  static constexpr std::size_t steps_of_part = 1;
 
   void begin(Outline outline);
   /// Removes everything within `cover`. Without `may_split` it only removes parts that lie wholly within it. \returns
