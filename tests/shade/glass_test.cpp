@@ -52,7 +52,7 @@ glm::vec4 middle_of(const Scene& scene, const ShadeOptions& options) {
 }
 
 const ShadeOptions flat{.shading = Shading::flat};
-const ShadeOptions lit{.light = {.shadows = Shadows::off}};
+const ShadeOptions unshadowed{.light = {.shadows = Shadows::off}};
 
 void expect_near(const glm::vec4& color, const glm::vec3& wanted, float tolerance, const char* what = "") {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(color[c], wanted[c], tolerance) << what << ", channel " << c;
@@ -83,8 +83,8 @@ TEST(Glass, TwoPanesTintTwiceInWhateverOrder) {
 // Whatever light falls on the glass, a change behind it shows through by the share that is not reflected.
 TEST(Glass, LitGlassLetsThroughWhatItDoesNotMirror) {
   const glm::vec3 tint{0.9f, 0.5f, 0.1f};
-  const glm::vec4 dark = middle_of(panes({glass(tint), unlit(glm::vec3(0))}), lit);
-  const glm::vec4 bright = middle_of(panes({glass(tint), unlit(glm::vec3(0.5f))}), lit);
+  const glm::vec4 dark = middle_of(panes({glass(tint), unlit(glm::vec3(0))}), unshadowed);
+  const glm::vec4 bright = middle_of(panes({glass(tint), unlit(glm::vec3(0.5f))}), unshadowed);
   expect_near(bright - dark, 0.5f * (1 - kMirrored) * tint, 1e-5f);
   EXPECT_GT(dark.x, 0.0f) << "it mirrors";
 }
@@ -93,11 +93,11 @@ TEST(Glass, HighlightsAreThoseOfABlackSurface) {
   const Material clear = glass(glm::vec3(1));
   Material black = colored({0, 0, 0, 1});
   black.roughness = clear.roughness;
-  const glm::vec4 of_black = middle_of(panes({black}), lit);
+  const glm::vec4 of_black = middle_of(panes({black}), unshadowed);
   EXPECT_GT(of_black.x, 0.005f);
-  expect_near(middle_of(panes({clear, unlit(glm::vec3(0))}), lit), glm::vec3(of_black), 2e-5f);
+  expect_near(middle_of(panes({clear, unlit(glm::vec3(0))}), unshadowed), glm::vec3(of_black), 2e-5f);
   // Highlights are visible without anything behind, and a transparent picture keeps them.
-  ShadeOptions over_nothing = lit;
+  ShadeOptions over_nothing = unshadowed;
   over_nothing.background = std::nullopt;
   const glm::vec4 alone = middle_of(panes({clear}), over_nothing);
   expect_near(alone, glm::vec3(of_black), 2e-5f);
@@ -109,7 +109,7 @@ TEST(Glass, TintsAShownEnvironmentAsItTintsABackground) {
   const float grey = 0.5f, radiance = std::pow((grey + 0.055f) / 1.055f, 2.4f);
   Image picture{4, 2, {}};
   for (const char* name : {"R", "G", "B"}) picture.channels.push_back({name, Buffer<float>(8, radiance)});
-  ShadeOptions options = lit;
+  ShadeOptions options = unshadowed;
   options.light.environment = Environment(picture);
   options.background = glm::vec3(grey);
   const Scene scene = panes({glass({0.9f, 0.5f, 0.1f}), glass({0.2f, 0.6f, 0.8f})});
@@ -166,9 +166,9 @@ TEST(Glass, OutOfAVolumeLightComesAsItIs) {
   scene.meshes[1].triangles = {{0, 2, 1}, {0, 3, 2}};
   scene.instances[1].world_from_mesh[0][0] = 1;
   expect_near(middle_of(scene, flat), glm::vec3(0.5f, 0.9f, 0.5f), 1e-5f);
-  const glm::vec4 with_back = middle_of(scene, lit);
+  const glm::vec4 with_back = middle_of(scene, unshadowed);
   scene.instances.erase(scene.instances.begin() + 1);
-  expect_near(with_back, glm::vec3(middle_of(scene, lit)), 1e-6f, "it mirrors nothing");
+  expect_near(with_back, glm::vec3(middle_of(scene, unshadowed)), 1e-6f, "it mirrors nothing");
   // A thin wall tints on both sides.
   Scene thin = panes({glass({0.5f, 0.9f, 0.5f}), unlit(glm::vec3(1))});
   thin.meshes[0].triangles = {{0, 2, 1}, {0, 3, 2}};
@@ -222,7 +222,7 @@ TEST(Glass, HostileNumbersMakeAPicture) {
       Scene scene = panes({m, colored(glm::vec4(0.5f))});
       scene.instances[0].world_from_mesh = glm::dmat4(0.5);
       scene.instances[0].world_from_mesh[3] = {0, 0, 0, 1};
-      for (const ShadeOptions& options : {flat, lit}) {
+      for (const ShadeOptions& options : {flat, unshadowed}) {
         const glm::vec4 color = middle_of(scene, options);
         for (int c = 0; c < 4; ++c) EXPECT_TRUE(color[c] >= 0 && color[c] <= 1.0001f) << odd << ": " << color[c];
       }
