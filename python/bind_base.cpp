@@ -10,6 +10,9 @@
 #include "python/bindings.h"
 
 namespace frontmost::python {
+
+using namespace py::literals;
+
 namespace {
 
 const char* word_of(ErrorCode code) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "support/random_scene.h"
+#include "surfaces/cluster_set.h"
 
 namespace frontmost::test {
 namespace {

@@ -10,6 +10,7 @@
 #include "support/allocation_count.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
+#include "surfaces/cluster_set.h"
 
 namespace frontmost::test {
 namespace {

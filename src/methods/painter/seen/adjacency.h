@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "painter/limits.h"
 #include "painter/seen/screen_polygons.h"
 
 namespace frontmost::painter_detail {
