@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <new>
 #include <set>
+#include <system_error>
 
 namespace frontmost {
 namespace {
@@ -88,6 +90,28 @@ TEST(CrewThreads, SeveralCallersShareThem) {
     });
   for (std::thread& caller : callers) caller.join();
   EXPECT_EQ(done, 400);
+}
+
+// Loops go on with the threads that there are.
+TEST(CrewThreads, TheSystemMayRefuseThreads) {
+  static std::vector<Crew*> kept;  // threads wait in a crew until the process ends
+  for (const int given : {0, 1, 3})
+    for (const bool lacks_memory : {false, true}) {
+      std::atomic<int> started{0}, refused{0};
+      kept.push_back(new Crew([&](std::function<void()> body) {
+        if (started == given && ++refused == 1 && lacks_memory) throw std::bad_alloc();
+        if (started == given) throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again));
+        ++started;
+        std::thread(std::move(body)).detach();
+      }));
+      for (int round = 0; round < 100; ++round) {
+        Numbers numbers(50);
+        kept.back()->run(7, [&] { numbers.drain([](int) {}); });
+        ASSERT_TRUE(numbers.are_all_taken_once());
+      }
+      EXPECT_EQ(started, given);
+      EXPECT_EQ(refused, 1) << "the system is not asked again at every loop";
+    }
 }
 
 // ThreadSanitizer does not let a process start threads if it was forked from one with several threads.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loops over chunks: every index once, the same chunks for all thread counts, errors, cancelling, and the caller's
-// rounding mode. Also a system that refuses threads, replaced by one that refuses on request.
+// rounding mode.
 #include "base/parallel.h"
 
 #include <gtest/gtest.h>
@@ -12,14 +12,10 @@
 #include <chrono>
 #include <limits>
 #include <mutex>
-#include <new>
 #include <set>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <vector>
-
-#include "base/spare_threads.h"
 
 #if defined(__SSE2__)
 #include <immintrin.h>
@@ -229,29 +225,6 @@ TEST(Watch, IsToldAndAskedOnlyIfItIsThere) {
     EXPECT_EQ(error.code(), ErrorCode::cancelled);
     EXPECT_STREQ(error.what(), "cancelled");
   }
-}
-
-/// Allows `most` threads at once, then throws `Refusal`.
-template <class Refusal>
-int count_with(int wanted, int most, const Refusal& refusal) {
-  std::atomic<int> begun{0};
-  const int count = count_spare_threads(wanted, [&](std::function<void()> body) {
-    if (begun == most) throw refusal;
-    ++begun;
-    return std::thread(std::move(body));
-  });
-  EXPECT_EQ(begun, std::min(wanted, most)) << "it ends at the first that is refused";
-  return count;
-}
-
-TEST(SpareThreads, AreCountedUntilOneIsRefused) {
-  const std::system_error refusal(std::make_error_code(std::errc::resource_unavailable_try_again));
-  EXPECT_EQ(count_with(8, 100, refusal), 8);
-  EXPECT_EQ(count_with(8, 8, refusal), 8);
-  EXPECT_EQ(count_with(8, 3, refusal), 3);
-  EXPECT_EQ(count_with(8, 0, refusal), 0);
-  EXPECT_EQ(count_with(8, 5, std::bad_alloc()), 5) << "memory for a thread is refused likewise";
-  EXPECT_EQ(count_with(0, 5, refusal), 0);
 }
 
 }  // namespace

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads that stay for the next loop, for builds without TBB. Making threads for every loop takes as long as many a
-// loop, and WebAssembly frees ended threads only when the page comes to rest.
+// Threads that stay for the next loop. Making threads for every loop takes as long as many a loop, and WebAssembly
+// frees ended threads only when the page comes to rest.
 //
 //   run(2, work)     work here   ------------------------------+ wait until nobody is inside
-//   a thread         sleeps  -- work ----------------+ sleeps
-//   a thread         in another loop's work -------------- sleeps
+//   a thread         looks out -- work ----------------+ looks out ... sleeps
+//   a thread         in another loop's work -------------- looks out
 //
 // Nested loops and loops of several callers share the threads: every caller does its own work, and free threads come to
-// help. A loop waits only for work that has begun.
+// help. A loop waits only for work that has begun. A free thread looks out for the next loop for a while before it
+// sleeps, because waking a thread takes about as long as many a loop.
 #pragma once
 
 #include <pthread.h>
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <functional>
@@ -26,6 +28,12 @@ namespace frontmost {
 /// Never destroyed, as threads wait in it until the process ends.
 class Crew {
  public:
+  /// Starts a thread that nobody waits for. \throws std::exception if the system gives none.
+  using StartThread = std::function<void(std::function<void()> body)>;
+
+  explicit Crew(StartThread start = [](std::function<void()> body) { std::thread(std::move(body)).detach(); })
+      : start_(std::move(start)) {}
+
   /// The crew of all loops of the process. A forked process gets its own, because a fork takes no threads along.
   static Crew& of_process() {
     static std::atomic<Crew*> crew = new Crew;
@@ -39,30 +47,51 @@ class Crew {
   /// must not throw, and must return at once if nothing is left to do.
   void run(int helpers, const std::function<void()>& work) {
     Job job{&work, helpers};
+    int asleep = 0;
     {
       const std::lock_guard lock(mutex_);
       hire(helpers);
       jobs_.push_back(&job);
+      places_ += helpers;
+      asleep = std::min(helpers, asleep_);
     }
-    for (int i = 0; i < helpers; ++i) called_.notify_one();
+    for (int i = 0; i < asleep; ++i) called_.notify_one();
     work();
+    {
+      const std::lock_guard lock(mutex_);
+      std::erase(jobs_, &job);
+      places_ -= job.wanted;
+    }
+    if (look_out_for([&] { return job.inside == 0; })) return;
     std::unique_lock lock(mutex_);
-    std::erase(jobs_, &job);
     left_.wait(lock, [&] { return job.inside == 0; });
   }
 
  private:
   struct Job {
     const std::function<void()>* work;
-    int wanted;      ///< threads that may still join
-    int inside = 0;  ///< threads at work
+    int wanted;                   ///< threads that may still join
+    std::atomic<int> inside = 0;  ///< threads at work
   };
+
+  /// Waits for a while. \returns whether `has_come` is true.
+  template <class HasCome>
+  static bool look_out_for(const HasCome& has_come) {
+    constexpr std::chrono::microseconds a_while(50);
+    if (has_come()) return true;
+    const auto end = std::chrono::steady_clock::now() + a_while;
+    do {
+      std::this_thread::yield();
+      if (has_come()) return true;
+    } while (std::chrono::steady_clock::now() < end);
+    return false;
+  }
 
   /// Makes as many threads as the largest loop so far wanted.
   void hire(int helpers) {
     if (pause_ > 0) return void(--pause_);
     try {
-      for (; size_ < helpers; ++size_) std::thread([this] { serve(); }).detach();
+      for (; size_ < helpers; ++size_) start_([this] { serve(); });
     } catch (const std::exception&) {
       // The system gives no more threads now: the existing ones do the same work, and the system is asked again later.
       constexpr int loops = 1000;
@@ -76,21 +105,28 @@ class Crew {
   }
 
   void serve() {
-    std::unique_lock lock(mutex_);
     for (;;) {
+      look_out_for([&] { return places_ > 0; });
+      std::unique_lock lock(mutex_);
+      ++asleep_;
       called_.wait(lock, [&] { return open_job() != nullptr; });
+      --asleep_;
       Job& job = *open_job();
-      --job.wanted, ++job.inside;
+      --job.wanted, --places_, ++job.inside;
       lock.unlock();
       (*job.work)();
-      lock.lock();
-      if (--job.inside == 0) left_.notify_all();
+      if (--job.inside > 0) continue;
+      lock.lock();  // the caller either sees that nobody is inside, or waits already
+      left_.notify_all();
     }
   }
 
+  StartThread start_;
   std::mutex mutex_;
   std::condition_variable called_, left_;
   std::vector<Job*> jobs_;
+  std::atomic<int> places_{0};  ///< helpers that all jobs still want
+  int asleep_ = 0;
   int size_ = 0;
   int pause_ = 0;  ///< loops until more threads are asked for, after a refusal
 };

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops over chunks on threads. With TBB, its threads are used if it can be trusted, else threads made for one loop;
-// without TBB the threads of a crew, which stay.
+// Loops over chunks on the threads of a crew.
 //
 //   caller    --- check --- chunk 0 --- chunk 2 --- chunk 5 ---+
 //   helper    ------------- chunk 1 --- chunk 4 ---------------+--- the first exception is thrown again, or go on
@@ -12,22 +11,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <exception>
 #include <mutex>
 #include <thread>
-#include <utility>
-#include <vector>
 
-#if defined(FRONTMOST_THREADS_std)
 #include "base/crew.h"
-#elif defined(FRONTMOST_THREADS_tbb)
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
-#include "base/spare_threads.h"
-#endif
 
 namespace frontmost {
 namespace {
@@ -74,87 +62,6 @@ class ChunkQueue {
   std::exception_ptr error_;
 };
 
-#if defined(FRONTMOST_THREADS_tbb)
-/// Drains the queue on threads made for this loop alone.
-void drain_on_own(int threads, ChunkQueue& queue) {
-  std::vector<std::thread> helpers;
-  helpers.reserve(std::size_t(threads));
-  try {
-    for (int i = 1; i < threads; ++i) helpers.emplace_back([&] { queue.drain(); });
-  } catch (const std::exception&) {
-    // The system gives no more threads, or no memory for them: the existing ones do the same work.
-  }
-  queue.drain();
-  for (std::thread& helper : helpers) helper.join();
-}
-
-/// An arena for so many threads: more threads than cores need both an arena of their own and a higher global limit.
-struct Helpers {
-  explicit Helpers(int threads)
-      : limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads)), arena(threads) {}
-
-  tbb::global_control limit;
-  tbb::task_arena arena;
-};
-
-/// Makes TBB start its threads now, with work that waits until all have come. TBB may start fewer at first; it then
-/// starts the rest when it wants to.
-void gather(int threads) {
-  constexpr std::chrono::milliseconds patience(50);
-  const auto until = std::chrono::steady_clock::now() + patience;
-  std::atomic<int> arrived{0};
-  Helpers helpers(threads);
-  helpers.arena.execute([&] {
-    tbb::parallel_for(
-        0, threads, 1,
-        [&](int) {
-          for (++arrived; arrived < threads && std::chrono::steady_clock::now() < until;) std::this_thread::yield();
-        },
-        tbb::simple_partitioner());
-  });
-}
-
-/// Whether TBB can be trusted with so many threads: a refused thread makes it end the process. So as many are tried
-/// beforehand, and as many again, because tried threads may count a little longer than they live.
-bool tbb_may_use(int threads) {
-  static std::mutex mutex;
-  static std::atomic<int> made{1};
-  static bool is_scarce = false;
-  if (threads <= made) return true;
-  const std::lock_guard lock(mutex);
-  if (threads <= made) return true;
-  const int tried = 2 * (threads - made);
-  if (!is_scarce)
-    is_scarce = count_spare_threads(tried, [](auto body) { return std::thread(std::move(body)); }) < tried;
-  if (is_scarce) return false;
-  gather(threads);
-  made = threads;
-  return true;
-}
-
-void drain_here(int threads, ChunkQueue& queue) {
-  tbb::parallel_for(
-      0, threads, 1, [&](int) { queue.drain(); }, tbb::simple_partitioner());
-}
-
-void drain_on(int threads, ChunkQueue& queue) {
-  if (!tbb_may_use(threads)) return drain_on_own(threads, queue);
-  // In the caller's own arena, helpers look for the next loop for some 50 us before they sleep: waking one takes 40 us,
-  // as long as many a loop. A thread that waits for the end of an inner loop must not begin chunks of the outer loop
-  // meanwhile.
-  if (threads <= tbb::this_task_arena::max_concurrency())
-    return tbb::this_task_arena::isolate([&] { drain_here(threads, queue); });
-  Helpers helpers(threads);
-  helpers.arena.execute([&] { drain_here(threads, queue); });
-}
-#elif defined(FRONTMOST_THREADS_std)
-void drain_on(int threads, ChunkQueue& queue) {
-  Crew::of_process().run(threads - 1, [&] { queue.drain(); });
-}
-#else
-void drain_on(int, ChunkQueue& queue) { queue.drain(); }
-#endif
-
 }  // namespace
 
 void detail::run_chunks(const Execution& execution, std::size_t count, std::size_t grain, ChunkFunction function,
@@ -166,7 +73,7 @@ void detail::run_chunks(const Execution& execution, std::size_t count, std::size
   if (threads <= 1) {
     queue.drain();
   } else {
-    drain_on(threads, queue);
+    Crew::of_process().run(threads - 1, [&] { queue.drain(); });
   }
   queue.rethrow();
 }
