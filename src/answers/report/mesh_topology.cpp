@@ -2,20 +2,21 @@
 // Topology of a mesh by sorting and joining, in parallel.
 //
 //   positions --equal--> one number for each point
-//   half-edges --sorted by their two points--> groups: one is a boundary, two are joined, more are not manifold
+//   half-edges --by their two points--> groups: one is a boundary, two are joined, more are not manifold
 //   joined triangles --union-find--> shells; joined corners --union-find--> pieces
 //
-// Groups come from sorted keys, and sets are named by their least member, so no result depends on the order of threads.
+// Sets are named by their least member, so no result depends on the order of threads.
 // The genus follows from Euler's formula if the mesh is closed and every edge has two triangles.
 #include "report/mesh_topology.h"
 
-#include <cmath>
+#include <algorithm>
+#include <mutex>
 
 #include "base/orientation.h"
 #include "base/parallel.h"
+#include "geometry/buckets.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/places.h"
-#include "report/group.h"
 
 namespace frontmost {
 namespace {
@@ -24,12 +25,25 @@ constexpr std::size_t kMaxTriangles = std::size_t(1) << 29;  // leaves a free bi
 constexpr std::size_t kGrain = std::size_t(1) << 14;
 constexpr std::uint32_t kUnpaired = no_index;
 
-struct Count {
-  std::uint64_t value = 0;
-  Count& operator+=(const Count& other) {
-    value += other.value;
-    return *this;
+/// A half-edge among those with the same lower point.
+struct HalfEdge {
+  std::uint32_t upper;   ///< the other point
+  std::uint32_t marked;  ///< number of the half-edge; the highest bit is set where it leads to the lower point
+
+  static constexpr std::uint32_t backward = 1u << 31;
+  [[nodiscard]] std::uint32_t number() const { return marked & ~backward; }
+  friend bool operator<(const HalfEdge& a, const HalfEdge& b) {
+    return a.upper != b.upper ? a.upper < b.upper : a.number() < b.number();
   }
+  [[nodiscard]] bool is_same(const HalfEdge& other) const { return upper == other.upper; }
+};
+
+/// The two greater points of a triangle, among the triangles with the same least point.
+struct UpperPoints {
+  std::uint32_t middle, last;
+
+  friend auto operator<=>(const UpperPoints&, const UpperPoints&) = default;
+  [[nodiscard]] bool is_same(const UpperPoints& other) const { return *this == other; }
 };
 
 struct EdgeCounts {
@@ -41,6 +55,28 @@ struct EdgeCounts {
     return *this;
   }
 };
+
+/// Calls visit(group, sums) for all items of a bucket that are the same, from several threads. \returns all `sums`.
+template <class Sums, class Item, class Visit>
+Sums for_each_group(Buckets<Item>& buckets, const Execution& execution, const Visit& visit) {
+  Sums all{};
+  std::mutex mutex;
+  parallel_for(execution, buckets.count(), kGrain, [&](std::size_t begin, std::size_t end) {
+    Sums sums{};
+    for (std::size_t bucket = begin; bucket < end; ++bucket) {
+      const std::span<Item> items = buckets[bucket];
+      std::sort(items.begin(), items.end());
+      for (auto first = items.begin(); first != items.end();) {
+        const auto last = std::find_if(first, items.end(), [&](const Item& item) { return !item.is_same(*first); });
+        visit(std::span<const Item>(first, last), sums);
+        first = last;
+      }
+    }
+    const std::lock_guard lock(mutex);
+    all += sums;
+  });
+  return all;
+}
 
 // The mesh after welding. Half-edge 3 * triangle + k runs from corner k to the next one.
 class MeshTopology {
@@ -103,45 +139,44 @@ class MeshTopology {
   }
 
   [[nodiscard]] std::uint64_t count_duplicates() const {
-    const auto produce = [&](std::size_t t, Keyed& item) {
-      if (kinds_[t] == Kind::non_finite) return false;
+    const auto list = [&](std::size_t t, const auto& add) {
+      if (kinds_[t] == Kind::non_finite) return;
       glm::uvec3 c = corners_[t];
       if (c.x > c.y) std::swap(c.x, c.y);
       if (c.y > c.z) std::swap(c.y, c.z);
       if (c.x > c.y) std::swap(c.x, c.y);
-      item = Keyed(c.x, c.y, c.z, std::uint32_t(t));
-      return true;
+      add(c.x, UpperPoints{c.y, c.z});
     };
-    return for_each_group<Count>(execution_, corners_.size(), produce,
-                                 [](std::span<const Keyed> same, Count& count) { count.value += same.size() - 1; })
-        .value;
+    Buckets<UpperPoints> triangles(mesh_.positions.size(), corners_.size(), list, execution_);
+    return for_each_group<std::uint64_t>(
+        triangles, execution_,
+        [](std::span<const UpperPoints> same, std::uint64_t& count) { count += same.size() - 1; });
   }
 
   // Counts edges by their number of triangles, joins the triangles of each edge, and pairs opposite half-edges.
   EdgeCounts join_edges() {
-    constexpr std::uint32_t kBackward = 1u << 31;
     twins_.assign(3 * corners_.size(), kUnpaired);
-    const auto produce = [&](std::size_t h, Keyed& item) {
-      const std::size_t t = h / 3, k = h % 3;
-      if (!has_edges(kinds_[t])) return false;
-      const std::uint32_t from = corners_[t][int(k)], to = corners_[t][int((k + 1) % 3)];
-      item = from < to ? Keyed(0, from, to, std::uint32_t(h)) : Keyed(0, to, from, std::uint32_t(h) | kBackward);
-      return true;
+    const auto list = [&](std::size_t t, const auto& add) {
+      if (!has_edges(kinds_[t])) return;
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t from = corners_[t][k], to = corners_[t][(k + 1) % 3],
+                            half_edge = 3 * std::uint32_t(t) + std::uint32_t(k);
+        add(std::min(from, to), HalfEdge{std::max(from, to), half_edge | (from < to ? 0 : HalfEdge::backward)});
+      }
     };
-    const auto visit = [&](std::span<const Keyed> edge, EdgeCounts& counts) {
-      const auto half_edge = [&](std::size_t i) { return edge[i].carried() & ~kBackward; };
-      for (std::size_t i = 1; i < edge.size(); ++i) triangle_sets_.join(half_edge(0) / 3, half_edge(i) / 3);
+    Buckets<HalfEdge> edges(mesh_.positions.size(), corners_.size(), list, execution_);
+    return for_each_group<EdgeCounts>(edges, execution_, [&](std::span<const HalfEdge> edge, EdgeCounts& counts) {
+      for (std::size_t i = 1; i < edge.size(); ++i) triangle_sets_.join(edge[0].number() / 3, edge[i].number() / 3);
       counts.boundary += edge.size() == 1;
       counts.non_manifold += edge.size() > 2;
       if (edge.size() != 2) return;
-      if (((edge[0].carried() ^ edge[1].carried()) & kBackward) == 0) {
+      if (((edge[0].marked ^ edge[1].marked) & HalfEdge::backward) == 0) {
         ++counts.inconsistent;
       } else {
-        twins_[half_edge(0)] = half_edge(1);
-        twins_[half_edge(1)] = half_edge(0);
+        twins_[edge[0].number()] = edge[1].number();
+        twins_[edge[1].number()] = edge[0].number();
       }
-    };
-    return for_each_group<EdgeCounts>(execution_, twins_.size(), produce, visit);
+    });
   }
 
   // The number of fans of triangles around vertices. A vertex has one fan, unless two fans touch in a point; the
