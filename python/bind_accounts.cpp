@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // For each object, how much is visible and why the rest is not; masks.
 #include <frontmost/report.h>
-#include <pybind11/stl.h>
 
 #include <shared_mutex>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares two answers: exact arithmetic decides at each differing sample whether both may be right.
 #include <frontmost/precision.h>
-#include <pybind11/stl.h>
 
 #include <shared_mutex>
 

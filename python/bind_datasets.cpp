@@ -2,7 +2,6 @@
 // Data sets, as frontmost report writes them: COCO, BOP and masks, of one view or many; categories.
 #include <frontmost/files.h>
 #include <frontmost/report.h>
-#include <pybind11/stl.h>
 
 #include <set>
 #include <shared_mutex>

@@ -2,7 +2,6 @@
 // The depth buffer with OpenGL's state: triangles are drawn in the order of their numbers, and depths are stored as in
 // the buffer's format.
 #include <frontmost/zbuffer.h>
-#include <pybind11/stl.h>
 
 #include <mutex>
 #include <optional>

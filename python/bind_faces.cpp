@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Visible faces as records: all triangles that are visible at least in part, from one place or from many.
 #include <frontmost/report.h>
-#include <pybind11/stl.h>
 
 #include <shared_mutex>
 

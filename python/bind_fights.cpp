@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faces that a depth buffer cannot tell apart, their places, and remedies.
 #include <frontmost/precision.h>
-#include <pybind11/stl.h>
 
 #include <shared_mutex>
 

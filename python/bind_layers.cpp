@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // All surfaces of a pixel: layers in the order of depth, and fragments as data.
 #include <frontmost/abuffer.h>
-#include <pybind11/stl.h>
 
 #include <shared_mutex>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hidden lines: feature edges as visible and hidden segments, with their kinds.
 #include <frontmost/lines.h>
-#include <pybind11/stl.h>
 
 #include <shared_mutex>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reading and writing of model files; scenes made by code.
 #include <frontmost/files.h>
-#include <pybind11/stl.h>
 
 #include <shared_mutex>
 

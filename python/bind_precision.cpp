@@ -3,7 +3,6 @@
 #include <frontmost/pictures.h>
 #include <frontmost/precision.h>
 #include <frontmost/zbuffer.h>
-#include <pybind11/stl.h>
 
 #include <shared_mutex>
 

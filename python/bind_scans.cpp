@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cameras that need rays: panorama, fisheye, laser scanners.
 #include <frontmost/raycast.h>
-#include <pybind11/stl.h>
 
 #include <shared_mutex>
 

@@ -2,7 +2,6 @@
 // Vector pictures: sheets of hidden-line drawings, and figures of polygons.
 #include <frontmost/pictures.h>
 #include <frontmost/sheets.h>
-#include <pybind11/stl.h>
 
 #include <shared_mutex>
 

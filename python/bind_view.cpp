@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Views: cameras of all conventions with a grid of pixels, and conversions back.
 #include <frontmost/view.h>
-#include <pybind11/stl.h>
 
 #include <cmath>
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>  // here, so that every file converts containers alike
 
 namespace frontmost::python {
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <frontmost/pictures.h>
-#include <pybind11/stl.h>
 
 #include <optional>
 #include <string>

@@ -5,6 +5,7 @@
 #include "frontmost/report.h"
 #include "report/faces/cells.h"
 #include "support/costly_meshes.h"
+#include "support/effort.h"
 #include "support/refusal.h"
 
 namespace frontmost::test {

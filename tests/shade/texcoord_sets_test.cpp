@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "frontmost/abuffer.h"
+#include "frontmost/drawings.h"
 #include "frontmost/pictures.h"
 #include "frontmost/raycast.h"
 #include "frontmost/zbuffer.h"
