@@ -3,7 +3,6 @@
 #include <frontmost/files.h>
 #include <frontmost/pictures.h>
 
-#include <cmath>
 #include <cstring>
 #include <shared_mutex>
 
@@ -27,12 +26,6 @@ namespace frontmost::python {
 using namespace py::literals;
 
 namespace {
-
-std::uint8_t srgb_byte(float linear) {
-  const double clamped = linear > 0 ? std::min(double(linear), 1.0) : 0.0;  // 0 for NaN
-  const double srgb = clamped <= 0.0031308 ? 12.92 * clamped : 1.055 * std::pow(clamped, 1 / 2.4) - 0.055;
-  return std::uint8_t(std::floor(255 * srgb + 0.5));
-}
 
 py::object shown(py::object array) {
   return array.attr("view")(py::module_::import("frontmost._bitmap").attr("Bitmap"));
@@ -203,19 +196,7 @@ py::object bitmap_array(Bitmap&& bitmap) {
   return shown(owned(std::move(bitmap.rgba), {bitmap.height, bitmap.width, 4}));
 }
 
-py::object bitmap_array(const Image& image) {
-  const Buffer<float>& alpha = image.find("A")->floats();
-  Buffer<std::uint8_t> rgba(4 * alpha.size());
-  const char* const names[] = {"R", "G", "B"};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const Buffer<float>& plane = image.find(names[c])->floats();
-    for (std::size_t i = 0; i < plane.size(); ++i)
-      rgba[4 * i + c] = alpha[i] > 0 ? srgb_byte(plane[i] / alpha[i]) : std::uint8_t(0);
-  }
-  for (std::size_t i = 0; i < alpha.size(); ++i)
-    rgba[4 * i + 3] = std::uint8_t(std::floor(255 * std::min(alpha[i], 1.0f) + 0.5f));
-  return bitmap_array(Bitmap{image.width, image.height, std::move(rgba)});
-}
+py::object bitmap_array(const Image& image) { return bitmap_array(bitmap_of(image)); }
 
 void bind_pictures(py::module_& m) {
   bind_environment(m);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes: made of arrays, and inspected.
+#include <frontmost/image.h>
 #include <frontmost/scene.h>
-#include <pybind11/stl.h>
 
-#include <cmath>
 #include <cstring>
 #include <shared_mutex>
 
@@ -45,18 +44,12 @@ struct ObjectArrays {
 
 // Colours.
 
-float linear_of_srgb(double srgb) {
-  return float(srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4));
-}
-
 /// Rows of linear RGBA from integers (sRGB, 0 to 255) or floats (linear) in three or four channels.
 std::vector<glm::vec4> colors_of(const py::handle& given, const std::string& name, py::ssize_t rows) {
   const py::array array = py::array::ensure(given);
   const bool is_bytes = array && (array.dtype().kind() == 'u' || array.dtype().kind() == 'i');
   const bool has_alpha = array && array.ndim() == 2 && array.shape(1) == 4;
   const auto values = numbers<float>(given, name, {rows, has_alpha ? 4 : 3});
-  float linear[256];
-  for (int i = 0; i < 256; ++i) linear[i] = linear_of_srgb(i / 255.0);
   std::vector<glm::vec4> colors(std::size_t(values.shape(0)), glm::vec4(1));
   for (py::ssize_t row = 0; row < values.shape(0); ++row)
     for (int i = 0; i < (has_alpha ? 4 : 3); ++i) {
@@ -64,7 +57,7 @@ std::vector<glm::vec4> colors_of(const py::handle& given, const std::string& nam
       if (!(value >= 0 && value <= (is_bytes ? 255.0f : 1.0f)))
         throw py::value_error(name + ": row " + std::to_string(row) + " is not within " +
                               (is_bytes ? "0 to 255" : "0 to 1, as floats are"));
-      colors[std::size_t(row)][i] = !is_bytes ? value : i == 3 ? value / 255 : linear[int(value)];
+      colors[std::size_t(row)][i] = !is_bytes ? value : i == 3 ? value / 255 : linear_of_srgb(std::uint8_t(value));
     }
   return colors;
 }
@@ -93,38 +86,10 @@ Texture texture_of(const py::handle& given) {
 
 // Objects.
 
-/// The origin for doubles that lie far from zero for their size, by the rule of fitting_origin(). The origin is
-/// rounded, so that subtracting it is exact.
-glm::dvec3 offset_of(const Array<double>& vertices) {
-  glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-  const double* const in = vertices.data();
-  for (py::ssize_t i = 0; i < vertices.shape(0); ++i) {
-    const glm::dvec3 at(in[3 * i], in[3 * i + 1], in[3 * i + 2]);
-    if (!is_finite(at)) continue;
-    low = glm::min(low, at);
-    high = glm::max(high, at);
-  }
-  const glm::dvec3 extents = high - low, middle = (low + high) * 0.5;
-  const double size = std::max({extents.x, extents.y, extents.z, 0.0});
-  glm::dvec3 offset(0);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double away = std::abs(middle[axis]);
-    if (away > 4 * size && (away > 1024 || away > 128 * size) && away < 1e15) offset[axis] = std::round(middle[axis]);
-  }
-  return offset;
-}
-
 /// Sets the positions. Floats are copied unchanged; doubles far from zero get an origin.
 void set_positions(Mesh& mesh, const py::handle& given) {
   const py::array array = py::array::ensure(given);
   const bool is_double = array && (array.dtype().kind() != 'f' || array.itemsize() > 4);
-  const auto copy = [&](const auto& values, const glm::dvec3& offset) {
-    mesh.positions.resize(std::size_t(values.shape(0)));
-    const auto* const in = values.data();
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-      for (int axis = 0; axis < 3; ++axis)
-        mesh.positions[i][axis] = float(in[3 * i + std::size_t(axis)] - offset[axis]);
-  };
   if (!is_double) {
     const auto values = numbers<float>(given, "vertices", {-1, 3});
     mesh.positions.resize(std::size_t(values.shape(0)));
@@ -132,8 +97,10 @@ void set_positions(Mesh& mesh, const py::handle& given) {
     return;
   }
   const auto values = numbers<double>(given, "vertices", {-1, 3});
-  mesh.origin = offset_of(values);
-  copy(values, mesh.origin);
+  // numbers() gives contiguous rows.
+  const std::span points(reinterpret_cast<const glm::dvec3*>(values.data()), std::size_t(values.shape(0)));
+  mesh.origin = fitting_origin(points);
+  for (const glm::dvec3& point : points) mesh.positions.emplace_back(point - mesh.origin);
 }
 
 template <class T>

@@ -64,6 +64,13 @@ void validate(const DeepImage& image);
 /// \throws Error bad_argument unless sizes are 1 to 2^20 and there are four bytes per pixel.
 void validate(const Bitmap& bitmap);
 
+/// The colours of an image in 8-bit sRGB, as save() writes them to a PNG file. Values out of range are clamped, NaN
+/// gives 0, pixels with alpha 0 are black, and an image without A is opaque. \throws Error bad_argument unless
+/// validate(image) passes and R, G, B are planes of floats.
+[[nodiscard]] Bitmap bitmap_of(const Image& image);
+/// The linear value of an 8-bit sRGB value.
+[[nodiscard]] float linear_of_srgb(std::uint8_t srgb);
+
 /// The greatest value of a pixel of an environment (pictures.h). Sums over all pixels stay far within a float's range.
 inline constexpr float max_environment_value = 16777216.0f;
 

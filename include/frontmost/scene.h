@@ -283,6 +283,8 @@ void add(Scene& scene, Scene part);
 /// by a round number is thus moved back to the bit. Near zero a few vertices are examined, otherwise all. Precondition:
 /// validate(scene) passes.
 [[nodiscard]] glm::dvec3 fitting_origin(const Scene& scene);
+/// The fitting origin of points in doubles. Points that are not finite are ignored. O(points).
+[[nodiscard]] glm::dvec3 fitting_origin(std::span<const glm::dvec3> points);
 /// Moves the world's zero to `origin`, in coordinates of the file. Instances, cameras and lights stay in place: their
 /// transforms are adjusted, in doubles. load() has already set the fitting origin. O(instances + cameras + lights).
 void set_origin(Scene& scene, const glm::dvec3& origin);
@@ -327,8 +329,8 @@ struct PrimitiveSource {
 class Surfaces {
  public:
   /// Borrows `scene`, which must outlive the surfaces and stay unchanged. O(triangles), in parallel; half a byte a
-  /// triangle. Functions that read the triangles often (a ZBuffer, rays, the third zbuffer()) first build clusters,
-  /// once. Clusters take ten times as long to build, and 20 bytes a triangle, 40 while they are built.
+  /// triangle. Methods that read the triangles often (a ZBuffer, rays, the A-buffer) first build clusters, once.
+  /// Clusters take ten times as long to build, and 20 bytes a triangle, 40 while they are built.
   /// \throws Error as validate(scene) does, and bad_argument for a non-finite instance transform.
   explicit Surfaces(const Scene& scene, const Execution& execution = {});
   explicit Surfaces(Scene&&, const Execution& = {}) = delete;  // a temporary scene would be gone at once
@@ -372,14 +374,13 @@ class Surfaces {
   /// Bytes held besides the scene's own arrays, including clusters once they are built.
   [[nodiscard]] std::size_t byte_count() const;
 
-  /// Builds the clusters now. Useful before showing many pictures.
+  /// Builds the clusters now, unless they exist. Useful before several pictures by zbuffer(), which builds none.
   void make_clusters(const Execution& execution = {}) const;
 
  private:
   friend const PlacedScene& placed_scene(const Surfaces& surfaces);
   friend const ClusterSet& cluster_set(const Surfaces& surfaces, const Execution& execution);
   friend const ClusterSet* made_cluster_set(const Surfaces& surfaces);
-  friend const ClusterSet* cluster_set_for_picture(const Surfaces& surfaces, const Execution& execution);
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -19,8 +19,8 @@ namespace frontmost {
 /// rule. Depth keys are interpolated in screen space, where they are affine; at equal keys the lower id wins. The
 /// result is the same to the bit for any number of threads and any instruction set. O(triangles + covered samples)
 /// time; 8 bytes a sample for the result.
-/// The first two pictures of surfaces without clusters are drawn from the scene's own arrays, up to ten times as fast
-/// as building clusters and drawing those. The third picture builds the clusters. For many pictures use a ZBuffer.
+/// Surfaces without clusters are drawn from the scene's own arrays, up to ten times as fast as building clusters and
+/// drawing those. For several pictures use a ZBuffer, or call Surfaces::make_clusters() first.
 /// \throws Error as validate(view) does.
 [[nodiscard]] Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& execution = {});
 
@@ -50,7 +50,7 @@ class ZBuffer {
 };
 
 /// The result of zbuffer() as VisiblePixels, for shade() with several samples. It takes 8 bytes a pixel, and 4 more for
-/// each further sample of mixed pixels. The call counts as one of the first two pictures, as zbuffer() does.
+/// each further sample of mixed pixels.
 [[nodiscard]] VisiblePixels zbuffer_pixels(const Surfaces& surfaces, const View& view, const Execution& execution = {});
 
 // DepthBuffer: a depth buffer with OpenGL's state: comparison function, mask, clear value, range, polygon offset,

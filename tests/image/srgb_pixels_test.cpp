@@ -102,6 +102,27 @@ std::string complaint(const AnyImage& image) {
   return refusal_of(ErrorCode::bad_argument, [&] { validate(image); });
 }
 
+TEST(Bitmaps, HoldStraightColoursInBytes) {
+  Image image = random_floats(3, 2, {"A", "B", "G", "R"});
+  const float alphas[] = {1, 0.5f, 0, 2, -1, std::nanf("")}, reds[] = {1, 0.5f, 1, 2, -1, std::nanf("")};
+  std::copy_n(alphas, 6, image.channels[0].floats().data());
+  for (int c = 1; c < 4; ++c) std::copy_n(reds, 6, image.channels[std::size_t(c)].floats().data());
+  const Bitmap bitmap = bitmap_of(image);
+  EXPECT_EQ(bitmap.width, 3);
+  EXPECT_EQ(bitmap.height, 2);
+  const std::vector<std::uint8_t> expected{255, 255, 255, 255, 255, 255, 255, 128, 0, 0, 0, 0,
+                                           255, 255, 255, 255, 0,   0,   0,   0,   0, 0, 0, 0};
+  EXPECT_EQ(std::vector<std::uint8_t>(bitmap.rgba.begin(), bitmap.rgba.end()), expected);
+  image.channels.erase(image.channels.begin());
+  EXPECT_EQ(bitmap_of(image).rgba[4 * 1], 188) << "opaque without A: half of the light is 188 of 255";
+  EXPECT_EQ(refusal_of(ErrorCode::bad_argument,
+                       [&] {
+                         (void)bitmap_of(random_ids(3, 2, {"R", "G", "B"}));
+                       }),
+            "image: has no channels R, G and B of floats");
+  for (int value = 0; value < 256; ++value) EXPECT_EQ(srgb8_of_linear(linear_of_srgb(std::uint8_t(value))), value);
+}
+
 TEST(RefusedImages, SayWhatIsWrong) {
   EXPECT_EQ(complaint(Image{}), "image: 0 x 0 pixels");
   EXPECT_EQ(complaint(Image{-1, 5, {}}), "image: -1 x 5 pixels");

@@ -17,6 +17,7 @@ namespace {
 glm::dvec3 origin_of(std::initializer_list<glm::dvec3> points) {
   OriginSearch search;
   for (const glm::dvec3& point : points) search.include(point);
+  EXPECT_EQ(search.origin(), fitting_origin(std::span(points.begin(), points.size())));
   return search.origin();
 }
 

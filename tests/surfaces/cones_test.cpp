@@ -137,16 +137,14 @@ TEST(Cones, AreMadeBesideDegenerateTriangles) {
   EXPECT_GT(make_cones(cluster_set(surfaces), {}).altitude[0], 0);
 }
 
-TEST(Cones, AreMadeOnceAndNotForTheFirstFrame) {
+TEST(Cones, AreMadeOnce) {
   const Scene scene = scene_of(bumpy_ball(10, 0, 1));
   const Surfaces surfaces(scene);
   const ClusterSet& set = cluster_set(surfaces);
-  EXPECT_EQ(set.cones.get(set, {}), nullptr);
-  const ConeArrays* made = nullptr;
-  for (int i = 0; i < 50; ++i) made = set.cones.get(set, {});
-  ASSERT_NE(made, nullptr);
-  EXPECT_EQ(set.cones.get(set, {}), made);
-  EXPECT_EQ(&set.cones.get_now(set, {}), made);
+  EXPECT_EQ(set.cones.made(), nullptr);
+  const ConeArrays* const made = &set.cones.get(set, {});
+  EXPECT_EQ(&set.cones.get(set, {}), made);
+  EXPECT_EQ(set.cones.made(), made);
 }
 
 TEST(Cones, MayBeAskedForBySeveralThreads) {
@@ -155,11 +153,7 @@ TEST(Cones, MayBeAskedForBySeveralThreads) {
   const ClusterSet& set = cluster_set(surfaces);
   std::array<const ConeArrays*, 4> found{};
   std::vector<std::thread> threads;
-  for (const ConeArrays*& one : found)
-    threads.emplace_back([&] {
-      for (int i = 0; i < 5; ++i) (void)set.cones.get(set, {.threads = 2});
-      one = &set.cones.get_now(set, {.threads = 2});
-    });
+  for (const ConeArrays*& one : found) threads.emplace_back([&] { one = &set.cones.get(set, {.threads = 2}); });
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(std::set<const ConeArrays*>(found.begin(), found.end()).size(), 1u);
 }

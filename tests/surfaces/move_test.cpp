@@ -171,12 +171,12 @@ TEST(Move, ClustersStayWhereTheyCanAndKeepTheirCones) {
   Scene scene = moving_scene(5);
   Surfaces surfaces(scene);
   const ClusterSet* const before = &cluster_set(surfaces);
-  static_cast<void>(before->cones.get_now(*before, {}));
+  static_cast<void>(before->cones.get(*before, {}));
   Random random(5);
   for (int i = 0; i < 40; ++i)
     surfaces.move(scene, std::uint32_t(random.below(scene.instances.size())), random_placement(random, 1, 0.4f));
   ASSERT_EQ(made_cluster_set(surfaces), before);
-  const ConeArrays& kept = before->cones.get_now(*before, {});
+  const ConeArrays& kept = before->cones.get(*before, {});
   const ConeArrays anew = make_cones(*before, {});
   for (std::size_t c = 0; c < before->clusters.size(); ++c) {
     EXPECT_EQ(kept.cosine[c], anew.cosine[c]);

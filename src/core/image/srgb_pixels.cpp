@@ -59,4 +59,17 @@ void srgb16_row(const ColorPlanes& planes, int y, bool with_alpha, std::uint16_t
   row_of(planes, y, with_alpha, row);
 }
 
+Bitmap bitmap_of(const Image& image) {
+  validate(image);
+  const std::optional<ColorPlanes> planes = color_planes(image);
+  if (!planes) throw Error(ErrorCode::bad_argument, "image", "has no channels R, G and B of floats");
+  Bitmap bitmap{image.width, image.height,
+                Buffer<std::uint8_t>(4 * std::size_t(image.width) * std::size_t(image.height))};
+  for (int y = 0; y < image.height; ++y)
+    srgb8_row(*planes, y, true, bitmap.rgba.data() + 4 * std::size_t(y) * std::size_t(image.width));
+  return bitmap;
+}
+
+float linear_of_srgb(std::uint8_t srgb) { return linear_of_srgb8(srgb); }
+
 }  // namespace frontmost

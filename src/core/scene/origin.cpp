@@ -121,6 +121,12 @@ glm::dvec3 fitting_origin(const Scene& scene) {
   return search.origin();
 }
 
+glm::dvec3 fitting_origin(std::span<const glm::dvec3> points) {
+  OriginSearch search;
+  for (const glm::dvec3& point : points) search.include(point);
+  return search.origin();
+}
+
 void set_origin(Scene& scene, const glm::dvec3& origin) {
   const glm::dvec4 moved(scene.origin - origin, 0);
   scene.origin = origin;

@@ -78,22 +78,16 @@ struct ClusterSet {
 [[nodiscard]] const ClusterSet& cluster_set(const Surfaces& surfaces, const Execution& execution = {});
 /// The clusters of surfaces, or null if they have not been made yet.
 [[nodiscard]] const ClusterSet* made_cluster_set(const Surfaces& surfaces);
-/// The clusters of surfaces, or null if a single picture is drawn sooner without clusters.
-[[nodiscard]] const ClusterSet* cluster_set_for_picture(const Surfaces& surfaces, const Execution& execution);
 
 /// Divides all triangles into clusters. Triangles with a non-finite world-space vertex become degenerate (three equal
 /// vertex numbers), so no method sees them.
 [[nodiscard]] ClusterSet build_clusters(const PlacedScene& placed, const Execution& execution);
 
-/// The clusters of a scene, made once they have been asked for often enough to pay. May be used by several threads at
-/// once.
+/// The clusters of a scene, made when a caller first needs them. May be used by several threads at once.
 class LazyClusters {
  public:
-  /// A picture without clusters takes a third to a half of the time of making clusters and one picture with them. So
-  /// the first two calls return null, unless the clusters exist.
-  [[nodiscard]] const ClusterSet* get(const PlacedScene& placed, const Execution& execution) const;
-  /// The clusters, made at the first call if needed.
-  [[nodiscard]] const ClusterSet& get_now(const PlacedScene& placed, const Execution& execution) const;
+  /// The clusters, made at the first call.
+  [[nodiscard]] const ClusterSet& get(const PlacedScene& placed, const Execution& execution) const;
   /// The clusters, or null if they have not been made.
   [[nodiscard]] const ClusterSet* made() const { return made_.load(); }
   /// Moves an instance of existing clusters to its place in the scene, or drops the clusters. Not while another call
@@ -105,9 +99,6 @@ class LazyClusters {
   }
 
  private:
-  static constexpr int kCallsWithout = 2;
-
-  mutable std::atomic<int> calls_{0};
   mutable std::mutex mutex_;
   mutable std::unique_ptr<ClusterSet> set_;
   mutable std::atomic<const ClusterSet*> made_{nullptr};

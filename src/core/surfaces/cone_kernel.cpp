@@ -194,32 +194,24 @@ ConeArrays make_cones(const ClusterSet& set, const Execution& execution) {
   return cones;
 }
 
-const ConeArrays& LazyCones::get_now(const ClusterSet& set, const Execution& execution) const {
-  if (const ConeArrays* const made = state_->made.load()) return *made;
+const ConeArrays& LazyCones::get(const ClusterSet& set, const Execution& execution) const {
+  if (const ConeArrays* const cones = made()) return *cones;
   // Several threads may come here: all make the same cones, and one result is kept. Waiting for each other might never
   // end, if the threads that make the cones are lent to draw another view.
   auto mine = std::make_unique<ConeArrays>(make_cones(set, execution));
   ConeArrays* first = nullptr;
-  if (!state_->made.compare_exchange_strong(first, mine.get())) return *first;
+  if (!made_->cones.compare_exchange_strong(first, mine.get())) return *first;
   return *mine.release();
 }
 
-const ConeArrays* LazyCones::get(const ClusterSet& set, const Execution& execution) const {
-  if (state_->made.load() == nullptr && state_->calls.fetch_add(1) < kCallsWithout) return nullptr;
-  return &get_now(set, execution);
-}
-
 void LazyCones::follow(const ClusterSet& set, std::span<const std::uint32_t> clusters, Isa isa) {
-  ConeArrays* const made = state_->made.load();
-  if (made == nullptr) return;
+  ConeArrays* const cones = made_->cones.load();
+  if (cones == nullptr) return;
   const auto make = kernel_for(MakeConesKernels, isa);
-  for (const std::uint32_t c : clusters) make(set, c, c + 1, *made);
+  for (const std::uint32_t c : clusters) make(set, c, c + 1, *cones);
 }
 
-std::size_t LazyCones::byte_count() const {
-  const ConeArrays* const made = state_->made.load();
-  return made == nullptr ? 0 : 5 * sizeof(float) * made->x.size();
-}
+std::size_t LazyCones::byte_count() const { return made() ? 5 * sizeof(float) * made()->x.size() : 0; }
 
 }  // namespace frontmost
 #endif  // HWY_ONCE

@@ -39,30 +39,26 @@ inline constexpr float kConeRounding = 3.0f / 1024.0f;
 /// clusters.
 [[nodiscard]] ConeArrays make_cones(const ClusterSet& set, const Execution& execution);
 
-/// The cones of a set, made once they have been asked for often enough to pay.
+/// The cones of a set, made when a caller first needs them.
 class LazyCones {
  public:
-  /// Cones save between a fortieth and a half of their own cost in each frame, so a set that is drawn once does better
-  /// without. The first few calls therefore return null. May be called by several threads at once.
-  [[nodiscard]] const ConeArrays* get(const ClusterSet& set, const Execution& execution) const;
-  /// The cones, made at the first call if needed.
-  [[nodiscard]] const ConeArrays& get_now(const ClusterSet& set, const Execution& execution) const;
+  /// The cones, made at the first call. May be called by several threads at once.
+  [[nodiscard]] const ConeArrays& get(const ClusterSet& set, const Execution& execution) const;
+  /// The cones, or null if they have not been made.
+  [[nodiscard]] const ConeArrays* made() const { return made_->cones.load(); }
   [[nodiscard]] std::size_t byte_count() const;
   /// Updates existing cones of some clusters after their triangles moved. Not while another call runs.
   void follow(const ClusterSet& set, std::span<const std::uint32_t> clusters, Isa isa);
 
  private:
-  static constexpr int kCallsWithout = 8;
-
-  struct State {
-    std::atomic<int> calls{0};
-    std::atomic<ConeArrays*> made{nullptr};
-    State() = default;
-    State(const State&) = delete;
-    State& operator=(const State&) = delete;
-    ~State() { delete made.load(); }
+  struct Made {
+    std::atomic<ConeArrays*> cones{nullptr};
+    Made() = default;
+    Made(const Made&) = delete;
+    Made& operator=(const Made&) = delete;
+    ~Made() { delete cones.load(); }
   };
-  std::unique_ptr<State> state_ = std::make_unique<State>();
+  std::unique_ptr<Made> made_ = std::make_unique<Made>();
 };
 
 }  // namespace frontmost

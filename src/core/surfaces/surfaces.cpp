@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Surfaces: a scene that was checked and numbered, and its clusters, which may not exist yet.
 //
-// Most data of a method is made here once and only read afterwards. Clusters are the exception: they pay from the third
-// picture on, and nobody knows in advance whether there is a third. So they are made then, under a lock, behind a const
+// Most data of a method is made here once and only read afterwards. Clusters are the exception: a single picture is
+// drawn sooner without them. So the first method that needs clusters makes them, under a lock, behind a const
 // interface.
 #include <algorithm>
 
@@ -71,14 +71,10 @@ const PlacedScene& placed_scene(const Surfaces& surfaces) { return surfaces.stat
 void Surfaces::make_clusters(const Execution& execution) const { (void)cluster_set(*this, execution); }
 
 const ClusterSet& cluster_set(const Surfaces& surfaces, const Execution& execution) {
-  return surfaces.state_->clusters.get_now(surfaces.state_->placed, execution);
+  return surfaces.state_->clusters.get(surfaces.state_->placed, execution);
 }
 
 const ClusterSet* made_cluster_set(const Surfaces& surfaces) { return surfaces.state_->clusters.made(); }
-
-const ClusterSet* cluster_set_for_picture(const Surfaces& surfaces, const Execution& execution) {
-  return surfaces.state_->clusters.get(surfaces.state_->placed, execution);
-}
 
 const Scene& Surfaces::scene() const { return *state_->placed.scene; }
 
@@ -118,12 +114,7 @@ std::size_t Surfaces::byte_count() const {
          (made ? frontmost::byte_count(*made) : 0);
 }
 
-const ClusterSet* LazyClusters::get(const PlacedScene& placed, const Execution& execution) const {
-  if (!made() && calls_.fetch_add(1) < kCallsWithout) return nullptr;
-  return &get_now(placed, execution);
-}
-
-const ClusterSet& LazyClusters::get_now(const PlacedScene& placed, const Execution& execution) const {
+const ClusterSet& LazyClusters::get(const PlacedScene& placed, const Execution& execution) const {
   if (const ClusterSet* const made = made_.load()) return *made;
   const std::lock_guard lock(mutex_);
   if (!set_) {

@@ -39,8 +39,13 @@ void FramePlan::make(const ClusterSet& set, const PlaceTarget& target, const Exe
   culled_.resize(set.clusters.size());
   const View& view = target.view;
   const Culling culling = target.facing.culling();
-  const bool by_facing = culling == Culling::back || culling == Culling::front;
-  const CullInput input{set.boxes, by_facing ? set.cones.get(set, execution) : nullptr, target.transform, view};
+  const ConeArrays* cones = nullptr;
+  if (culling == Culling::back || culling == Culling::front) {
+    // Cones save between a fortieth and a half of their own cost in each frame, so they pay after some frames.
+    constexpr int kFramesWithout = 8;
+    cones = frames_by_facing_++ < kFramesWithout ? set.cones.made() : &set.cones.get(set, execution);
+  }
+  const CullInput input{set.boxes, cones, target.transform, view};
   parallel_for(execution, set.clusters.size(), kCullGrain, [&](std::size_t begin, std::size_t end) {
     cull_clusters(input, execution.isa, {begin, end}, culled_);
   });

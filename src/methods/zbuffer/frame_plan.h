@@ -66,6 +66,7 @@ class FramePlan {
   void list_clusters(const View& view);
 
   CullResult culled_;
+  std::int64_t frames_by_facing_ = 0;                     // frames that leave front or back faces out
   std::vector<std::uint32_t> apart_;                      // clusters to be taken apart
   std::vector<std::vector<TriangleRecord>> apart_parts_;  // records of each chunk of apart_
   RecordLists records_;

@@ -102,7 +102,7 @@ void ZBuffer::give_back(Visible&& planes) {
 
 Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& execution) {
   validate(view);
-  if (!cluster_set_for_picture(surfaces, execution)) {
+  if (!made_cluster_set(surfaces)) {
     const IeeeScope ieee;
     return draw_directly(placed_scene(surfaces), view, execution);
   }
@@ -113,7 +113,7 @@ Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& exe
 
 VisiblePixels zbuffer_pixels(const Surfaces& surfaces, const View& view, const Execution& execution) {
   validate(view);
-  if (!cluster_set_for_picture(surfaces, execution)) {
+  if (!made_cluster_set(surfaces)) {
     const IeeeScope ieee;
     return draw_pixels_directly(placed_scene(surfaces), view, execution);
   }

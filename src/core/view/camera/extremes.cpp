@@ -293,24 +293,12 @@ class Extremes::Search {
 
 namespace {
 
-/// Parts that are neighbours in the file.
+/// Parts that are neighbours in the file. Left-out objects have empty boxes.
 struct PlacedParts {
-  const PlacedScene& placed;
-
-  [[nodiscard]] std::size_t count() const { return placed.boxes.size(); }
-  [[nodiscard]] Box box(std::size_t i) const { return placed.boxes[i]; }
-  template <class Visit>
-  void visit(std::size_t i, const Visit& vertex) const {
-    placed.visit_box(i, vertex);
-  }
-};
-
-/// PlacedParts, in which left-out objects have empty boxes.
-struct KeptParts {
   const PlacedScene& placed;
   std::vector<bool> is_left_out;  ///< by box
 
-  KeptParts(const PlacedScene& scene, std::span<const std::uint32_t> left_out)
+  PlacedParts(const PlacedScene& scene, std::span<const std::uint32_t> left_out)
       : placed(scene), is_left_out(scene.boxes.size(), false) {
     for (const MeshRange& range : placed.ranges)
       if (std::binary_search(left_out.begin(), left_out.end(), range.instance))
@@ -340,9 +328,8 @@ struct ClusterParts {
 
 }  // namespace
 
-void Extremes::include(const PlacedScene& placed) { Search<PlacedParts>({placed}, *this).run(); }
 void Extremes::include(const PlacedScene& placed, std::span<const std::uint32_t> left_out) {
-  Search<KeptParts>(KeptParts(placed, left_out), *this).run();
+  Search<PlacedParts>(PlacedParts(placed, left_out), *this).run();
 }
 void Extremes::include(const ClusterSet& set) { Search<ClusterParts>({set}, *this).run(); }
 

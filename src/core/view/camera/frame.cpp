@@ -178,12 +178,11 @@ void centre(glm::dmat4& pose, const FilledFrustum& frustum, const std::vector<gl
 
 std::vector<glm::vec3> extremes_of(const Surfaces& surfaces, const Subject& subject, const FilledFrustum& frustum) {
   Extremes extremes(frustum);
-  if (!subject.left_out.empty())
-    extremes.include(placed_scene(surfaces), subject.left_out);
-  else if (const ClusterSet* const clusters = made_cluster_set(surfaces))
+  const ClusterSet* const clusters = made_cluster_set(surfaces);
+  if (clusters && subject.left_out.empty())
     extremes.include(*clusters);
   else
-    extremes.include(placed_scene(surfaces));
+    extremes.include(placed_scene(surfaces), subject.left_out);
   return extremes.points();
 }
 
