@@ -20,6 +20,7 @@ endfunction()
 
 headers_of(hwy hwy::hwy hwy)
 headers_of(glm glm::glm glm)
+headers_of(FastFloat FastFloat::fast_float fast_float)
 headers_of(nlohmann_json nlohmann_json::nlohmann_json nlohmann)
 
 # Without Highway's library, each kernel table holds one instruction set.

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rare spellings of a number, apart from the short ones that number.h reads inline: many digits, exponents, and all
+// Numbers that number.h does not read inline: those with many digits or an exponent, by the library fast_float, and all
 // that C libraries ever printed for infinity and NaN.
+//
+// D. Lemire. Number Parsing at a Gigabyte per Second. 2021.
 #include "io/models/text/number.h"
 
-#include <algorithm>
-#include <charconv>
-#include <cstdlib>
+#include <fast_float/fast_float.h>
+
 #include <limits>
-#include <string>
 #include <string_view>
+#include <system_error>
 
 namespace frontmost::detail {
 namespace {
@@ -51,65 +52,21 @@ const char* parse_special(const char* at, const char* end, T& magnitude) {
   return nullptr;
 }
 
-/// The end of the decimal number at `at`; null if there is none. `is_small` tells that a number out of range is too
-/// small.
-const char* scan_decimal(const char* at, const char* end, bool& is_small) {
-  const char* p = at;
-  std::int64_t leading = 0, point = 0;
-  bool any = false, seen_nonzero = false;
-  for (; p != end && is_digit(*p); ++p, any = true) {
-    seen_nonzero |= *p != '0';
-    leading += seen_nonzero;
-  }
-  if (p != end && *p == '.')
-    for (++p; p != end && is_digit(*p); ++p, any = true) {
-      if (!seen_nonzero && *p == '0') --point;
-      seen_nonzero |= *p != '0';
-    }
-  if (!any) return nullptr;
-  std::int64_t exponent = 0;
-  if (p != end && (*p == 'e' || *p == 'E')) {
-    const char* q = p + 1;
-    const bool negative = q != end && *q == '-';
-    if (q != end && (*q == '-' || *q == '+')) ++q;
-    if (q != end && is_digit(*q)) {
-      for (; q != end && is_digit(*q); ++q)
-        exponent = std::min<std::int64_t>(10 * exponent + (*q - '0'), 1'000'000'000);
-      if (negative) exponent = -exponent;
-      p = q;
-    }
-  }
-  is_small = !seen_nonzero || (leading > 0 ? leading : point) + exponent < 0;
-  return p;
-}
-
-/// The number nearest to the digits [at, end). \returns false if it is out of range.
-template <class T>
-bool nearest(const char* at, const char* end, T& value) {
-#if defined(__cpp_lib_to_chars)
-  return std::from_chars(at, end, value).ec == std::errc();
-#else
-  // Libraries without from_chars for floats (WebAssembly) have only the C locale.
-  if constexpr (sizeof(T) == sizeof(float))
-    value = std::strtof(std::string(at, end).c_str(), nullptr);
-  else
-    value = std::strtod(std::string(at, end).c_str(), nullptr);
-  return true;
-#endif
-}
-
 template <class T>
 const char* parse_slowly(const char* at, const char* end, T& value) {
   const bool negative = at != end && *at == '-';
   if (at != end && (*at == '-' || *at == '+')) ++at;
   T magnitude = 0;
-  const char* after = parse_special(at, end, magnitude);
-  if (after == nullptr) {
-    bool is_small = false;
-    after = scan_decimal(at, end, is_small);
-    if (after == nullptr) return nullptr;
-    if (!nearest(at, after, magnitude)) magnitude = is_small ? T(0) : std::numeric_limits<T>::infinity();
+  const char* after = nullptr;
+  // fast_float would take a second sign, and other spellings of nan and inf.
+  if (at != end && (is_digit(*at) || *at == '.')) {
+    const auto [last, error] = fast_float::from_chars(at, end, magnitude);
+    if (error == std::errc::invalid_argument) return nullptr;
+    after = last;  // beyond the range, the value is infinity or zero
   }
+  if (after == nullptr || (after != end && *after == '#'))
+    if (const char* const special = parse_special(at, end, magnitude)) after = special;
+  if (after == nullptr) return nullptr;
   value = negative ? -magnitude : magnitude;
   return after;
 }
