@@ -47,7 +47,7 @@ std::vector<std::string_view> known_flags(const Command& command) {
   const std::string_view name = std::string_view(word).substr(dashes, word.find('=', dashes) - dashes);
   bool elsewhere = false;
   for_each_option([&](const Option& option) { elsewhere |= option.name == name && dashes == 2; });
-  if (elsewhere) throw UsageError(fmt::format("--{} does not belong to 'frontmost {}'", name, command.name));
+  if (elsewhere) throw UsageError(fmt::format("--{} is not an option of 'frontmost {}'", name, command.name));
   const std::vector<std::string_view> known = known_flags(command);
   const std::string_view nearest = nearest_word(name, known);
   throw UsageError(fmt::format("unknown option {}{}", word.substr(0, word.find('=')),
@@ -60,11 +60,13 @@ void take_leftovers(const Command& command, const std::vector<std::string>& word
   for (const std::string& word : words) {
     if (word == "--") continue;  // its work is done
     if (word.size() > 1 && word[0] == '-') complain_of_unknown(command, word);
-    if (command.argument.empty()) throw UsageError(fmt::format("'{}' is one word too many", word));
+    if (command.argument.empty()) throw UsageError(fmt::format("unexpected argument '{}'", word));
     if (command.takes_object())
-      throw UsageError(fmt::format("one object at a time: '{}' and '{}'", *settings.report.why, word));
+      throw UsageError(fmt::format("two objects are given, '{}' and '{}'; this command takes one object at a time",
+                                   *settings.report.why, word));
     if (!command.takes_several())
-      throw UsageError(fmt::format("one model at a time: '{}' and '{}'", settings.model, word));
+      throw UsageError(fmt::format("two models are given, '{}' and '{}'; this command takes one model at a time",
+                                   settings.model, word));
     settings.more_models.push_back(word);
   }
 }

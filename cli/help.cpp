@@ -56,10 +56,19 @@ std::string usage_of(const Command& command, std::string_view before, std::strin
 
 std::string help_overview() {
   std::string text =
-      "What can be seen from here? Frontmost renders models exactly, on any CPU.\n\n"
-      "usage: frontmost COMMAND [MODEL...] [options]\n\ncommands:\n";
+      "Frontmost finds the visible surfaces of 3D models, exactly and on any CPU.\n"
+      "\n"
+      "usage: frontmost COMMAND [MODEL...] [options]\n"
+      "\n"
+      "commands:\n";
   for (const Command& command : commands()) text += fmt::format("  {:12}{}\n", command.name, command.summary);
-  text += "\noptions:\n  -h, --help  this, or help on a command\n  --version   which version this is\n\nexamples:\n";
+  text +=
+      "\n"
+      "options:\n"
+      "  -h, --help  show this help, or the help of a command\n"
+      "  --version   show the version\n"
+      "\n"
+      "examples:\n";
   for (const Command& command : commands()) {
     const std::string_view first = split(command.examples, '\n').front();
     if (!first.empty()) text += fmt::format("  {}\n", first);

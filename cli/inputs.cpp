@@ -53,7 +53,8 @@ InputFiles input_files(const Settings& settings) {
     if (!path) return;
     files.add(*path, is);
     if (*path != "-") return;
-    if (of_input) throw UsageError(fmt::format("-: standard input {}, and cannot be read twice", of_input));
+    if (of_input)
+      throw UsageError(fmt::format("-: standard input {}, and cannot be read twice; give a file", of_input));
     of_input = is;
   };
   add(settings.model, "is the model itself");

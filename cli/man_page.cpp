@@ -39,11 +39,12 @@ std::string option_entry(const Option& option) {
 }
 
 constexpr std::string_view batch_section = R"(.SH BATCH FILES
-A batch file is JSON: an object with \fIviews\fR, a list, and perhaps \fIoutputs\fR, which every view makes.
-Keys are the names of options without dashes, in a view those of cameras, pixels and planes, in outputs those of what to
-write and how the picture looks. A view may have \fIname\fR, for {view} in file names, and \fIoutputs\fR of its own.
-Values are strings, numbers, true, or lists where an option takes several numbers; \fIids\fR is an object.
-What the batch file does not say is taken from the command line.
+A batch file is a JSON object with a list \fIviews\fR and an optional object \fIoutputs\fR, which holds for every view.
+Keys are the names of options without dashes: in a view the options of the camera, of pixels and of planes, in outputs
+those of output files and of the look of the picture. A view may have a \fIname\fR, which replaces {view} in file names,
+and \fIoutputs\fR of its own.
+Values are strings, numbers, true, or lists if an option takes several numbers; \fIids\fR is an object.
+The command line gives all options that the batch file does not give.
 .PP
 .nf
 {
@@ -63,13 +64,13 @@ What the batch file does not say is taken from the command line.
 constexpr std::string_view status_section = R"(.SH EXIT STATUS
 .TP
 0
-Done. A picture in which nothing is seen is done too; standard error says why.
+Success, even if nothing is seen in the picture; standard error then says why.
 .TP
 1
-Could not: a file could not be read or written, or time ran out.
+Failure: a file could not be read or written, a limit was exceeded, or time ran out.
 .TP
 2
-Bad usage.
+Wrong use of the command line.
 .TP
 3
 The picture differs from the reference.
@@ -83,7 +84,7 @@ Interrupted. No half\-written file is left.
 std::string man_page() {
   std::string page = fmt::format(
       ".TH FRONTMOST 1 \"\" \"frontmost {}\" \"User Commands\"\n"
-      ".SH NAME\nfrontmost \\- what can be seen from here\n.SH SYNOPSIS\n",
+      ".SH NAME\nfrontmost \\- visible surfaces of 3D models\n.SH SYNOPSIS\n",
       FRONTMOST_VERSION);
   for (const Command& command : commands()) {
     const std::string usage = usage_of(command, "\\fI", "\\fR");

@@ -28,20 +28,20 @@ enum class Group : std::uint8_t {
   run
 };
 inline constexpr std::string_view group_titles[] = {"Model",
-                                                    "Camera, as f3d names it",
-                                                    "Camera, as computer vision names it",
+                                                    "Camera, with the names of f3d",
+                                                    "Camera, with the names of computer vision",
                                                     "Pixels and planes",
-                                                    "Depth buffer, as OpenGL names it",
+                                                    "Depth buffer, with the names of OpenGL",
                                                     "Precision",
                                                     "Points",
                                                     "The scanner",
-                                                    "Comparing",
+                                                    "Comparison",
                                                     "The drawing",
                                                     "The report",
-                                                    "Which views",
-                                                    "What to write",
-                                                    "How the picture looks",
-                                                    "How to run"};
+                                                    "Views",
+                                                    "Output files",
+                                                    "Look of the picture",
+                                                    "Running"};
 
 /// Bits of Option::commands.
 enum CommandBit : unsigned {

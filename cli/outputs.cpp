@@ -39,9 +39,9 @@ void check_format(OutputKind kind, ImageFormat format, const std::string& path) 
     throw UsageError(fmt::format("{}: PFM cannot hold ids; use .exr, .npy or .png", path));
   }
   if (kind == OutputKind::deep && format != ImageFormat::exr)
-    throw UsageError(fmt::format("{}: only .exr files are deep", path));
+    throw UsageError(fmt::format("{}: a deep file must be .exr", path));
   if (kind != OutputKind::picture && holds_pictures_alone(format))
-    throw UsageError(fmt::format("{}: JPEG and WebP hold pictures alone; use .exr, .npy or .png", path));
+    throw UsageError(fmt::format("{}: JPEG and WebP hold only pictures; use .exr, .npy or .png", path));
 }
 
 ImageFormat format_of(const OutputSettings& settings, const std::string& path) {
@@ -82,7 +82,8 @@ std::string canonical(const std::string& path) {
 bool is_of_layers(const OutputRequest& request) {
   if (request.path.find("{layer}") == std::string::npos) return false;
   if (request.kind == OutputKind::deep || request.kind == OutputKind::window_depth)
-    throw UsageError(fmt::format("{}: there is one such file, not one of every layer", request.path));
+    throw UsageError(
+        fmt::format("{}: this output is one file for all layers; leave {{layer}} out of its name", request.path));
   return true;
 }
 
@@ -143,8 +144,10 @@ std::string fill_template(std::string_view text, const std::string& model, const
       } else if (word == "model" || word == "view") {
         result += word == "model" ? model : view;
       } else {
-        throw UsageError(fmt::format(
-            "{}: {{model}} and {{view}} are known here, and {{layer}} with --layers; {{{{ and }}}} are braces", text));
+        throw UsageError(
+            fmt::format("{}: unknown placeholder; use {{model}}, {{view}}, or {{layer}} with --layers; {{{{ and }}}} "
+                        "stand for braces",
+                        text));
       }
       i = end;
     }
@@ -162,7 +165,7 @@ void check_given_format(const std::vector<std::string>& paths, int given, std::s
   if (std::any_of(paths.begin(), paths.end(), is_silent)) return;
   for (const std::string& path : paths)
     if (number(path) != given)
-      throw UsageError(path + ": the suffix names another format than --format, which is for files whose names do not");
+      throw UsageError(path + ": --format differs from the suffix; --format is for names without a known suffix");
 }
 
 std::vector<FileToWrite> plan_outputs(const OutputSettings& settings, const std::string& model,

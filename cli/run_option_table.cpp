@@ -18,7 +18,8 @@ Isa isa_from(const Given& given) {
   if (std::find(available.begin(), available.end(), isa) != available.end()) return isa;
   std::vector<std::string_view> names;
   for (const Isa one : available) names.push_back(name(one));
-  throw UsageError(fmt::format("{} does not run here; {} do", given.text, fmt::join(names, ", ")));
+  throw UsageError(
+      fmt::format("{} is not available on this machine; available are {}", given.text, fmt::join(names, ", ")));
 }
 
 Shard shard_from(std::string_view text) {
@@ -34,38 +35,39 @@ constexpr Option run_options[] = {
     {"batch", 0, "FILE", "Render many views: a JSON file of views and outputs (see frontmost(1)).", Group::run,
      for_render, [](Settings& s, const Given& g) { s.run.batch = g.file_name(); }},
     {"shard", 0, "K/N",
-     "Render every N-th view of the batch, 1/N to N/N, and note in a manifest what is finished; that is skipped next "
-     "time.",
+     "Render every N-th view of the batch, 1/N to N/N. A manifest lists the finished views, which the next run skips.",
      Group::run, for_render, [](Settings& s, const Given& g) { s.run.shard = shard_from(g.text); }},
     {"method", 0, "zbuffer|raycast|abuffer",
-     "Visibility method; by default the z-buffer, and the A-buffer for what can be seen through.", Group::run,
+     "Visibility method; by default zbuffer, and abuffer if the picture has translucent surfaces.", Group::run,
      for_render, [](Settings& s, const Given& g) { s.run.method = g.choice<Method>(); }},
-    {"stream", 0, "", "Read binary STL and PLY piece by piece: files larger than memory, with the same bytes.",
-     Group::run, for_render, [](Settings& s, const Given&) { s.run.stream = true; }},
+    {"stream", 0, "",
+     "Read binary STL and PLY piece by piece, for files larger than memory. The output has the same bytes.", Group::run,
+     for_render, [](Settings& s, const Given&) { s.run.stream = true; }},
     {"mpi", 0, "",
      "Share the model among the ranks that mpirun has started: each streams a part, and rank 0 writes the files. "
-     "{rank} "
-     "in a model's name is a rank's number, for a file that it alone reads.",
+     "{rank} in a model's name stands for the rank's number, if each rank reads a file of its own.",
      Group::run, for_render, [](Settings& s, const Given&) { s.run.mpi = s.run.stream = true; }},
-    {"threads", 0, "N", "Threads, 1 to 1024; 0, the default, is one per core.", Group::run, for_every_model,
+    {"threads", 0, "N", "Number of threads, 1 to 1024; 0, the default, means one per core.", Group::run,
+     for_every_model,
      [](Settings& s, const Given& g) {
        s.run.threads = g.integer({0, 1024});
      }},
     {"isa", 0, "scalar|sse4|avx2|avx512", "Instruction set; the best by default.", Group::run,
      for_render | for_sight | for_lidar | for_compare | for_report | for_explain,
      [](Settings& s, const Given& g) { s.run.isa = isa_from(g); }},
-    {"repeat", 0, "N", "Find what is visible N times, for timing.", Group::run, for_render,
+    {"repeat", 0, "N", "Find the visible surfaces N times; --json reports minimum, median and maximum time.",
+     Group::run, for_render,
      [](Settings& s, const Given& g) {
        s.run.repeat = g.integer({1, 1e6});
      }},
-    {"timeout", 0, "SECONDS", "Give up after this long, with exit status 1.", Group::run,
+    {"timeout", 0, "SECONDS", "Give up after so many seconds, with exit status 1.", Group::run,
      for_every_model | for_batch_merge,
      [](Settings& s, const Given& g) {
        s.run.timeout = g.number({1e-3, 1e7});
      }},
-    {"json", 0, "", "Report on standard output as JSON, and nothing else there.", Group::run,
+    {"json", 0, "", "Print the report as JSON on standard output, and nothing else there.", Group::run,
      for_every_model | for_batch_merge, [](Settings& s, const Given&) { s.run.json = true; }},
-    {"quiet", 'q', "", "No progress and no warnings.", Group::run, for_every_model | for_batch_merge,
+    {"quiet", 'q', "", "Show no progress and no warnings.", Group::run, for_every_model | for_batch_merge,
      [](Settings& s, const Given&) { s.run.quiet = true; }},
 };
 

@@ -23,18 +23,18 @@ namespace frontmost::cli {
 namespace {
 
 constexpr Option compare_options[] = {
-    {"output", 'o', "FOLDER", "Write index.html and its pictures there; the folder is made where it is missing.",
+    {"output", 'o', "FOLDER", "Write index.html and its pictures into this folder; a missing folder is made.",
      Group::compare, for_compare,
      [](Settings& s, const Given& g) {
        if (g.text.empty()) throw UsageError("the folder's name is empty");
        s.compare.folder = g.string();
      }},
-    {"runs", 0, "N", "Run every method N times, for medians; by default 5 times, or until a run takes over 2 s.",
+    {"runs", 0, "N", "Run every method N times and report medians; by default 5 times, or until a run takes over 2 s.",
      Group::compare, for_compare,
      [](Settings& s, const Given& g) {
        s.compare.runs = g.integer({1, 1e4});
      }},
-    {"explain", 0, "", "Say in words which method suits this scene and machine.", Group::compare, for_compare,
+    {"explain", 0, "", "Print in words which method suits this scene and this machine.", Group::compare, for_compare,
      [](Settings& s, const Given&) { s.compare.explain = true; }},
 };
 

@@ -52,7 +52,7 @@ std::string many_views(const std::vector<Cost>& costs) {
   if (best.method == first.method)
     return fmt::format("Many views of the same model: {} again, {:.2f} ms each.", title(best), best.again);
   const double views = views_to_catch_up(best, first);
-  return fmt::format("Many views of the same model: {}, {:.2f} ms each; its preparation has paid off after {:.0f}.",
+  return fmt::format("Many views of the same model: {}, {:.2f} ms each; its preparation pays off after {:.0f} views.",
                      title(best), best.again, views);
 }
 
@@ -69,7 +69,7 @@ std::string transparency(const Comparisons& all) {
   for (const Compared& compared : all.methods)
     seen_through = std::max(seen_through, compared.agreement.count(Difference::translucent));
   if (seen_through == 0)
-    return "Nothing here is seen through anything, so the front-most surface is all there is to see.";
+    return "Nothing is seen through a translucent surface, so the front-most surfaces are the whole picture.";
   return fmt::format(
       "In {} {} something is seen through a translucent surface: there only the A-buffer shows what lies behind.",
       grouped(seen_through), spots(all.view));
@@ -91,12 +91,12 @@ std::string trust(const Comparisons& all) {
     unexplained += compared.unexplained();
   }
   if (unexplained > 0)
-    return fmt::format("{} {} are unexplained: a mistake in a method. Please report this model.", unexplained,
+    return fmt::format("{} {} are unexplained, which is a bug in a method. Please report this model.", unexplained,
                        spots(all.view));
-  if (differing == 0) return "The front-most surface is the same to all methods everywhere.";
+  if (differing == 0) return "All methods find the same front-most surface everywhere.";
   return fmt::format(
-      "Front-most surfaces differ in {} of {} {} at most, and exact arithmetic allows both answers in each: none is "
-      "more right.",
+      "Front-most surfaces differ in {} of {} {} at most. Exact arithmetic allows both answers in each of them: "
+      "neither is wrong.",
       grouped(differing), grouped(all.view.sample_count()), spots(all.view));
 }
 
@@ -110,7 +110,7 @@ std::vector<std::string> advice(const Comparisons& all) {
                                  many_views(costs),
                                  memory(costs),
                                  transparency(all),
-                                 "Lines of sight and other single rays: ray casting; the index serves them all.",
+                                 "Lines of sight and other single rays: ray casting; one index serves all rays.",
                                  trust(all)};
   for (const Compared& compared : all.methods)
     if (std::optional<std::string> line = mistakes(compared, all)) lines.push_back(std::move(*line));

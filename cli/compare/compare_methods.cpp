@@ -46,15 +46,17 @@ constexpr ComparedMethod all_methods[] = {
     {"zbuffer", "Z-buffer", "Draws every triangle, and keeps the nearest depth and id at every sample.",
      answer_by_zbuffer},
     {"raycast", "Ray casting",
-     "Asks for every sample which triangle its ray meets first, through a hierarchy of boxes.", answer_by_raycast},
+     "Finds for every sample the first triangle that its ray hits, through a hierarchy of boxes.", answer_by_raycast},
     {"abuffer", "A-buffer",
-     "Keeps all fragments of a pixel in order of depth, and so what shows through; here two layers.", answer_by_abuffer,
-     lists_of_abuffer},
+     "Keeps all fragments of a pixel in order of depth, so that translucent surfaces show the next layer; here two "
+     "layers.",
+     answer_by_abuffer, lists_of_abuffer},
     {"painter", "Painter's algorithm",
-     "Puts polygons into an order in which painting one over the other is right, and paints them.",
+     "Sorts polygons so that painting one over the other is right everywhere, and paints them in this order.",
      answer_by_painter<PaintMethod::depth_sort>},
     {"painter-centroid", "Painter's, by centroids",
-     "The same, ordered by the polygons' centroids alone, as simple programs do: wrong where that does not decide.",
+     "The painter's algorithm with polygons sorted only by their centroids, as in simple programs: wrong where "
+     "centroids do not decide.",
      answer_by_painter<PaintMethod::centroid>, nullptr, true},
 };
 

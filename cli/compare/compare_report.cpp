@@ -107,7 +107,7 @@ std::string culling_text(const Comparisons& all) {
   const CullingRun& c = all.culling;
   std::string text = fmt::format(
       "Occlusion culling: of {} object{} {} outside of the view, {} certainly hidden, {} may be seen ({} seen at a "
-      "sample); {:.2f} ms, and {:.2f} before the first view.",
+      "sample); {:.2f} ms, and {:.2f} ms before the first view.",
       grouped(c.objects()), c.objects() == 1 ? "" : "s", c.outside == 1 ? "1 is" : grouped(c.outside) + " are",
       grouped(c.hidden), grouped(c.open), c.seen == 1 ? "1 is" : grouped(c.seen) + " are", median(c.times), c.prepare);
   if (c.wrong > 0)

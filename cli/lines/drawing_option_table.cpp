@@ -67,7 +67,7 @@ void set_scale(Settings& s, const Given& g) {
 glm::dvec3 light_from(std::string_view text) {
   const std::vector<double> parts = parse_numbers(text, 3, {-1e6, 1e6});
   const glm::dvec3 light(parts[0], parts[1], parts[2]);
-  if (!(glm::length(light) > 1e-6)) throw UsageError("the light must come from somewhere");
+  if (!(glm::length(light) > 1e-6)) throw UsageError("the direction of the light must not be 0,0,0");
   return light;
 }
 
@@ -75,119 +75,117 @@ glm::dvec3 light_from(std::string_view text) {
 std::string field_text(const Given& given, std::size_t most) {
   const auto is_first = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; };
   const auto count = std::size_t(std::count_if(given.text.begin(), given.text.end(), is_first));
-  if (count > most) throw UsageError(fmt::format("{} characters are more than the {} that have room", count, most));
+  if (count > most) throw UsageError(fmt::format("the text has {} characters; at most {} fit", count, most));
   return given.string();
 }
 
 constexpr Option drawing_options[] = {
-    {"hidden", 0, "none|dashed|thin", "How hidden edges are drawn; none by default.", Group::drawing, for_lines,
-     [](Settings& s, const Given& g) { s.drawing.sheet.hidden = g.choice<HiddenLines>(); }},
-    {"hidden-views", 0, "V,V,...", "Views of a sheet that show hidden edges; all but iso by default.", Group::drawing,
-     for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.hidden_views = views_from(g.text); }},
+    {"hidden", 0, "none|dashed|thin", "Style of hidden edges; none, the default, leaves them out.", Group::drawing,
+     for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.hidden = g.choice<HiddenLines>(); }},
+    {"hidden-views", 0, "V,V,...", "Views of the sheet that show hidden edges; all except iso by default.",
+     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.hidden_views = views_from(g.text); }},
     {"style", 0, "technical|figure",
-     "Pens of drawing standards (0.5 mm, the default), or for people: an outline heavier than contours, and those than "
-     "creases.",
+     "Line widths. technical, the default: widths of drawing standards, 0.5 mm. figure: heavy outlines, lighter "
+     "contours, light creases.",
      Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.style = g.choice<DrawingStyle>(); }},
     {"pen", 0, "MM",
-     "Width of the lines that are seen, 0.01 to 10; 0.5 by default, 0.35 for figures. Other pens and dashes go with "
+     "Width of visible lines, 0.01 to 10; 0.5 by default, 0.35 with --style figure. Other widths and dashes scale with "
      "it.",
      Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.pen = g.number(); }},
     {"crease-angle", 0, "DEGREES",
-     "Edges whose faces meet at more than this are drawn, 0 to 180; by default those where the surfaces on both sides "
-     "do.",
+     "Draw the edges whose two faces meet at more than this angle, 0 to 180. By default the curvature of the surfaces "
+     "on both sides decides.",
      Group::drawing, for_lines,
      [](Settings& s, const Given& g) {
        s.drawing.sheet.crease_angle = glm::radians(g.number({0, 180}));
      }},
     {"shortest-stroke", 0, "MM",
-     "Shorter strokes are joined to others or left out, but for pieces of outlines, 0 to 10; 0.5 by default with "
-     "--plot, 0 otherwise.",
+     "Join shorter strokes to others, or leave them out unless they are pieces of outlines, 0 to 10; 0.5 by default "
+     "with --plot, 0 otherwise.",
      Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.shortest_stroke = g.number(); }},
     {"hatch", 0, "MM",
-     "Hatches what is dark: lines this far apart, 0.2 to 50, as many between them where it is darker, crossed by "
-     "others "
-     "in shadow.",
+     "Hatch dark surfaces with lines this far apart, 0.2 to 50. Darker surfaces have twice as many lines; other lines "
+     "cross them in shadow.",
      Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.hatch = g.number(); }},
-    {"hatch-angle", 0, "DEGREES", "Of hatch lines, counter-clockwise from level; 45 by default.", Group::drawing,
-     for_lines,
+    {"hatch-angle", 0, "DEGREES", "Angle of hatch lines, counter-clockwise from horizontal; 45 by default.",
+     Group::drawing, for_lines,
      [](Settings& s, const Given& g) {
        s.drawing.hatch_angle = glm::radians(g.number({-360, 360}));
      }},
-    {"stipple", 0, "MM", "Dots where it is dark, at least about this far apart, 0.2 to 10.", Group::drawing, for_lines,
-     [](Settings& s, const Given& g) { s.drawing.sheet.stipple = g.number(); }},
+    {"stipple", 0, "MM", "Stipple dark surfaces with dots at least about this far apart, 0.2 to 10.", Group::drawing,
+     for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.stipple = g.number(); }},
     {"light", 0, "X,Y,Z",
-     "Where the light of --hatch and --stipple comes from, as the viewer sees it: X to the right, Y upwards, Z towards "
-     "the viewer; "
-     "-0.48,0.68,0.72 by default.",
+     "Direction towards the light of --hatch and --stipple, in the viewer's axes: X to the right, Y upwards, Z towards "
+     "the viewer; -0.48,0.68,0.72 by default.",
      Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.light = light_from(g.text); }},
-    {"cast-shadows", 0, "yes|no", "Whether objects keep that light from others; yes by default.", Group::drawing,
-     for_lines, [](Settings& s, const Given& g) { s.drawing.casts_shadows = g.choice<int>() == 0; }},
+    {"cast-shadows", 0, "yes|no", "Whether objects cast shadows in the light of --hatch and --stipple; yes by default.",
+     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.casts_shadows = g.choice<int>() == 0; }},
     {"page", 0, "PAPER",
-     "a0 to a6, letter, legal or tabloid, perhaps with -portrait or -landscape; W,H in millimetres; or fit: as large "
-     "as "
-     "the drawing. a4 by default; fit with a --scale of numbers.",
+     "Paper: a0 to a6, letter, legal or tabloid, optionally with -portrait or -landscape; W,H in millimetres; or fit, "
+     "as large as the drawing. a4 by default; fit if --scale is a number or a ratio.",
      Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.page = paper_from(g.text); }},
-    {"margin", 0, "MM", "Room at the sides of the page, 0 to 1000; 10 by default.", Group::drawing, for_lines,
+    {"margin", 0, "MM", "Empty space at each side of the page, 0 to 1000; 10 by default.", Group::drawing, for_lines,
      [](Settings& s, const Given& g) { s.drawing.sheet.margin = g.number(); }},
     {"scale", 0, "A:B",
-     "Length on paper to that of the model, as 1:5 or 0.2; fit: as large as the page allows; standard: the largest "
-     "scale "
-     "of ISO 5455 that fits. For parallel projection; standard by default with --views, fit otherwise.",
+     "Length on paper : length of the model, such as 1:5 or 0.2; fit: as large as the page allows; standard: the "
+     "largest scale of ISO 5455 that fits. Needs parallel projection, except fit. standard by default with --views, "
+     "fit otherwise.",
      Group::drawing, for_lines, set_scale},
     {"unit", 0, "mm|cm|m|in",
-     "What the numbers of the model's file are; by default what a 3MF says, m for glTF, mm for others.", Group::drawing,
-     for_lines,
+     "Length unit of the model's coordinates; by default that of the 3MF file, m for glTF, mm for other formats.",
+     Group::drawing, for_lines,
      [](Settings& s, const Given& g) {
        s.drawing.sheet.millimetres_per_unit = length_units[g.choice<int>()].millimetres;
      }},
     {"dimension-unit", 0, "mm|in",
-     "What the sheet states its dimensions in; by default in for models in inches, mm for others.", Group::drawing,
+     "Unit of the dimensions on the sheet; by default in for models in inches, mm for others.", Group::drawing,
      for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.in_inches = g.choice<int>() == 1; }},
     {"views", 0, "V,V,...",
-     "Several views on one sheet, in parallel projection, aligned, at one scale: front, back, left, right, top, "
-     "bottom, "
-     "iso.",
+     "Draw several views on one sheet, in parallel projection, aligned and at one scale: front, back, left, right, "
+     "top, bottom, iso.",
      Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.views = views_from(g.text); }},
     {"sections", 0, "V,V=C,...",
-     "Sections: what a view shows (front, back, left, right, top, bottom) behind a plane across its sight, through the "
-     "middle or at coordinate C, as front,left=12.5; cut faces are hatched, planes marked A-A, B-B.",
+     "Draw sections, such as front,left=12.5: a view (front, back, left, right, top or bottom) of the part of the "
+     "model behind a cutting plane, through the middle or at coordinate C. Cut faces are hatched, planes marked A-A, "
+     "B-B.",
      Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.sections = sections_from(g.text); }},
     {"projection", 0, "first-angle|third-angle",
-     "Where views stand about the front one: the view from above below it (the default), or above it.", Group::drawing,
-     for_lines, [](Settings& s, const Given& g) { s.drawing.projection = ProjectionMethod(1 + g.choice<int>()); }},
+     "Arrangement of views around the front view. first-angle, the default: the top view lies below it. third-angle: "
+     "above it.",
+     Group::drawing, for_lines,
+     [](Settings& s, const Given& g) { s.drawing.projection = ProjectionMethod(1 + g.choice<int>()); }},
     {"centre-lines", 0, "yes|no",
-     "Long-dashed dotted lines through the centres of circles and along the axes of cylinders, in parallel projection; "
-     "yes by default with --views, but for figures.",
+     "Draw long-dashed dotted lines through the centres of circles and along the axes of cylinders, in parallel "
+     "projection; yes by default with --views, unless --style figure is given.",
      Group::drawing, for_lines,
      [](Settings& s, const Given& g) { s.drawing.sheet.centre_lines = g.choice<int>() == 0; }},
     {"dimensions", 0, "",
-     "Sizes on sheets of --views: the whole width, height and depth, and the diameters of circles, each once, in the "
-     "--dimension-unit.",
+     "Write dimensions on a sheet of --views: overall width, height and depth, and the diameters of circles, each "
+     "once, in the --dimension-unit.",
      Group::drawing, for_lines, [](Settings& s, const Given&) { s.drawing.sheet.dimensions = true; }},
     {"plot", 0, "",
-     "For pen plotters: long strokes whatever they belong to, ordered to spare lifts of the pen; dashes are lines of "
-     "their "
-     "own.",
+     "Prepare the drawing for pen plotters: strokes are joined across objects and ordered for few lifts of the pen; "
+     "every dash is a line of its own.",
      Group::drawing, for_lines, [](Settings& s, const Given&) { s.drawing.sheet.plot = true; }},
     {"frame", 0, "",
-     "Frame and title block (ISO 5457, ISO 7200), also with any of the five texts below; the page is 210 x 100 mm or "
-     "more, and with a --scale of numbers alone the smallest of a4 to a0.",
+     "Draw a frame and a title block (ISO 5457, ISO 7200); each of the five texts below implies it. The page must be "
+     "at least 210 x 100 mm; with a numeric --scale and no --page it is the smallest of a4 to a0 that fits.",
      Group::drawing, for_lines, [](Settings& s, const Given&) { s.drawing.frame = true; }},
-    {"title", 0, "TEXT", "Of the drawing, up to 80 characters; the model's name by default.", Group::drawing, for_lines,
-     [](Settings& s, const Given& g) { s.drawing.texts.title = field_text(g, 80); }},
-    {"number", 0, "TEXT", "Of the drawing, up to 30 characters.", Group::drawing, for_lines,
+    {"title", 0, "TEXT", "Title of the drawing, up to 80 characters; the model's name by default.", Group::drawing,
+     for_lines, [](Settings& s, const Given& g) { s.drawing.texts.title = field_text(g, 80); }},
+    {"number", 0, "TEXT", "Number of the drawing, up to 30 characters.", Group::drawing, for_lines,
      [](Settings& s, const Given& g) { s.drawing.texts.number = field_text(g, 30); }},
-    {"author", 0, "TEXT", "Who made the drawing, up to 40 characters.", Group::drawing, for_lines,
+    {"author", 0, "TEXT", "Author of the drawing, up to 40 characters.", Group::drawing, for_lines,
      [](Settings& s, const Given& g) { s.drawing.texts.author = field_text(g, 40); }},
-    {"date", 0, "TEXT", "Of issue, as it is to be written, up to 20 characters; no clock is asked.", Group::drawing,
+    {"date", 0, "TEXT", "Date of issue, written as given, up to 20 characters; empty by default.", Group::drawing,
      for_lines, [](Settings& s, const Given& g) { s.drawing.texts.date = field_text(g, 20); }},
     {"owner", 0, "TEXT", "Legal owner, up to 80 characters.", Group::drawing, for_lines,
      [](Settings& s, const Given& g) { s.drawing.texts.owner = field_text(g, 80); }},
-    {"output", 'o', "FILE", "The drawing: .svg, .pdf, .dxf or .json; - is standard output, with --format.",
+    {"output", 'o', "FILE", "Write the drawing as .svg, .pdf, .dxf or .json; - is standard output and needs --format.",
      Group::output, for_lines | may_repeat,
      [](Settings& s, const Given& g) { s.drawing.outputs.push_back(g.file_name()); }},
-    {"format", 0, "svg|pdf|dxf|json", "Format of files whose names do not say, such as -.", Group::output, for_lines,
-     [](Settings& s, const Given& g) { s.drawing.format = g.choice<PageFormat>(); }},
+    {"format", 0, "svg|pdf|dxf|json", "Format of output files without a known suffix, such as -.", Group::output,
+     for_lines, [](Settings& s, const Given& g) { s.drawing.format = g.choice<PageFormat>(); }},
 };
 
 }  // namespace

@@ -81,7 +81,8 @@ void check_outputs_of(const Settings& settings) {
   }
   if (s.format) check_given_format(s.outputs, int(*s.format), "svg|pdf|dxf|json");
   const bool takes_output = std::find(s.outputs.begin(), s.outputs.end(), "-") != s.outputs.end();
-  if (takes_output && settings.run.json) throw UsageError("--json and an output to - both want standard output");
+  if (takes_output && settings.run.json)
+    throw UsageError("--json and an output to - both write to standard output; give a file");
 }
 
 std::optional<PageFormat> format_of(const std::string& path, const DrawingSettings& settings) {
@@ -123,8 +124,8 @@ std::vector<std::string> open_outlines(const Sheet& sheet) {
     }
     if (open == 0) continue;
     warnings.push_back(
-        fmt::format("section {}: {} of the lines that it cuts do not close, on {} of {} objects: the mesh is open "
-                    "there, and is not hatched",
+        fmt::format("section {}: {} outlines are not closed, on {} of {} objects, because the mesh is open there; "
+                    "these parts are not hatched",
                     view.name, open, objects, view.section->faces.size()));
   }
   return warnings;
@@ -132,20 +133,20 @@ std::vector<std::string> open_outlines(const Sheet& sheet) {
 
 void warn_of(const Sheet& sheet, const Surfaces& surfaces, const Settings& settings, Progress& progress) {
   const auto warn = [&](const std::vector<std::string>& texts) { show_warnings(texts, settings.run, progress); };
-  if (sheet.is_empty) warn({"nothing is seen; the drawing is empty"});
+  if (sheet.is_empty) warn({"nothing of the model is in view; the drawing is empty"});
   if (const auto lying = up_warning(settings.view, settings.load, surfaces)) warn({*lying});
   if (const auto hint = unit_hint(settings.drawing, surfaces, sheet.scale.value_or(0))) warn({*hint});
   warn(open_outlines(sheet));
   if (sheet.left_out > 0)
-    warn({fmt::format("{} diameters had no room (a sheet has 64 at most); take a larger --page or fewer views",
-                      sheet.left_out)});
+    warn({fmt::format(
+        "{} diameters are left out for lack of room (a sheet has 64 at most); use a larger --page or fewer views",
+        sheet.left_out)});
   if (sheet.undrawn > 0)
     warn(
-        {fmt::format("cylinders without a diameter, because no line of theirs is drawn: {}{}", sheet.undrawn,
+        {fmt::format("cylinders without a diameter, because none of their lines is drawn: {}{}", sheet.undrawn,
                      settings.drawing.sheet.hidden == HiddenLines::none ? "; --hidden dashed draws hidden ones" : "")});
   if (sheet.prisms > 0)
-    warn({fmt::format("cylinders of 7 to 17 sides, which have no diameter because they count as polygons: {}",
-                      sheet.prisms)});
+    warn({fmt::format("cylinders of 7 to 17 sides, which count as prisms and have no diameter: {}", sheet.prisms)});
 }
 
 /// Draws one model and writes its own files. Adds its page to `pages` if a file holds all sheets. \returns the report.
@@ -179,7 +180,7 @@ void part_outputs(DrawingSettings& sheet) {
       sheet.books.push_back(path);
     } else {
       throw UsageError(fmt::format(
-          "-o {}: every model has a sheet of its own; put {{model}} into the name, or make it a .pdf, which has pages",
+          "-o {}: every model has a sheet of its own; put {{model}} into the name, or write a .pdf, which has pages",
           path));
     }
   }

@@ -66,9 +66,9 @@ void check_projection(const Settings& s) {
   if (s.view.orthographic || s.view.camera_index || s.drawing.is_sheet()) return;
   const SheetOptions& sheet = s.drawing.sheet;
   if (sheet.scale || sheet.standard_scale.value_or(false))
-    throw UsageError("--scale: in perspective nothing has a scale; add --camera-orthographic, or --views");
+    throw UsageError("--scale: a perspective drawing has no scale; add --camera-orthographic or --views");
   if (sheet.centre_lines.value_or(false))
-    throw UsageError("--centre-lines: perspective has none; add --camera-orthographic, or --views");
+    throw UsageError("--centre-lines: a perspective drawing has none; add --camera-orthographic or --views");
 }
 
 void check_light(const DrawingSettings& s) {
@@ -91,8 +91,8 @@ std::optional<std::string> unit_hint(const DrawingSettings& s, const Surfaces& s
     const double own = 1000 * source.metres_per_unit.value_or(*s.sheet.millimetres_per_unit / 1000);
     if (std::abs(own / *s.sheet.millimetres_per_unit - 1) < 1e-9) return std::nullopt;
     return fmt::format(
-        "--unit overrules the file, which says that its unit is {:.6g} mm; --dimension-unit is for what "
-        "the sheet states",
+        "--unit overrides the unit of the file, {:.6g} mm; to change only the unit of the dimensions, use "
+        "--dimension-unit",
         own);
   }
   const bool is_sheet = s.is_sheet() || s.has_frame() || s.sheet.standard_scale.value_or(false);

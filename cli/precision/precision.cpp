@@ -18,19 +18,20 @@ namespace {
 
 constexpr Option precision_options[] = {
     {"format", 0, "D8|D16|D24|F32",
-     "Format of the depth buffer; by default D16, D24, F32 and F32 reversed are compared.", Group::precision,
+     "Format of the depth buffer; without it D16, D24, F32 and reversed F32 are compared.", Group::precision,
      for_precision, [](Settings& s, const Given& g) { s.precision.format = g.choice<DepthFormat>(); }},
-    {"infinite", 0, "", "Put the far plane at infinity: as --far inf.", Group::precision, for_precision,
+    {"infinite", 0, "", "Put the far plane at infinity; short for --far inf.", Group::precision, for_precision,
      [](Settings& s, const Given&) { s.precision.infinite = true; }},
-    {"gap", 0, "GAP,DISTANCE", "Say which near plane would resolve GAP at DISTANCE.", Group::precision, for_precision,
+    {"gap", 0, "GAP,DISTANCE", "Print the near plane that resolves GAP at DISTANCE.", Group::precision, for_precision,
      [](Settings& s, const Given& g) {
        const std::vector<double> wanted = parse_numbers(g.text, 2, {1e-300, 1e300});
        s.precision.wanted = glm::dvec2(wanted[0], wanted[1]);
      }},
-    {"plot", 0, "FILE", "Draw the gaps against distance, as SVG.", Group::precision, for_precision,
+    {"plot", 0, "FILE", "Write a plot of gap against distance, as SVG.", Group::precision, for_precision,
      [](Settings& s, const Given& g) { s.precision.plot = g.file_name(); }},
     {"heat-map", 0, "FILE",
-     "Paint the wrong pixels over the model, as PNG or what the suffix says; needs MODEL and --format.",
+     "Write a picture of the model with the wrong pixels marked, in the format of the suffix; needs MODEL and "
+     "--format.",
      Group::precision, for_precision, [](Settings& s, const Given& g) { s.precision.heat_map = g.file_name(); }},
 };
 
@@ -53,7 +54,7 @@ void check(const Settings& settings) {
   const std::vector<std::string> files = outputs_of(precision);
   check_outputs(files, input_files(settings));
   if (settings.run.json && std::find(files.begin(), files.end(), "-") != files.end())
-    throw UsageError("--json and an output to - both want standard output");
+    throw UsageError("--json and an output to - both write to standard output; give a file");
 }
 
 ViewSettings with_far(const Settings& settings) {

@@ -58,9 +58,9 @@ std::string reach_text(const PrecisionRun& run) {
                             : run.results.front().setup.orthographic ? "within twice the planes' distances"
                                                                      : "within twice their distance";
   return fmt::format(
-      "\nA gap holds the format's step and what floats of positions and transforms add, for surfaces that face the "
-      "eye\n"
-      "and have their corners {}; slanted ones add what their depth changes over 1/256 pixel.\n",
+      "\n"
+      "A gap is the format's step plus the rounding of positions and transforms, for surfaces that face the eye\n"
+      "and have their vertices {}. Slanted surfaces need the change of their depth over 1/256 pixel in addition.\n",
       reach);
 }
 

@@ -28,7 +28,7 @@ glm::dvec2 ordered_pair(const Given& given, const NumberLimits& limits, const ch
 
 glm::dvec2 azimuths_from(const Given& given) {
   const std::vector<double> ends = parse_numbers(given.text, 2, {-360, 360});
-  if (std::abs(ends[1] - ends[0]) > 360) throw UsageError("that is more than a whole turn");
+  if (std::abs(ends[1] - ends[0]) > 360) throw UsageError("FROM and TO differ by more than a whole turn");
   return {ends[0], ends[1]};
 }
 
@@ -39,43 +39,48 @@ std::vector<double> ring_elevations_from(const Given& given) {
 }
 
 constexpr Option lidar_options[] = {
-    {"from", 0, "X,Y,Z", "Where the scanner stands, in the model's own coordinates.", Group::lidar, for_lidar,
+    {"from", 0, "X,Y,Z", "Position of the scanner, in the model's own coordinates.", Group::lidar, for_lidar,
      [](Settings& s, const Given& g) { s.lidar.from = parse_vector(g.text); }},
-    {"forward", 0, "X,Y,Z", "Where it looks first; also an axis. By default the model's front view's direction.",
+    {"forward", 0, "X,Y,Z",
+     "Direction of azimuth 0, straight ahead; also an axis, such as +x. By default the viewing direction of --view "
+     "front.",
      Group::lidar, for_lidar, [](Settings& s, const Given& g) { s.lidar.forward = parse_direction(g.text); }},
-    {"rings", 0, "N", "Rings of rays, 1 to 16384; 16 by default.", Group::lidar, for_lidar,
+    {"rings", 0, "N", "Number of rings of rays, 1 to 16384; 16 by default.", Group::lidar, for_lidar,
      [](Settings& s, const Given& g) {
        s.lidar.rings = g.integer({1, 16384});
      }},
-    {"elevations", 0, "LOW,HIGH", "Degrees above the horizon between which rings are spread; -15,15 by default.",
+    {"elevations", 0, "LOW,HIGH", "Lowest and highest ring, in degrees above the horizon; -15,15 by default.",
      Group::lidar, for_lidar,
      [](Settings& s, const Given& g) {
        s.lidar.elevations = ordered_pair(g, {-90, 90}, "the lowest comes first");
      }},
-    {"ring-elevations", 0, "DEGREES,...", "The elevation of each ring, one or more, in the order of the rows.",
+    {"ring-elevations", 0, "DEGREES,...", "Elevation of each ring, in the order of the rows; one or more.",
      Group::lidar, for_lidar, [](Settings& s, const Given& g) { s.lidar.ring_elevations = ring_elevations_from(g); }},
-    {"steps", 0, "N", "Rays of a ring, turning to the right; 1 to 16384; 1024 by default.", Group::lidar, for_lidar,
+    {"steps", 0, "N", "Number of rays in a ring, which turns to the right, 1 to 16384; 1024 by default.", Group::lidar,
+     for_lidar,
      [](Settings& s, const Given& g) {
        s.lidar.steps = g.integer({1, 16384});
      }},
     {"azimuths", 0, "FROM,TO",
-     "Degrees to the right of ahead, of a ring's first ray and of its last; to the left where TO is less. 0,360 by "
-     "default: a whole turn repeats no ray.",
+     "Azimuths of a ring's first and last ray, in degrees to the right of straight ahead. The ring turns to the left "
+     "if TO is less. 0,360 by default; a whole turn repeats no ray.",
      Group::lidar, for_lidar, [](Settings& s, const Given& g) { s.lidar.azimuths = azimuths_from(g); }},
     {"range", 0, "MIN,MAX",
-     "Ranges in the model's units; what a ray meets nearer or farther is not written, but hides what is behind it.",
+     "Least and greatest range, in the model's units. Points nearer or farther are not written, but hide points behind "
+     "them.",
      Group::lidar, for_lidar,
      [](Settings& s, const Given& g) {
        s.lidar.range = ordered_pair(g, {0, 1e30}, "the least comes first");
      }},
-    {"directions", 0, "FILE", "Instead of rings: three numbers a line, x right, y up, z behind; # starts a comment.",
+    {"directions", 0, "FILE",
+     "File of ray directions, in place of rings: three numbers a line, x right, y up, z backwards; # starts a comment.",
      Group::lidar, for_lidar, [](Settings& s, const Given& g) { s.lidar.directions = g.file_name(); }},
     {"robot-axes", 0, "",
-     "Read directions, and write points, in the scanner's own axes as robots have them: x ahead, y left, z up.",
+     "Read directions and write points in the scanner's own axes, as is usual for robots: x ahead, y left, z up.",
      Group::lidar, for_lidar, [](Settings& s, const Given&) { s.lidar.robot_axes = true; }},
-    {"output", 'o', "FILE", "Points (.ply), or a range image with a row for each ring (.exr, .npy: ranges alone).",
-     Group::output, for_lidar | may_repeat,
-     [](Settings& s, const Given& g) { s.lidar.outputs.push_back(g.file_name()); }},
+    {"output", 'o', "FILE",
+     "Write points (.ply), or a range image with a row for each ring (.exr; .npy holds ranges only).", Group::output,
+     for_lidar | may_repeat, [](Settings& s, const Given& g) { s.lidar.outputs.push_back(g.file_name()); }},
 };
 
 constexpr int default_rings = 16, default_steps = 1024;
@@ -89,8 +94,7 @@ RayPattern read_directions(const std::string& path, bool robot_axes) {
     const glm::vec3& direction = pattern.directions.emplace_back(robot_axes ? glm::dvec3(-n[i + 1], n[i + 2], -n[i])
                                                                             : glm::dvec3(n[i], n[i + 1], n[i + 2]));
     if (direction == glm::vec3(0))
-      throw Error(ErrorCode::file_malformed, path, "",
-                  fmt::format("number {} of its directions has no length", i / 3 + 1));
+      throw Error(ErrorCode::file_malformed, path, "", fmt::format("direction {} has length 0", i / 3 + 1));
   }
   if (pattern.directions.empty()) throw Error(ErrorCode::file_malformed, path, "", "holds no direction");
   return pattern;
@@ -101,10 +105,8 @@ void check(const Settings& settings) {
   if (!s.from) throw UsageError("give --from X,Y,Z, where the scanner stands");
   const bool has_list = !s.ring_elevations.empty();
   if (s.directions && (s.rings || s.steps || s.elevations || s.azimuths || has_list))
-    throw UsageError(
-        "--directions and --rings, --steps, --azimuths, --elevations, --ring-elevations are two ways to say it");
-  if (has_list && (s.rings || s.elevations))
-    throw UsageError("--ring-elevations and --rings, --elevations are two ways to say it");
+    throw UsageError("--directions excludes --rings, --steps, --azimuths, --elevations and --ring-elevations");
+  if (has_list && (s.rings || s.elevations)) throw UsageError("--ring-elevations excludes --rings and --elevations");
   if (s.outputs.empty() && !settings.run.json) throw UsageError("nothing to do: give -o FILE or --json");
   for (const std::string& path : s.outputs) {
     const std::string suffix = std::filesystem::path(path).extension().string();

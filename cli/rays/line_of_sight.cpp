@@ -23,12 +23,13 @@ namespace frontmost::cli {
 namespace {
 
 constexpr Option sight_options[] = {
-    {"from", 0, "X,Y,Z", "Look from this point, in the model's own coordinates.", Group::sight, for_sight,
+    {"from", 0, "X,Y,Z", "First point, in the model's own coordinates.", Group::sight, for_sight,
      [](Settings& s, const Given& g) { s.sight.from = parse_vector(g.text); }},
-    {"to", 0, "X,Y,Z", "Look at this point.", Group::sight, for_sight,
+    {"to", 0, "X,Y,Z", "Second point.", Group::sight, for_sight,
      [](Settings& s, const Given& g) { s.sight.to = parse_vector(g.text); }},
-    {"pairs", 0, "FILE", "A file of pairs of points: six numbers a line, with blanks or commas; # starts a comment.",
-     Group::sight, for_sight, [](Settings& s, const Given& g) { s.sight.pairs = g.file_name(); }},
+    {"pairs", 0, "FILE",
+     "File of pairs of points: six numbers a line, separated by blanks or commas; # starts a comment.", Group::sight,
+     for_sight, [](Settings& s, const Given& g) { s.sight.pairs = g.file_name(); }},
 };
 
 /// A pair of points in the coordinates of the model's file.
@@ -46,7 +47,7 @@ std::vector<PointPair> read_pairs(const std::string& path) {
 }
 
 std::vector<PointPair> pairs_of(const SightSettings& sight) {
-  if (sight.pairs && (sight.from || sight.to)) throw UsageError("--pairs and --from, --to are two ways to say it");
+  if (sight.pairs && (sight.from || sight.to)) throw UsageError("--pairs excludes --from and --to");
   if (sight.pairs) return read_pairs(*sight.pairs);
   if (!sight.from || !sight.to) throw UsageError("give --from and --to, or --pairs");
   return {{*sight.from, *sight.to}};

@@ -113,7 +113,7 @@ std::string text_of(const JsonPlace& place) {
   if (!value.is_array()) place.refuse("must be a string, a number or a list of numbers");
   std::string text;
   const auto append = [&](const Json& element) {
-    if (!element.is_number()) place.refuse("must hold numbers alone");
+    if (!element.is_number()) place.refuse("must hold only numbers");
     if (!text.empty()) text += ',';
     text += number_text(element);
   };

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Option batch_merge_options[] = {
-    {"output", 'o', "FOLDER", "Copy all files and one manifest into this folder; made where it is not there.",
+    {"output", 'o', "FOLDER", "Copy all files and one manifest into this folder; a missing folder is made.",
      Group::output, for_batch_merge, [](Settings& s, const Given& g) { s.merge_folder = g.file_name(); }},
 };
 
@@ -60,7 +60,9 @@ std::vector<ShardPart> find_parts(const std::vector<std::string>& places) {
     for (fs::directory_iterator at(place, error), end; !error && at != end; at.increment(error))
       if (stem_of_manifest(at->path().filename().string())) found.push_back(at->path());
     if (error) throw Error(ErrorCode::file_unreadable, place, "", "cannot read: " + error.message());
-    if (found.empty()) throw Error(ErrorCode::file_unreadable, place, "", "there is no manifest of a batch");
+    if (found.empty())
+      throw Error(ErrorCode::file_unreadable, place, "",
+                  "the folder has no manifest of a batch; give a folder in which frontmost render --shard ran");
     std::sort(found.begin(), found.end());
     for (const fs::path& path : found) add_part(path, parts);
   }
@@ -85,13 +87,13 @@ Merged merge_parts(std::vector<ShardPart>& parts) {
   for (ShardPart& part : parts) {
     if (part.manifest.batch != first.batch || part.manifest.view_count != first.view_count)
       throw Error(ErrorCode::file_malformed, part.path, "",
-                  "of another model, batch file, options or version than " + parts.front().path);
+                  "has another model, batch file, version or other options than " + parts.front().path);
     for (FinishedView& view : part.manifest.finished) {
       if (view.number >= has.size() || has[view.number]) continue;
       stop_if_interrupted();
       if (const auto changed = changed_file(view, part.folder))
         throw Error(ErrorCode::file_malformed, *changed, "",
-                    fmt::format("is not what {} says that it is; repeat that shard", part.path));
+                    fmt::format("differs from its entry in {}; repeat that shard", part.path));
       has[view.number] = true;
       for (const FinishedFile& file : view.files) ++merged.file_count, merged.bytes += file.hash.bytes;
       merged.views.push_back({std::move(view), part.folder});
@@ -113,8 +115,7 @@ bool stays_within(const std::string& path) {
 
 void copy_file(const FinishedFile& file, const std::string& folder, const StagedFolder& staged) {
   if (!stays_within(file.path))
-    throw Error(ErrorCode::unsupported, file.path, "",
-                "lies outside of the folder of its manifest; leave --output away");
+    throw Error(ErrorCode::unsupported, file.path, "", "lies outside the folder of its manifest; leave out --output");
   const fs::path from = fs::path(folder) / file.path, to = staged.path(file.path);
   std::error_code error;
   fs::create_directories(to.parent_path(), error);
@@ -166,7 +167,7 @@ int run_batch_merge(const Settings& settings) {
                 {"bytes", merged.bytes},
                 {"manifests", std::move(manifests)}}));
   } else if (!settings.run.quiet) {
-    print(fmt::format("{} views, {} files, {} bytes: all there\n", grouped(merged.views.size()),
+    print(fmt::format("{} views, {} files, {} bytes: complete\n", grouped(merged.views.size()),
                       grouped(merged.file_count), grouped(merged.bytes)));
   }
   return exit_done;

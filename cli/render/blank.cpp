@@ -18,12 +18,12 @@ namespace {
 
 enum Cause { non_finite, behind, too_near, too_far, outside, culled, too_small };
 
-constexpr std::array<std::string_view, 7> clauses = {"has corners that are not finite",
+constexpr std::array<std::string_view, 7> clauses = {"has vertices that are not finite",
                                                      "is behind the camera",
                                                      "is nearer than the near plane",
                                                      "is beyond the far plane",
                                                      "is outside the picture",
-                                                     "faces the way that --cull leaves out",
+                                                     "faces the side that --cull leaves out",
                                                      "is smaller than a pixel or seen edge-on"};
 
 using WorldCorners = std::array<glm::dvec3, 3>;
@@ -169,7 +169,7 @@ std::string blank_reason(const Surfaces& surfaces, const View& view, const Execu
   }
   reason.add(corners);
   if (reason.has_small() && is_all_holes(surfaces, view, execution))
-    return "all of the model in the picture is a hole of its materials (alpha mode MASK)";
+    return "all of the model in the picture is cut away by alpha mode MASK of its materials";
   return reason.clause();
 }
 
@@ -226,8 +226,8 @@ std::string contrast_warning(bool is_invisible) {
   if (is_invisible)
     return "nothing in the picture stands out from its background: the opacity of all materials in it is 0";
   return fmt::format(
-      "nothing in the picture stands out from its background: fewer than 1 in {} of the pixels that see something "
-      "differ from it by more than {:.0f} of 255 steps; another --background would show them",
+      "nothing in the picture stands out from its background: fewer than 1 in {} of the covered pixels differ from it "
+      "by more than {:.0f} of 255 steps; try another --background",
       one_in, most_steps);
 }
 

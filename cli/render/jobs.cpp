@@ -20,11 +20,11 @@ namespace {
 void check_layers(const Settings& settings, const Job& job) {
   const bool has_layers = !job.layer_files.empty() || wants(job, OutputKind::deep);
   if (settings.run.stream && (has_layers || settings.output.opacity < 1))
-    throw UsageError("--stream keeps only what is nearest; it excludes --opacity, --layers and --deep");
+    throw UsageError("--stream keeps only the nearest surface; it excludes --opacity, --layers and --deep");
   const bool names_other = settings.run.method && *settings.run.method != Method::abuffer;
   if ((names_other || settings.view.depth.is_used) && (has_layers || settings.output.opacity < 1))
     throw UsageError(
-        "--opacity, --layers and --deep need the A-buffer: another method or a depth buffer excludes them");
+        "--opacity, --layers and --deep need the A-buffer; they exclude other methods and options of a depth buffer");
   if (settings.view.samples == 64 && settings.run.method != Method::abuffer)
     throw UsageError("--samples 64 needs --method abuffer");
 }
@@ -38,12 +38,13 @@ void take_figures(const Settings& settings, const std::string& model, Job& job) 
   if (job.figures.empty()) return;
   files.erase(std::remove_if(files.begin(), files.end(), is_one), files.end());
   const auto refuse = [&](const char* why) { throw UsageError(fmt::format("{}: {}", job.figures.front(), why)); };
-  if (settings.run.stream) refuse("--stream keeps only pixels; polygons need the whole model");
+  if (settings.run.stream) refuse("polygons need the whole model at once; leave out --stream");
   if (settings.run.method || settings.view.depth.is_used)
-    refuse("polygons are painted, without --method or depth buffer");
-  if (settings.view.camera_model != CameraModel::pinhole) refuse("polygons are seen by pinhole cameras alone");
+    refuse("polygons are always drawn by the painter's algorithm, without --method or options of a depth buffer");
+  if (settings.view.camera_model != CameraModel::pinhole)
+    refuse("polygons need a pinhole camera; leave out --camera-model");
   if (settings.output.light.options.shows_environment)
-    refuse("polygons have a plain background; see --show-environment");
+    refuse("polygons have a plain background; leave out --show-environment");
 }
 
 void check_format(const OutputSettings& settings) {
@@ -70,11 +71,11 @@ Job make_job(const Settings& settings) {
   if (settings.run.stream && settings.view.camera_model != CameraModel::pinhole)
     throw UsageError("--stream and --camera-model exclude each other");
   if (settings.run.stream && settings.view.framed == FramedObjects::subject)
-    throw UsageError("--stream fits all objects into the picture, as --frame all does");
+    throw UsageError("--stream always fits all objects into the picture; it excludes --frame subject");
   if (settings.output.occlusion_radius && settings.output.ambient_occlusion == 0)
     throw UsageError("--occlusion-radius needs --ambient-occlusion");
   if (settings.run.stream && settings.output.ambient_occlusion > 0 && !settings.output.occlusion_radius)
-    throw UsageError("--ambient-occlusion needs --occlusion-radius with --stream, which keeps only what is seen");
+    throw UsageError("--stream does not keep the model, so --ambient-occlusion needs --occlusion-radius");
   if (settings.run.stream && settings.output.shadows == Shadows::rays)
     throw UsageError("--stream and --shadows rays exclude each other: rays need the whole model at once");
   if (job.output.reference) {
@@ -101,8 +102,10 @@ void check_files(const std::vector<Job>& jobs, const Settings& settings) {
   check_references(references, paths);
   check_outputs(paths, inputs);
   const bool writes_stdout = std::find(paths.begin(), paths.end(), "-") != paths.end();
-  if (writes_stdout && settings.run.json) throw UsageError("--json and an output to - both want standard output");
-  if (writes_stdout && settings.output.hash) throw UsageError("--hash and an output to - both want standard output");
+  if (writes_stdout && settings.run.json)
+    throw UsageError("--json and an output to - both write to standard output; give a file");
+  if (writes_stdout && settings.output.hash)
+    throw UsageError("--hash and an output to - both write to standard output; give a file");
 }
 
 }  // namespace

@@ -25,123 +25,135 @@ constexpr unsigned written = for_render | may_repeat;
 
 constexpr Option output_options[] = {
     {"output", 'o', "FILE",
-     "The picture: .png, .jpg, .webp, .exr, .pfm or .npy, or its polygons: .svg or .pdf; - is standard output. {model} "
-     "and {view} stand for names.",
+     "Write the picture, as .png, .jpg, .webp, .exr, .pfm or .npy, or as polygons: .svg or .pdf. - is standard output. "
+     "{model} and {view} in file names stand for the names of model and view.",
      Group::output, written, [](Settings& s, const Given& g) { add_file(s, OutputKind::picture, g.text); }},
-    {"depth", 0, "FILE", "Distance along the viewing axis, in scene units.", Group::output, written,
+    {"depth", 0, "FILE", "Write depths: distances along the viewing axis, in scene units.", Group::output, written,
      [](Settings& s, const Given& g) { add_file(s, OutputKind::depth, g.text); }},
-    {"ray-distance", 0, "FILE", "Distance from the eye, in scene units.", Group::output, written,
+    {"ray-distance", 0, "FILE", "Write distances from the eye, in scene units.", Group::output, written,
      [](Settings& s, const Given& g) { add_file(s, OutputKind::ray_distance, g.text); }},
-    {"window-depth", 0, "FILE", "The depth buffer's values from 0 to 1, as glReadPixels gives them.", Group::output,
+    {"window-depth", 0, "FILE", "Write the depth buffer's values, 0 to 1, as glReadPixels returns them.", Group::output,
      written,
      [](Settings& s, const Given& g) {
        s.view.depth.is_used = true;
        add_file(s, OutputKind::window_depth, g.text);
      }},
-    {"ids", 0, "KIND=FILE", "Which primitive, object or material is seen: primitive=FILE, object=FILE, material=FILE.",
+    {"ids", 0, "KIND=FILE",
+     "Write the number of the visible primitive, object or material: primitive=FILE, object=FILE or material=FILE.",
      Group::output, written, [](Settings& s, const Given& g) { add_ids(s, g.text); }},
-    {"normals", 0, "FILE", "World-space normals.", Group::output, written,
+    {"normals", 0, "FILE", "Write world-space normals.", Group::output, written,
      [](Settings& s, const Given& g) { add_file(s, OutputKind::normals, g.text); }},
-    {"deep", 0, "FILE", "All that is seen through, as a deep OpenEXR file: colour, depth and ids of every layer.",
+    {"deep", 0, "FILE",
+     "Write a deep OpenEXR file: colour, depth and ids of every layer, including those seen through translucent "
+     "surfaces.",
      Group::output, written, [](Settings& s, const Given& g) { add_file(s, OutputKind::deep, g.text); }},
-    {"layers", 0, "K", "Write the K nearest layers, 1 to 1024: a file of each where its name holds {layer}, from 0.",
+    {"layers", 0, "K",
+     "Write the K nearest layers, 1 to 1024. {layer} in a file name stands for the number of the layer, from 0.",
      Group::output, for_render,
      [](Settings& s, const Given& g) {
        s.output.layers = g.integer({1, 1024});
      }},
     {"visible-only", 0, "yes|no",
-     "Leave out of .svg and .pdf what is hidden, and cut what is hidden in part; yes by default.", Group::output,
+     "Leave hidden polygons out of .svg and .pdf, and cut partly hidden ones; yes by default.", Group::output,
      for_render, [](Settings& s, const Given& g) { s.output.visible_only = g.choice<int>() == 0; }},
     {"color-tolerance", 0, "STEPS",
-     "Cut polygons of .svg and .pdf whose colour varies by more than so many of 255 steps; 6 by default, 255: never.",
+     "Cut polygons of .svg and .pdf whose colour varies by more than so many of 255 steps; 6 by default; 255 cuts "
+     "none.",
      Group::output, for_render,
      [](Settings& s, const Given& g) {
        s.output.color_tolerance = g.number({0, 255});
      }},
     {"merge-neighbours", 0, "",
-     "Make neighbours of one colour one path in .svg and .pdf, where nothing lies above them.", Group::output,
-     for_render, [](Settings& s, const Given&) { s.output.merges_neighbours = true; }},
-    {"most-polygons", 0, "N", "Refuse .svg and .pdf files of more polygons; 2000000 by default.", Group::output,
-     for_render,
+     "Join adjacent polygons of one colour into one path in .svg and .pdf, if nothing is painted over them.",
+     Group::output, for_render, [](Settings& s, const Given&) { s.output.merges_neighbours = true; }},
+    {"most-polygons", 0, "N", "Refuse to write .svg and .pdf files with more polygons; 2000000 by default.",
+     Group::output, for_render,
      [](Settings& s, const Given& g) {
        s.output.most_polygons = std::size_t(g.integer({1, 1000000000}));
      }},
-    {"format", 0, "png|exr|pfm|npy|jpg|webp", "Format of files whose names do not say, such as -.", Group::output,
-     for_render, [](Settings& s, const Given& g) { s.output.format = g.choice<ImageFormat>(); }},
-    {"bits", 0, "8|16", "Bits a channel of PNG pictures; 8 by default.", Group::output, for_render,
+    {"format", 0, "png|exr|pfm|npy|jpg|webp", "Format of output files without a known suffix, such as -.",
+     Group::output, for_render, [](Settings& s, const Given& g) { s.output.format = g.choice<ImageFormat>(); }},
+    {"bits", 0, "8|16", "Bits per channel of PNG pictures; 8 by default.", Group::output, for_render,
      [](Settings& s, const Given& g) { s.output.bits = g.choice<int>() == 0 ? 8 : 16; }},
-    {"quality", 0, "Q", "How near .jpg and .webp come to the picture, 1 to 100; 90 by default.", Group::output,
+    {"quality", 0, "Q", "Quality of .jpg and .webp, 1 to 100; 90 by default.", Group::output,
      for_render | for_precision,
      [](Settings& s, const Given& g) {
        s.output.quality = g.integer({1, 100});
      }},
-    {"depth-scale", 0, "FACTOR", "PNG depth is distance times this, rounded; by default the range seen fills 16 bits.",
+    {"depth-scale", 0, "FACTOR",
+     "Multiply distances by this factor, and round, for depths in PNG; by default the visible range fills 16 bits.",
      Group::output, for_render,
      [](Settings& s, const Given& g) {
        s.output.depth_scale = g.number({1e-12, 1e12});
      }},
-    {"background-depth", 0, "DISTANCE", "Depth where nothing is seen; inf by default.", Group::output, for_render,
+    {"background-depth", 0, "DISTANCE", "Depth of pixels in which nothing is visible; inf by default.", Group::output,
+     for_render,
      [](Settings& s, const Given& g) {
        s.output.background_depth =
            g.text == "inf" ? std::numeric_limits<float>::infinity() : float(g.number({-3e38, 3e38}));
      }},
-    {"hash", 0, "", "Print a content hash of what is visible and of each result but .svg and .pdf.", Group::output,
-     for_render, [](Settings& s, const Given&) { s.output.hash = true; }},
-    {"reference", 0, "FILE", "Compare the picture with this one; exit status 3 if it differs.", Group::output,
+    {"hash", 0, "", "Print a content hash of the visible surfaces, and of each output except .svg and .pdf.",
+     Group::output, for_render, [](Settings& s, const Given&) { s.output.hash = true; }},
+    {"reference", 0, "FILE", "Compare the picture with this file; the exit status is 3 if they differ.", Group::output,
      for_render, [](Settings& s, const Given& g) { s.output.reference = g.file_name(); }},
-    {"reference-threshold", 0, "T", "Largest difference that passes, 0 to 1 of a channel's range; 0 by default.",
-     Group::output, for_render,
+    {"reference-threshold", 0, "T",
+     "Largest difference that --reference accepts, 0 to 1 of a channel's range; 0 by default.", Group::output,
+     for_render,
      [](Settings& s, const Given& g) {
        s.output.reference_threshold = g.number({0, 1});
      }},
-    {"reference-difference", 0, "FILE", "Where the difference goes; by default beside the picture, .difference.png.",
+    {"reference-difference", 0, "FILE",
+     "File for the picture of differences; by default beside the picture, with the suffix .difference.png.",
      Group::output, for_render, [](Settings& s, const Given& g) { s.output.reference_difference = g.file_name(); }},
 
-    {"shading", 0, "lit|flat|normals|depth|ids|uv", "What the picture shows; lit by default.", Group::look, for_render,
-     [](Settings& s, const Given& g) { s.output.shading = g.choice<Shading>(); }},
-    {"background", 0, "COLOR", "#rrggbb, r,g,b from 0 to 1, a plain colour name, or transparent; white by default.",
-     Group::look, for_render,
+    {"shading", 0, "lit|flat|normals|depth|ids|uv", "Values that the picture shows; lit by default.", Group::look,
+     for_render, [](Settings& s, const Given& g) { s.output.shading = g.choice<Shading>(); }},
+    {"background", 0, "COLOR",
+     "Background: #rrggbb, r,g,b from 0 to 1, a common colour name, or transparent; white by default.", Group::look,
+     for_render,
      [](Settings& s, const Given& g) {
        s.output.background_given = true;
        s.output.background = std::nullopt;
        if (g.text != "transparent") s.output.background = parse_color(g.text);
      }},
     {"lights", 0, "key|file|both|none",
-     "Which lights shine: one that moves with the camera, those of the model, both, or none; key by default.",
+     "Direct lights: a key light that moves with the camera, the model's own lights, both, or none; key by default.",
      Group::look, for_render, [](Settings& s, const Given& g) { s.output.lights = g.choice<Lights>(); }},
     {"shadows", 0, "off|map|rays", "Shadows: none, soft ones by maps, or sharp ones by rays; map by default.",
      Group::look, for_render, [](Settings& s, const Given& g) { s.output.shadows = g.choice<Shadows>(); }},
-    {"no-shadows", 0, "", "As --shadows off.", Group::look, for_render,
+    {"no-shadows", 0, "", "Short for --shadows off.", Group::look, for_render,
      [](Settings& s, const Given&) { s.output.shadows = Shadows::off; }},
     {"ambient-occlusion", 0, "STRENGTH",
-     "Darken corners, and what stands on something: 0, the default, to 1, as much as what the picture shows hides.",
+     "Weaken the environment's light in corners and near contacts, 0 to 1; 1 removes all light that visible surfaces "
+     "occlude; 0, none, by default.",
      Group::look, for_render,
      [](Settings& s, const Given& g) {
        s.output.ambient_occlusion = g.number({0, 1});
      }},
     {"occlusion-radius", 0, "DISTANCE",
-     "What is farther away hides nothing with --ambient-occlusion; by default a tenth of the diagonal of what "
-     "--frame subject fits.",
+     "Reach of --ambient-occlusion: surfaces farther away occlude nothing; by default a tenth of the diagonal of the "
+     "objects that --frame subject fits.",
      Group::look, for_render,
      [](Settings& s, const Given& g) {
        const double radius = g.number();
        if (!(radius > 0)) throw UsageError("must be above 0");
        s.output.occlusion_radius = radius;
      }},
-    {"opacity", 0, "O", "See through everything: multiplies every opacity, 0 to 1; 1 by default.", Group::look,
+    {"opacity", 0, "O",
+     "Multiply every opacity by this, 0 to 1, so that all surfaces become translucent; 1 by default.", Group::look,
      for_render,
      [](Settings& s, const Given& g) {
        s.output.opacity = float(g.number({0, 1}));
      }},
     {"blend", 0, "linear|srgb",
-     "Blend what is half transparent, and samples, as light, the default, or as viewers blend the shapes of SVG "
-     "and PDF, which are then looked at alike. Figures are blended by their viewers.",
+     "Blend translucent surfaces and samples in linear light, the default, or in sRGB, as viewers of SVG and PDF do, "
+     "so that pictures look like .svg and .pdf files. Those files are blended by their viewers.",
      Group::look, for_render, [](Settings& s, const Given& g) { s.output.blend = g.choice<Blend>(); }},
     {"environment", 0, "FILE",
-     "Light from all around: an equirectangular .hdr or .exr file, studio, sky or none; studio by default.",
-     Group::look, for_render, [](Settings& s, const Given& g) { s.output.light.environment = g.file_name(); }},
-    {"environment-angle", 0, "DEGREES", "Turn the environment about the model's up, counter-clockwise from above.",
-     Group::look, for_render,
+     "Environment light: an equirectangular .hdr or .exr file, studio, sky or none; studio by default.", Group::look,
+     for_render, [](Settings& s, const Given& g) { s.output.light.environment = g.file_name(); }},
+    {"environment-angle", 0, "DEGREES",
+     "Turn the environment about the model's up axis, counter-clockwise seen from above.", Group::look, for_render,
      [](Settings& s, const Given& g) {
        s.output.light.options.environment_angle = g.number({-360000, 360000}) * radians_per_degree;
      }},
@@ -153,14 +165,17 @@ constexpr Option output_options[] = {
        s.output.light.options.exposure = g.number({-32, 32});
      }},
     {"tone-mapping", 0, "none|aces|khronos",
-     "How light brighter than white is shown: cut off, filmic, or faded with base colours kept; none by default.",
+     "Mapping of light that is brighter than white. none, the default: clamp each channel. aces: filmic. khronos: keep "
+     "base colours, fade brighter ones to white.",
      Group::look, for_render,
      [](Settings& s, const Given& g) { s.output.light.options.tone_mapping = g.choice<ToneMapping>(); }},
     {"light-direction", 0, "X,Y,Z",
-     "Towards the key light, in the world, or an axis such as +z; upper left by default.", Group::look, for_render,
-     [](Settings& s, const Given& g) { s.output.light.options.direction = parse_direction(g.text); }},
-    {"light-intensity", 0, "FACTOR", "Of the key light, 0 for none; 1 by default, 0 beside an environment's file.",
+     "Direction towards the key light, in world space, or an axis such as +z; by default the camera's upper left.",
      Group::look, for_render,
+     [](Settings& s, const Given& g) { s.output.light.options.direction = parse_direction(g.text); }},
+    {"light-intensity", 0, "FACTOR",
+     "Multiply the key light by this; 0 turns it off. 1 by default, 0 if --environment is a file.", Group::look,
+     for_render,
      [](Settings& s, const Given& g) {
        s.output.light.options.intensity = g.number({0, 1e6});
      }},

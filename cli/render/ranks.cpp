@@ -36,10 +36,9 @@ std::unique_ptr<Ranks> join_mpi() {
     const WaitingForRanks waiting;
     return std::unique_ptr<Ranks>(reinterpret_cast<JoinRanks>(join)());
   }
-  throw Error(
-      ErrorCode::unsupported,
-      fmt::format("--mpi: {} is not there; the package frontmost-mpi has it, or a build with -DFRONTMOST_MPI=ON",
-                  (beside / FRONTMOST_MODULES / mpi_module).lexically_normal().string()));
+  throw Error(ErrorCode::unsupported,
+              fmt::format("--mpi: {} is missing; install the package frontmost-mpi, or build with -DFRONTMOST_MPI=ON",
+                          (beside / FRONTMOST_MODULES / mpi_module).lexically_normal().string()));
 }
 
 Ranks::Message message_of(std::string_view text) {
@@ -69,7 +68,8 @@ void check_same_command(const Settings& settings, Ranks& ranks) {
   std::uint64_t ends[2] = {hash, ~hash};
   ranks.keep_greatest(ends);
   if (ends[0] == hash && ends[1] == ~hash) return;
-  throw UsageError("--mpi: the ranks were not started with the same command line, or are not of the same version");
+  throw UsageError(
+      "--mpi: the ranks have different command lines or different versions of frontmost; start all of them alike");
 }
 
 /// The current exception as the program would report it. Call in a handler. Interruptions are rethrown, because the

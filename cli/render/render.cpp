@@ -35,7 +35,7 @@ bool has_result(const Settings& settings, const std::vector<Job>& jobs) {
 void check_method(const Settings& settings, const std::vector<Job>& jobs) {
   if (settings.run.method.value_or(Method::zbuffer) == Method::zbuffer) return;
   for (const Job& job : jobs) {
-    if (job.view.depth.is_used) throw UsageError("--method: a depth buffer's state needs the method zbuffer");
+    if (job.view.depth.is_used) throw UsageError("--method: options of a depth buffer need the method zbuffer");
   }
 }
 
@@ -59,8 +59,7 @@ bool shows_on_terminal(const Settings& settings, std::vector<Job>& jobs) {
   if (!terminal) {
     throw UsageError(
         fmt::format("nothing to do: give an output such as -o {} (without one the picture is shown on a terminal, and "
-                    "standard output "
-                    "is none)",
+                    "standard output is none)",
                     picture_among_models(settings).value_or("FILE")));
   }
   for (Job& job : jobs) prepare_for_terminal(job, *terminal);
@@ -119,20 +118,20 @@ bool is_drawn_often(const Run& run) {
 std::optional<std::string> lights_warning(const Scene& scene, const Job& job) {
   if (job.output.shading != Shading::lit || !writes_colors(job)) return std::nullopt;
   if (scene.lights.empty() && job.output.lights == Lights::file)
-    return "the model has no lights of its own: --lights file leaves the surroundings alone";
+    return "the model has no lights of its own, so --lights file leaves only the environment's light";
   if (scene.lights.empty()) return std::nullopt;
   const std::size_t count = scene.lights.size();
   const std::string own =
       count == 1 ? "the model has a light of its own" : fmt::format("the model has {} lights of its own", count);
-  if (!job.output.lights) return own + ", which --lights file or --lights both shows";
+  if (!job.output.lights) return own + "; --lights file or --lights both turns them on";
   if (job.output.shadows != Shadows::map || *job.output.lights == Lights::key || *job.output.lights == Lights::none)
     return std::nullopt;
   const auto points = std::size_t(std::count_if(scene.lights.begin(), scene.lights.end(),
                                                 [](const Light& light) { return light.kind == Light::Kind::point; }));
   const std::size_t without = points + std::max(count - points, most_mapped_lights) - most_mapped_lights;
   if (without == 0) return std::nullopt;
-  if (count == 1) return own + ", which throws no shadow by maps; --shadows rays finds it";
-  return fmt::format("{}, {} of which throw no shadows by maps; --shadows rays finds those of all", own, without);
+  if (count == 1) return own + " that casts no shadow with --shadows map; use --shadows rays";
+  return fmt::format("{}, of which {} cast no shadows with --shadows map; use --shadows rays", own, without);
 }
 
 /// Renders each job by `render` and prints its messages.

@@ -23,10 +23,9 @@ void check_one_pass(const Job& job, const StreamNeeds& needs, const Stream& stre
   };
   if (stream.can_repeat()) return;
   if (depends_on_model(job.view))
-    refuse(
-        "say where the camera is (--camera-position with --camera-focal-point, or --pose), and give --near and --far");
+    refuse("give the camera (--camera-position with --camera-focal-point, or --pose), --near and --far");
   // Smooth normals may need no further pass; look() decides.
-  if (needs.key_light) refuse("shadows take another pass; --no-shadows, --shading flat, depth, ids or uv do not");
+  if (needs.key_light) refuse("shadows need another pass; use --no-shadows, or --shading flat, depth, ids or uv");
 }
 
 /// A scene with these bounds, which suffice for framing.

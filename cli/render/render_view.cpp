@@ -143,8 +143,8 @@ void warn_if_thread(const Sights& sights, ViewResult& result) {
   const int length = std::max(right - left, bottom - top) + 1;
   if (length < shortest || double(count) >= thinnest * length) return;
   result.warnings.push_back(
-      fmt::format("what is seen is a thread, {} pixels long and {:.1f} wide on average: another --view, or a larger "
-                  "--resolution, shows more of it",
+      fmt::format("the visible part of the model is a thread, {} pixels long and {:.1f} wide on average; try another "
+                  "--view or a larger --resolution",
                   length, double(count) / length));
 }
 

@@ -78,16 +78,19 @@ std::vector<FinishedView> noted_in(const std::string& path) {
 
 void check_shard(const Settings& settings, const std::vector<Job>& jobs) {
   if (!settings.run.shard) return;
-  if (!settings.run.batch) throw UsageError("--shard takes a part of the views of --batch, which is not given");
+  if (!settings.run.batch) throw UsageError("--shard needs --batch, whose views it shares among runs");
   const auto is_input = [](const std::string& model) { return model == "-"; };
   if (is_input(settings.model) || std::any_of(settings.more_models.begin(), settings.more_models.end(), is_input))
-    throw UsageError("--shard: a model from standard input cannot be told from another one; give a file");
+    throw UsageError("--shard: a model from standard input cannot be identified when a run is repeated; give a file");
   for (const Job& job : jobs) {
     const auto refuse = [&](const char* why) { throw UsageError(fmt::format("--shard: view {} {}", job.name, why)); };
     const std::set<std::string> paths = paths_of(job);
-    if (paths.empty()) refuse("makes no files, by which it could be told to be finished");
-    if (paths.count("-")) refuse("goes to standard output, where it cannot be found again");
-    if (job.output.reference) refuse("has a reference, which is not compared again where a view is finished");
+    if (paths.empty())
+      refuse(
+          "has no output file, so that a repeated run could not skip it; give an output, such as -o, --depth or --ids");
+    if (paths.count("-"))
+      refuse("is written to standard output, so that a repeated run could not skip it; give a file");
+    if (job.output.reference) refuse("has a --reference, which a repeated run would not compare again; leave it out");
   }
 }
 

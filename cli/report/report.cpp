@@ -27,43 +27,49 @@ std::string folder_name(const Given& given) {
 }
 
 constexpr Option report_options[] = {
-    {"output", 'o', "FILE", "Write the report as a page that needs nothing else: HTML.", Group::report, for_report,
+    {"output", 'o', "FILE", "Write the report as one HTML page, which needs no other files.", Group::report, for_report,
      [](Settings& s, const Given& g) { s.report.page = g.file_name(); }},
     {"canvas", 0, "FACTOR",
-     "Count objects alone on a canvas of that many times the picture's width and height, 1 to 16; 3 by default.",
+     "Width and height of the canvas on which each object is counted alone, as a multiple of the picture's, 1 to 16; 3 "
+     "by default.",
      Group::report, for_report,
      [](Settings& s, const Given& g) {
        s.report.canvas = g.number({1, 16});
      }},
     {"views", 0, "FILE",
-     "Report on many views: those of a batch file (see frontmost(1)), whose outputs are left aside.", Group::report,
-     for_report, [](Settings& s, const Given& g) { s.report.views = g.file_name(); }},
-    {"coco", 0, "FILE", "Write the objects that are seen as COCO's annotations, with what is hidden beside them: JSON.",
+     "Report on all views of a batch file (see frontmost(1)); the outputs of the batch file are ignored.",
+     Group::report, for_report, [](Settings& s, const Given& g) { s.report.views = g.file_name(); }},
+    {"coco", 0, "FILE",
+     "Write COCO annotations of all objects that are seen, as JSON, with masks of their hidden parts in additional "
+     "fields.",
      Group::report, for_report, [](Settings& s, const Given& g) { s.report.coco = g.file_name(); }},
-    {"coco-polygons", 0, "", "Give masks of --coco as polygons, not as run lengths.", Group::report, for_report,
+    {"coco-polygons", 0, "", "Write the masks of --coco as polygons instead of run lengths.", Group::report, for_report,
      [](Settings& s, const Given&) { s.report.coco_polygons = true; }},
     {"categories", 0, "FILE",
-     "Which object has which category, in --coco and --bop: JSON, in place of what a scene file says.", Group::report,
-     for_report, [](Settings& s, const Given& g) { s.report.categories = g.file_name(); }},
+     "JSON file that gives each object its category, for --coco and --bop, in place of the categories of a scene file.",
+     Group::report, for_report, [](Settings& s, const Given& g) { s.report.categories = g.file_name(); }},
     {"masks", 0, "FOLDER",
-     "Write masks of every object in the picture as PNG, what is visible and all of it; the folder is made where it is "
-     "missing.",
+     "Write two masks as PNG of every object in the picture: of its visible part, and of the whole object. A missing "
+     "folder is made.",
      Group::report, for_report, [](Settings& s, const Given& g) { s.report.masks = folder_name(g); }},
     {"bop", 0, "FOLDER",
-     "Write a scene of BOP, an image for each view: poses, masks, depth; the folder is made where it is missing.",
+     "Write a scene in the format of BOP, an image for each view: poses, masks, depth. A missing folder is made.",
      Group::report, for_report, [](Settings& s, const Given& g) { s.report.bop = folder_name(g); }},
     {"bop-visible", 0, "exact|bop19",
-     "What --bop calls visible: what is seen, by default, or what is at most 15 mm behind that, as bop_toolkit does.",
+     "Visible samples of an object in --bop. exact, the default: those that show the object. bop19: those where it is "
+     "at most 15 mm behind the visible surface, as in bop_toolkit.",
      Group::report, for_report, [](Settings& s, const Given& g) { s.report.bop_visible = g.choice<BopVisible>(); }},
     {"leave-out", 0, "NAME",
-     "Leave objects of this name, or of the category of this name, out of --coco, --bop and --masks; they still hide "
-     "others. May be given several times.",
+     "Leave objects with this name, or with a category of this name, out of --coco, --bop and --masks; they still hide "
+     "other objects. May be given several times.",
      Group::report, for_report | may_repeat,
      [](Settings& s, const Given& g) { s.report.leave_out.push_back(g.string()); }},
-    {"all-hiders", 0, "", "Also count who hides how much behind others, and alone; in JSON.", Group::report, for_report,
-     [](Settings& s, const Given&) { s.report.all_hiders = true; }},
-    {"why", 0, "NAME", "Only say why the objects of this name, or the one of this number, are seen or not.",
-     Group::report, for_report, [](Settings& s, const Given& g) { s.report.why = g.string(); }},
+    {"all-hiders", 0, "",
+     "Also count, for --json, the samples of an object that each hider covers at any depth, and those that it alone "
+     "covers.",
+     Group::report, for_report, [](Settings& s, const Given&) { s.report.all_hiders = true; }},
+    {"why", 0, "NAME", "Print only why the object with this name or number is seen or not.", Group::report, for_report,
+     [](Settings& s, const Given& g) { s.report.why = g.string(); }},
 };
 
 std::string lower(std::string_view text) {
@@ -104,12 +110,12 @@ void check(const Settings& settings, const std::vector<std::string>& outputs) {
   if (!report.leave_out.empty() && !report.coco && !report.bop && !report.masks)
     throw UsageError("--leave-out needs --coco, --bop or --masks");
   if (settings.report.bop && settings.view.orthographic && !report.views)
-    throw UsageError("--bop needs a perspective camera: BOP has no others");
+    throw UsageError("--bop needs a perspective camera, because BOP has no other cameras");
   check_outputs(outputs, input_files(settings));
   if (report.page && *report.page != "-" && !report.page->ends_with(".html") && !report.page->ends_with(".htm"))
     throw UsageError(*report.page + ": the report is a page; use .html");
   if (settings.run.json && std::find(outputs.begin(), outputs.end(), "-") != outputs.end())
-    throw UsageError("--json and an output to - both want standard output");
+    throw UsageError("--json and an output to - both write to standard output; give a file");
 }
 
 }  // namespace
@@ -168,7 +174,7 @@ int run_report(const Settings& settings) {
   const std::vector<std::string> outputs = outputs_of(settings.report);
   check(settings, outputs);
   if (settings.report.views) {
-    if (settings.report.page) throw UsageError("--views excludes --output: a page holds one view");
+    if (settings.report.page) throw UsageError("--views excludes --output, because a page holds one view");
     report_views(settings, outputs);
     return exit_done;
   }

@@ -168,11 +168,12 @@ std::string page_of(const ReportRun& run, const std::string& picture, const Exec
   const std::string model = std::filesystem::path(run.settings.model).filename().string();
   std::string text = html_head(model + ": what is seen", style);
   text += fmt::format(
-      "<header><h1>{}</h1><p class=\"lines\">{}</p></header><main>\n<div class=\"look\"><div><div class=\"stage\">"
-      "<img src=\"{}\" width=\"{}\" height=\"{}\" alt=\"What is seen\"><canvas id=\"overlay\" width=\"{}\" "
-      "height=\"{}\"></canvas></div><p><label><input type=\"checkbox\" id=\"outlines\" checked> outlines of objects"
-      "</label></p></div><div id=\"panel\" data-empty=\"Choose an object in the picture, the table or the graph: its "
-      "mask is shown, what is hidden of it in the colours of what hides it.\"></div></div>\n",
+      "<header><h1>{}</h1><p class=\"lines\">{}</p></header><main>\n"
+      "<div class=\"look\"><div><div class=\"stage\"><img src=\"{}\" width=\"{}\" height=\"{}\" alt=\"What is "
+      "seen\"><canvas id=\"overlay\" width=\"{}\" height=\"{}\"></canvas></div><p><label><input type=\"checkbox\" "
+      "id=\"outlines\" checked> outlines of objects</label></p></div><div id=\"panel\" data-empty=\"Choose an object "
+      "in the picture, the table or the graph: its mask is shown, its hidden parts in the colours of the objects that "
+      "hide them.\"></div></div>\n",
       html_text(model), report_summary(run), picture, view.width, view.height, view.width, view.height);
   const std::string graph = report_graph(run);
   text += "<h2>Objects</h2>" + table_of(run) + hidden_by_file(run);

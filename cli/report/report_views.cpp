@@ -21,9 +21,12 @@ namespace {
 
 void check_view_of_report(const ViewSettings& view, const ReportSettings& report) {
   check_view_settings(view);
-  if (report.bop && view.orthographic) throw UsageError("--bop needs a perspective camera: BOP has no others");
-  if (view.camera_model != CameraModel::pinhole) throw UsageError("objects are counted by pinhole cameras alone");
-  if (view.depth.is_used) throw UsageError("objects are counted where they are nearest, without a depth buffer");
+  if (report.bop && view.orthographic)
+    throw UsageError("--bop needs a perspective camera, because BOP has no other cameras");
+  if (view.camera_model != CameraModel::pinhole)
+    throw UsageError("report needs a pinhole camera; --camera-model must be left out");
+  if (view.depth.is_used)
+    throw UsageError("report counts the nearest surfaces; options of a depth buffer must be left out");
 }
 
 /// The views of the file, checked before the model is read.

@@ -82,7 +82,7 @@ std::optional<std::string> up_warning(const ViewSettings& view, const LoadOption
     if (std::max(sides[std::size_t(axis)].low, sides[std::size_t(axis)].high) > none) return std::nullopt;
   const char* const names = "xyz";
   return fmt::format(
-      "the model may lie on its back: its only flat side faces -{}, but {} is taken for up; --up +{} stands it up",
+      "the model may lie on its back: its only flat side faces -{}, but its up axis is {}; --up +{} stands it up",
       names[other], names[up], names[other]);
 }
 

@@ -36,10 +36,12 @@ void check_camera_model(const ViewSettings& s) {
                   {"near", s.near.has_value()},
                   {"far", s.far.has_value()},
                   {"cull", s.culling != Culling::none}});
-  if (model.is_set && s.samples == 64) throw UsageError("--samples 64 needs a pinhole; --camera-model takes up to 16");
-  if (model.is_set && s.depth.is_used) throw UsageError("--camera-model: a depth buffer's state needs a pinhole");
+  if (model.is_set && s.samples == 64)
+    throw UsageError("--samples 64 needs a pinhole camera; --camera-model takes up to 16");
+  if (model.is_set && s.depth.is_used)
+    throw UsageError("--camera-model: options of a depth buffer need a pinhole camera");
   if (s.fisheye_angle && s.camera_model != CameraModel::fisheye)
-    throw UsageError("--fov needs --camera-model fisheye; a pinhole has --camera-view-angle");
+    throw UsageError("--fov needs --camera-model fisheye; for a pinhole camera use --camera-view-angle");
 }
 
 void need(const Flag& one, const Flag& other) {
@@ -74,7 +76,7 @@ void check_view_settings(const ViewSettings& s) {
   const glm::ivec2 size = s.resolution.value_or(glm::ivec2(1));
   if (s.samples && double(size.x) * size.y * *s.samples > double(most_samples)) {
     throw UsageError("--samples: at most " + std::to_string(most_samples) +
-                     " samples in all (16384 x 16384 pixels of one)");
+                     " samples in all (16384 x 16384 pixels of one sample)");
   }
 }
 

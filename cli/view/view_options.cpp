@@ -33,7 +33,7 @@ const Camera& model_camera(const ViewSettings& settings, const Scene& scene) {
   const std::size_t index = std::size_t(*settings.camera_index);
   if (index < scene.cameras.size()) return scene.cameras[index];
   throw UsageError(
-      fmt::format("--camera-index: the model has {} cameras, there is no {}", scene.cameras.size(), index));
+      fmt::format("--camera-index: there is no camera {1}; cameras in the model: {0}", scene.cameras.size(), index));
 }
 
 /// Rotation about an axis through `pivot`, anticlockwise as seen from the axis' tip. Rodrigues' formula.
@@ -99,7 +99,8 @@ Aim aim_of(const ViewSettings& settings, const Surfaces& surfaces, const View& b
   if (settings.position) {
     const glm::dvec3 eye = *settings.position - origin;
     if (settings.direction) return looking_ahead(looking(eye, *settings.direction, up));
-    if (aim.target == eye) throw UsageError("--camera-position is where the camera looks; give --camera-direction");
+    if (aim.target == eye)
+      throw UsageError("--camera-position is the point that the camera looks at; give --camera-direction as well");
     return {looking(eye, aim.target - eye, up), aim.target, false};
   }
   // The rotation is about the origin, so that the axes do not depend on the model's place, not even in their last bits.
@@ -151,7 +152,7 @@ void zoom(Projection& projection, double factor) {
   if (projection.orthographic) return scale(projection, 1 / factor);
   const double half_angle = std::atan(projection.top) / factor;
   if (half_angle > 89.5 * radians_per_degree)
-    throw UsageError("--camera-zoom-factor: the view angle passes 179 degrees");
+    throw UsageError("--camera-zoom-factor: the view angle becomes larger than 179 degrees");
   scale(projection, std::tan(half_angle) / projection.top);
 }
 
@@ -232,8 +233,9 @@ std::optional<std::string> framing_warning(const ViewSettings& settings, const S
   for (std::size_t i = 0; i < std::min(left_out.size(), most_names); ++i)
     names += fmt::format("{}'{}'", i ? ", " : "", printable_text(objects[left_out[i]].name));
   if (left_out.size() > most_names) names += fmt::format(" and {} more", left_out.size() - most_names);
-  return fmt::format("{} of {} objects reach far beyond the others and out of the picture: {}; --frame all fits all",
-                     left_out.size(), objects.size(), names);
+  return fmt::format(
+      "{} of {} objects reach far beyond the others and out of the picture: {}; --frame all fits all objects",
+      left_out.size(), objects.size(), names);
 }
 
 glm::dvec3 focal_point_of(const ViewSettings& settings, const View& view, const Surfaces& surfaces) {

@@ -29,22 +29,20 @@ namespace {
 
 constexpr Option visible_options[] = {
     {"views", 0, "FILE",
-     "Look from many places: the views of a batch file (see frontmost(1)), whose outputs are left aside.", Group::faces,
+     "Look from all views of a batch file (see frontmost(1)); the outputs of the batch file are ignored.", Group::faces,
      for_visible, [](Settings& s, const Given& g) { s.visible.views = g.file_name(); }},
-    {"sphere", 0, "N", "Look from N places, 1 to 100000, spread evenly all around what is framed.", Group::faces,
+    {"sphere", 0, "N", "Look from N places, 1 to 100000, spread evenly all around the framed objects.", Group::faces,
      for_visible,
      [](Settings& s, const Given& g) {
        s.visible.sphere = g.integer({1, 100000});
      }},
     {"output", 'o', "FILE",
-     "The faces that are seen, as a table: .csv or .npy; - is standard output, as CSV. Or the model, with what is seen "
-     "of "
-     "every face as its properties, and coloured by that: .ply.",
+     "Write a table of the faces that are seen (.csv or .npy; - is standard output, as CSV), or the whole model with "
+     "the visible area of every face as properties and as colour (.ply).",
      Group::output, for_visible | may_repeat,
      [](Settings& s, const Given& g) { s.visible.outputs.push_back(g.file_name()); }},
-    {"keep-visible", 0, "FILE", "A new model of the faces that are seen, without all others: .glb, .ply or .stl.",
-     Group::output, for_visible | may_repeat,
-     [](Settings& s, const Given& g) { s.visible.kept.push_back(g.file_name()); }},
+    {"keep-visible", 0, "FILE", "Write a model of only those faces that are seen: .glb, .ply or .stl.", Group::output,
+     for_visible | may_repeat, [](Settings& s, const Given& g) { s.visible.kept.push_back(g.file_name()); }},
 };
 
 bool has_suffix(const std::string& path, std::initializer_list<std::string_view> suffixes) {
@@ -67,11 +65,11 @@ bool writes_standard_output(const VisibleSettings& s) {
 void check(const Settings& settings) {
   const VisibleSettings& s = settings.visible;
   const ViewSettings& v = settings.view;
-  if (s.views && s.sphere) throw UsageError("--views and --sphere are two ways to say it");
+  if (s.views && s.sphere) throw UsageError("--views and --sphere exclude each other");
   if (s.sphere && (v.named || v.position || v.direction || v.pose || v.pose_file || v.camera_index))
-    throw UsageError("--sphere looks from all around: nothing else may say from where");
+    throw UsageError("--sphere looks from all around, and excludes options of the camera's position and direction");
   if (settings.run.json && writes_standard_output(s))
-    throw UsageError("--json and an output to - both want standard output");
+    throw UsageError("--json and an output to - both write to standard output; give a file");
   for (const std::string& path : s.outputs)
     if (path != "-" && !has_suffix(path, {".csv", ".npy", ".ply"}))
       throw UsageError(path + ": the suffix names no format; use .csv, .npy or .ply");
@@ -90,7 +88,7 @@ std::vector<ViewSettings> places_of(const Settings& settings) {
     try {
       check_view_settings(one.view);
       if (one.view.camera_model != CameraModel::pinhole || one.view.tessellation_error)
-        throw UsageError("faces are the model's triangles, seen by pinhole cameras alone");
+        throw UsageError("visible needs a pinhole camera, and excludes --tessellation-error");
     } catch (const UsageError& error) {
       throw UsageError(fmt::format("{}: views[{}]: {}", *settings.visible.views, places.size(), error.what()));
     }

@@ -62,7 +62,7 @@ TEST(Batch, ComplaintsNameThePlace) {
               HasSubstr("views[0].veiw: is not known; did you mean view"));
   EXPECT_THAT(complaint(R"({"views": [3]})"), StartsWith("b.json: views[0]: must be an object"));
   EXPECT_THAT(complaint(R"({"views": [{"near": null}]})"), StartsWith("b.json: views[0].near: must be a string"));
-  EXPECT_THAT(complaint(R"({"views": [{"near": [true]}]})"), HasSubstr("numbers alone"));
+  EXPECT_THAT(complaint(R"({"views": [{"near": [true]}]})"), HasSubstr("only numbers"));
   EXPECT_THAT(complaint(R"({"views": [{"camera-orthographic": 1}]})"), HasSubstr("true or false"));
   EXPECT_THAT(complaint(R"({"views": [{"output": "a.png"}]})"), HasSubstr("views[0].output: is not known"));
   EXPECT_THAT(complaint(R"({"views": [{"name": "a/b"}]})"), HasSubstr("must not hold a /"));

@@ -61,7 +61,7 @@ TEST_F(Contrast, CullingByTheMaterialAsksIt) {
   EXPECT_THAT(succeed("render both.gltf" + view + "back").err, IsEmpty());
   EXPECT_THAT(succeed("render one.gltf" + view + "front").err, IsEmpty());
   EXPECT_THAT(succeed("render one.gltf" + view + "back").err,
-              HasSubstr("nothing is in view: all of the model faces the way that --cull leaves out"));
+              HasSubstr("nothing is in view: all of the model faces the side that --cull leaves out"));
 }
 
 TEST_F(Contrast, WhatMaterialsHideIsSaidToBeHiddenByThem) {
@@ -72,7 +72,7 @@ TEST_F(Contrast, WhatMaterialsHideIsSaidToBeHiddenByThem) {
   write("holes.gltf", with(R"(,"alphaMode":"MASK","alphaCutoff":1.5)"));
   EXPECT_THAT(
       succeed("render holes.gltf --view front -o a.png").err,
-      HasSubstr("nothing is in view: all of the model in the picture is a hole of its materials (alpha mode MASK)"));
+      HasSubstr("nothing is in view: all of the model in the picture is cut away by alpha mode MASK of its materials"));
   EXPECT_THAT(succeed("render holes.gltf --camera-position 0,0,9 --camera-direction +z -o a.png").err,
               HasSubstr("all of the model is behind the camera"));
   std::string clear = with(R"(,"alphaMode":"BLEND")");

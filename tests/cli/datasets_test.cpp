@@ -117,7 +117,7 @@ TEST_F(Datasets, MasksHaveTheNumbersOfTheirViews) {
 TEST_F(Datasets, ViewsThatBopHasNotAreRefusedBeforeAnythingIsRead) {
   write("views.json", R"({"views": [{"view": "front"}, {"view": "iso", "camera-orthographic": true}]})");
   expect_failure("report missing.obj --views views.json --bop scene", 2,
-                 "views.json: views[1]: --bop needs a perspective camera: BOP has no others");
+                 "views.json: views[1]: --bop needs a perspective camera, because BOP has no other cameras");
   EXPECT_FALSE(exists("scene"));
   expect_failure("report missing.obj --views views.json --masks scene", 1, "missing.obj");
   EXPECT_FALSE(exists("scene"));

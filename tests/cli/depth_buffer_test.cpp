@@ -88,8 +88,8 @@ TEST_F(DepthBufferFlags, WrongUsageIsNamed) {
   expect_failure(render_between_planes + "-o a.png --depth-clear nan", 2, "--depth-clear: ");
   expect_failure(render_between_planes + "-o a.png --polygon-offset 1", 2,
                  "--polygon-offset: '1' has 1 values, 2 are needed");
-  expect_failure("info cube.stl --depth-func LESS", 2, "--depth-func does not belong to 'frontmost info'");
-  EXPECT_THAT(succeed("render --help").out, HasSubstr("Depth buffer, as OpenGL names it:"));
+  expect_failure("info cube.stl --depth-func LESS", 2, "--depth-func is not an option of 'frontmost info'");
+  EXPECT_THAT(succeed("render --help").out, HasSubstr("Depth buffer, with the names of OpenGL:"));
 }
 
 }  // namespace

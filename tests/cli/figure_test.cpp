@@ -98,8 +98,8 @@ TEST_F(Figures, RefuseWhatTheyCannotBe) {
   expect_failure("render cube.stl -o a.svg --camera-model panorama", 2, "pinhole");
   expect_failure("render cube.stl -o a.svg --color-tolerance 256", 2, "--color-tolerance");
   expect_failure("render cube.stl -o a.svg -o a.svg", 2, "written twice");
-  expect_failure("render cube.stl -o a.svg --format png", 2, "a.svg: the suffix names another format");
-  expect_failure("render cube.stl -o a.png --depth b.exr --format png", 2, "b.exr: the suffix names another format");
+  expect_failure("render cube.stl -o a.svg --format png", 2, "a.svg: --format differs from the suffix");
+  expect_failure("render cube.stl -o a.png --depth b.exr --format png", 2, "b.exr: --format differs from the suffix");
   EXPECT_THAT(files(), testing::ElementsAre("cube.stl"));
 }
 

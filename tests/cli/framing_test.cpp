@@ -38,7 +38,7 @@ class Framing : public ProgramTest {
 };
 
 constexpr const char* kWarning =
-    "2 of 5 objects reach far beyond the others and out of the picture: 'field', 'sky'; --frame all fits all";
+    "2 of 5 objects reach far beyond the others and out of the picture: 'field', 'sky'; --frame all fits all objects";
 
 TEST_F(Framing, ThoseThatReachOutAreNamedOnce) {
   const Outcome one = succeed("render village.obj -o x.png --resolution 16,16 --json");
@@ -83,10 +83,10 @@ TEST_F(Framing, WhatContradictsItIsRefused) {
   expect_failure("camera village.obj --frame subject --camera-position 0,0,9", cli::exit_usage,
                  "--frame and --camera-position exclude each other");
   expect_failure("render a.stl --stream --frame subject -o x.png", cli::exit_usage,
-                 "--stream fits all objects into the picture, as --frame all does");
+                 "--stream always fits all objects into the picture; it excludes --frame subject");
   write("views.json", R"({"views": [{"view": "front"}, {"frame": "subject"}], "outputs": {"output": "{view}.png"}})");
   expect_failure("render a.stl --stream --batch views.json", cli::exit_usage,
-                 "views[1]: --stream fits all objects into the picture, as --frame all does");
+                 "views[1]: --stream always fits all objects into the picture; it excludes --frame subject");
 }
 
 /// A cone whose base lies in the plane of two axes.
@@ -109,7 +109,7 @@ std::string cone(const std::string& order) {
 
 TEST_F(Framing, AModelThatLiesOnItsBackIsToldHowToStand) {
   constexpr const char* lies =
-      "the model may lie on its back: its only flat side faces -z, but y is taken for up; --up +z";
+      "the model may lie on its back: its only flat side faces -z, but its up axis is y; --up +z";
   write("lying.obj", cone("abu"));
   write("standing.obj", cone("bua"));
   for (const std::string command :
@@ -129,8 +129,8 @@ TEST_F(Framing, AThreadOfPixelsIsSaidToBeOne) {
   write("bar.obj", bar);
   const std::string view = " --view front --camera-orthographic -o a.png --resolution ";
   EXPECT_THAT(succeed("render bar.obj" + view + "100,100").err,
-              HasSubstr("warning: what is seen is a thread, 90 pixels long and 1.0 wide on average: another --view, or "
-                        "a larger --resolution, shows more of it"));
+              HasSubstr("warning: the visible part of the model is a thread, 90 pixels long and 1.0 wide on average; "
+                        "try another --view or a larger --resolution"));
   EXPECT_THAT(succeed("render bar.obj --json" + view + "100,100").json()["warnings"].dump(), HasSubstr("a thread"));
   EXPECT_THAT(succeed("render bar.obj" + view + "600,100").err, IsEmpty());
   EXPECT_THAT(succeed("render bar.obj" + view + "30,30").err, Not(HasSubstr("thread"))) << "as short as a dot";

@@ -120,11 +120,11 @@ TEST_F(Layers, ContradictionsAreRefused) {
   expect_failure(render_cube + "-o a.png --samples 64", 2, "needs --method abuffer");
   expect_failure(render_cube + "-o a.png --layers 2", 2, "no output has {layer}");
   expect_failure(render_cube + "-o a{layer}.png", 2, "{layer} with --layers");
-  expect_failure(render_cube + "--deep a{layer}.exr --layers 2", 2, "one such file");
-  expect_failure(render_cube + "--deep a.png", 2, "only .exr files are deep");
+  expect_failure(render_cube + "--deep a{layer}.exr --layers 2", 2, "one file for all layers");
+  expect_failure(render_cube + "--deep a.png", 2, "a deep file must be .exr");
   expect_failure(render_cube + "--deep a.exr --depth a.exr", 2, "two outputs have this name");
   expect_failure(render_cube + "-o a{layer}.png --layers 0", 2, "layers");
-  expect_failure(render_cube + "-o a.png --stream --opacity 0.5", 2, "--stream keeps only what is nearest");
+  expect_failure(render_cube + "-o a.png --stream --opacity 0.5", 2, "--stream keeps only the nearest surface");
   expect_failure("render cube.stl --camera-model panorama --deep a.exr", 2, "--camera-model excludes");
   expect_failure("render cube.stl -o a{layer}.png --layers 1024 --resolution 4096,4096", 1, "2^30 samples");
   EXPECT_THAT(files(), ElementsAre("cube.stl"));

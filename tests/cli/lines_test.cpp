@@ -184,7 +184,7 @@ TEST_F(LinesCommand, SheetsHaveCentreLines) {
   EXPECT_THAT(read("peg.svg"), HasSubstr("inkscape:label=\"6 centre lines\""));
   EXPECT_THAT(read("peg.dxf"), HasSubstr("\n6_CENTRE_LINES\n70\n0\n62\n1\n6\nCENTER\n"));
   EXPECT_THAT(read("peg.pdf"), HasSubstr("<FEFF0036002000630065006E007400720065"));  // "6 centre", in UTF-16
-  expect_failure("lines peg.obj -o a.svg --centre-lines yes", 2, "--centre-lines: perspective has none");
+  expect_failure("lines peg.obj -o a.svg --centre-lines yes", 2, "--centre-lines: a perspective drawing has none");
 }
 
 TEST_F(LinesCommand, SheetsHaveDimensionsWhereTheyAreAskedFor) {
@@ -216,12 +216,11 @@ TEST_F(LinesCommand, SheetsHaveDimensionsWhereTheyAreAskedFor) {
   const std::string pegs = "lines pegs.json --views front,top --dimensions -o a.svg";
   EXPECT_THAT(
       succeed(pegs).err,
-      HasSubstr("warning: cylinders without a diameter, because no line of theirs is drawn: 1; --hidden dashed"));
+      HasSubstr("warning: cylinders without a diameter, because none of their lines is drawn: 1; --hidden dashed"));
   EXPECT_EQ(succeed(pegs + " --hidden dashed").err, "");
   write("low.obj", peg_obj(5, 20, 12));
-  EXPECT_THAT(
-      succeed("lines low.obj --up +z --views front,top --dimensions -o a.svg").err,
-      HasSubstr("warning: cylinders of 7 to 17 sides, which have no diameter because they count as polygons: 1\n"));
+  EXPECT_THAT(succeed("lines low.obj --up +z --views front,top --dimensions -o a.svg").err,
+              HasSubstr("warning: cylinders of 7 to 17 sides, which count as prisms and have no diameter: 1\n"));
 }
 
 TEST_F(LinesCommand, ViewsStandInLine) {
@@ -387,7 +386,8 @@ TEST_F(LinesCommand, HatchingIsInMillimetresAndLiesBelow) {
     expect_failure(std::string("lines cube.stl -o a.svg ") + needs, 2, "needs --hatch");
   expect_failure("lines cube.stl -o a.svg --hatch-angle 3 --stipple 1", 2, "needs --hatch");
   expect_failure("lines cube.stl -o a.svg --hatch 0.1", 2, "--hatch");
-  expect_failure("lines cube.stl -o a.svg --hatch 1 --light 0,0,0", 2, "--light: the light must come from somewhere");
+  expect_failure("lines cube.stl -o a.svg --hatch 1 --light 0,0,0", 2,
+                 "--light: the direction of the light must not be 0,0,0");
   expect_failure("lines cube.stl -o a.svg --hatch 1 --cast-shadows maybe", 2, "--cast-shadows");
   expect_failure("lines cube.stl -o a.svg --hatch 1 --resolution 20,20", 2, "take 9.5 or more");
   expect_failure("lines cube.stl -o a.svg --views front --hatch 0.3 --scale 20000:1", 2,
@@ -475,7 +475,7 @@ TEST_F(LinesCommand, AModelsOwnParallelCameraHasAScale) {
   EXPECT_NEAR(given["layers"][0]["drawn_mm"].get<double>(), (2 + std::sqrt(2.0)) * 1000 / 50, 1e-3);
   const Outcome refused = run({"lines", "cube.stl", "--scale", "1:50", "-o", "c.svg"});
   EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.err, HasSubstr("in perspective nothing has a scale"));
+  EXPECT_THAT(refused.err, HasSubstr("a perspective drawing has no scale"));
 }
 
 TEST_F(LinesCommand, CurvedModelsAreDrawnFromWithin) {
@@ -527,7 +527,7 @@ TEST_F(LinesCommand, AnEmptyDrawingIsAFileWithAWarning) {
   const Outcome outcome =
       run({"lines", "cube.stl", "--camera-position", "0,-5,0", "--camera-direction", "-y", "-o", "a.svg"});
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(outcome.err, HasSubstr("nothing is seen"));
+  EXPECT_THAT(outcome.err, HasSubstr("nothing of the model is in view"));
   EXPECT_THAT(read("a.svg"), HasSubstr("</svg>"));
 }
 
@@ -550,7 +550,7 @@ TEST_F(LinesCommand, WhatCannotBeMeantIsRefused) {
   expect_failure("lines cube.stl -o a.svg --margin 200", 2,
                  "--margin: 200 mm at each side leave nothing of a page of 210 x 297 mm");
   expect_failure("lines cube.stl -o a.svg --views front,top,left --page 25,25 --margin 5", 2, "--page: 25 x 25 mm");
-  expect_failure("lines cube.stl -o a.svg --format dxf", 2, "a.svg: the suffix names another format");
+  expect_failure("lines cube.stl -o a.svg --format dxf", 2, "a.svg: --format differs from the suffix");
   expect_failure("lines cube.stl -o a.svg --views front,front", 2, "'front' is there twice");
   expect_failure("lines cube.stl -o a.svg --views front,up", 2, "--views: 'up'");
   expect_failure("lines cube.stl -o a.svg --views front --view top", 2, "exclude each other");
@@ -558,8 +558,8 @@ TEST_F(LinesCommand, WhatCannotBeMeantIsRefused) {
   expect_failure("lines cube.stl -o a.svg --crease-angle 181", 2, "--crease-angle");
   expect_failure("lines cube.stl -o a.svg --shortest-stroke 11", 2, "--shortest-stroke");
   expect_failure("lines cube.stl -o a.svg --hidden dotted", 2, "--hidden");
-  expect_failure("lines cube.stl -o - --format svg --json", 2, "both want standard output");
-  expect_failure("lines cube.stl -o a.svg --samples 4", 2, "does not belong");
+  expect_failure("lines cube.stl -o - --format svg --json", 2, "both write to standard output");
+  expect_failure("lines cube.stl -o a.svg --samples 4", 2, "is not an option of");
   EXPECT_THAT(files(), ElementsAre("box.obj", "cube.stl"));
 }
 

@@ -41,7 +41,7 @@ TEST_F(Messages, OfSight) {
   std::filesystem::create_directory(path("folder"));
   expect_usage({{"sight cube.stl", "give --from and --to, or --pairs"},
                 {"sight cube.stl --to 1,2,3", "give --from and --to, or --pairs"},
-                {"sight cube.stl --pairs three.txt --to 1,2,3", "--pairs and --from, --to are two ways to say it"},
+                {"sight cube.stl --pairs three.txt --to 1,2,3", "--pairs excludes --from and --to"},
                 {"sight cube.stl --from 1,2", "--from: '1,2' has 2 values, 3 are needed, separated by commas"},
                 {"sight cube.stl --from 1,2,x --to 1,2,3", "--from: 'x' is not a number"}});
   expect_could_not(
@@ -56,17 +56,16 @@ TEST_F(Messages, OfSight) {
 TEST_F(Messages, OfLidar) {
   write("empty.txt", "# nothing\n\n");
   write("two.txt", "1 2\n");
-  expect_usage(
-      {{"lidar cube.stl -o a.ply", "give --from X,Y,Z, where the scanner stands"},
-       {"lidar cube.stl --from 0,0,9", "nothing to do: give -o FILE or --json"},
-       {"lidar cube.stl --from 0,0,9 -o a.png", "a.png: the suffix names no format; use .ply, .exr or .npy"},
-       {"lidar cube.stl --from 0,0,9 --json --elevations 5,-5", "--elevations: the lowest comes first"},
-       {"lidar cube.stl --from 0,0,9 --json --elevations 5,91", "--elevations: 91 is not between -90 and 90"},
-       {"lidar cube.stl --from 0,0,9 --json --rings 0", "--rings: 0 is not between 1 and 16384"},
-       {"lidar cube.stl --from 0,0,9 --json --steps 1.5", "--steps: 1.5 is not a whole number"},
-       {"lidar cube.stl --from 0,0,9 --json --directions two.txt --steps 5",
-        "--directions and --rings, --steps, --azimuths, --elevations, --ring-elevations are two ways to say it"},
-       {"lidar cube.stl --from 0,0,9 -o a.ply -o a.ply", "a.ply: would be written twice"}});
+  expect_usage({{"lidar cube.stl -o a.ply", "give --from X,Y,Z, where the scanner stands"},
+                {"lidar cube.stl --from 0,0,9", "nothing to do: give -o FILE or --json"},
+                {"lidar cube.stl --from 0,0,9 -o a.png", "a.png: the suffix names no format; use .ply, .exr or .npy"},
+                {"lidar cube.stl --from 0,0,9 --json --elevations 5,-5", "--elevations: the lowest comes first"},
+                {"lidar cube.stl --from 0,0,9 --json --elevations 5,91", "--elevations: 91 is not between -90 and 90"},
+                {"lidar cube.stl --from 0,0,9 --json --rings 0", "--rings: 0 is not between 1 and 16384"},
+                {"lidar cube.stl --from 0,0,9 --json --steps 1.5", "--steps: 1.5 is not a whole number"},
+                {"lidar cube.stl --from 0,0,9 --json --directions two.txt --steps 5",
+                 "--directions excludes --rings, --steps, --azimuths, --elevations and --ring-elevations"},
+                {"lidar cube.stl --from 0,0,9 -o a.ply -o a.ply", "a.ply: would be written twice"}});
   expect_could_not({{"lidar cube.stl --from 0,0,9 --json --directions empty.txt", "empty.txt: holds no direction"},
                     {"lidar cube.stl --from 0,0,9 --json --directions two.txt",
                      "two.txt: line 1: three numbers make a direction; there are 2"},
@@ -77,11 +76,11 @@ TEST_F(Messages, OfLidar) {
 
 TEST_F(Messages, OfCameras) {
   expect_usage(
-      {{"camera cube.stl --camera-index 0", "--camera-index: the model has 0 cameras, there is no 0"},
+      {{"camera cube.stl --camera-index 0", "--camera-index: there is no camera 0; cameras in the model: 0"},
        {"camera cube.stl --camera-position 0.5,0.5,0.5",
-        "--camera-position is where the camera looks; give --camera-direction"},
+        "--camera-position is the point that the camera looks at; give --camera-direction as well"},
        {"camera cube.stl --camera-zoom-factor 0.01 --camera-view-angle 170",
-        "--camera-zoom-factor: the view angle passes 179 degrees"},
+        "--camera-zoom-factor: the view angle becomes larger than 179 degrees"},
        {"camera cube.stl --up 1,1,0", "--up: up is one of +x, +y, +z, -x, -y, -z"},
        {"camera cube.stl --pose 1,2,3 --pose-convention opencv-world-to-camera",
         "--pose: 3 numbers; a pose is 16 (or 12), row by row"},
@@ -99,7 +98,7 @@ TEST_F(Messages, OfCameras) {
        {"camera cube.stl --far 0", "--far: must be above 0"},
        {"camera cube.stl --near 3 --far 3", "--near: must be below --far"},
        {"render cube.stl --resolution 16384,16384 --samples 2 -o a.png",
-        "--samples: at most 268435456 samples in all (16384 x 16384 pixels of one)"}});
+        "--samples: at most 268435456 samples in all (16384 x 16384 pixels of one sample)"}});
   write("words.txt", "no matrix at all");
   expect_could_not({{"camera cube.stl --pose words.txt --pose-convention opencv-world-to-camera",
                      "words.txt: line 1: 'no' is not a number"}});
@@ -110,8 +109,9 @@ TEST_F(Messages, OfCamerasThatAreNoPinholes) {
       {{"render cube.stl --camera-model fisheye --near 1 -o a.png", "--camera-model and --near exclude each other"},
        {"render cube.stl --camera-model panorama --cull back -o a.png", "--camera-model and --cull exclude each other"},
        {"render cube.stl --camera-model panorama --depth-format D16 -o a.png",
-        "--camera-model: a depth buffer's state needs a pinhole"},
-       {"render cube.stl --fov 90 -o a.png", "--fov needs --camera-model fisheye; a pinhole has --camera-view-angle"}});
+        "--camera-model: options of a depth buffer need a pinhole camera"},
+       {"render cube.stl --fov 90 -o a.png",
+        "--fov needs --camera-model fisheye; for a pinhole camera use --camera-view-angle"}});
 }
 
 TEST_F(Messages, OfCompare) {
@@ -125,15 +125,16 @@ TEST_F(Messages, OfCompare) {
 
 TEST_F(Messages, OfOutputs) {
   std::filesystem::create_directory(path("folder"));
-  expect_usage({{"render cube.stl -o {x}.png",
-                 "{x}.png: {model} and {view} are known here, and {layer} with --layers; {{ and }} are braces"},
-                {"render cube.stl -o a}.png", "a}.png: {model} and {view} are known here"},
-                {"render cube.stl -o {layer}.png", "{layer}.png: {model} and {view} are known here"},
-                {"render cube.stl -o a.png --layers 2", "--layers: no output has {layer} in its name"},
-                {"render cube.stl -o cube.stl", "cube.stl: "},
-                {"render cube.stl -o a.png --depth a.png",
-                 "a.png: two outputs have this name; only .exr files that are not deep hold several"},
-                {"render cube.stl -o a.png --reference a.png", "a.png: is both the reference and an output"}});
+  expect_usage(
+      {{"render cube.stl -o {x}.png",
+        "{x}.png: unknown placeholder; use {model}, {view}, or {layer} with --layers; {{ and }} stand for braces"},
+       {"render cube.stl -o a}.png", "a}.png: unknown placeholder; use {model}, {view}"},
+       {"render cube.stl -o {layer}.png", "{layer}.png: unknown placeholder; use {model}, {view}"},
+       {"render cube.stl -o a.png --layers 2", "--layers: no output has {layer} in its name"},
+       {"render cube.stl -o cube.stl", "cube.stl: "},
+       {"render cube.stl -o a.png --depth a.png",
+        "a.png: two outputs have this name; only .exr files that are not deep hold several"},
+       {"render cube.stl -o a.png --reference a.png", "a.png: is both the reference and an output"}});
   expect_could_not({{"render cube.stl --format png -o folder", "folder: is a folder"},
                     {"render cube.stl -o cube.stl/a.png", "cube.stl/a.png: cube.stl is not a folder"},
                     {"lines builtin:teapot -o a.svg --tessellation-error 0.001 --resolution 8000,8000",
@@ -143,13 +144,12 @@ TEST_F(Messages, OfOutputs) {
 TEST_F(Messages, OfStreams) {
   Call piped{.words = {"render", "-", "--stream", "-o", "a.png"}, .input = cube_stl()};
   EXPECT_THAT(run(piped).err,
-              testing::HasSubstr("frontmost: standard input and pipes can be read only once: say where the camera "
-                                 "is (--camera-position with --camera-focal-point, or --pose), and "
-                                 "give --near and --far"));
+              testing::HasSubstr("frontmost: standard input and pipes can be read only once: give the camera "
+                                 "(--camera-position with --camera-focal-point, or --pose), --near and --far"));
   piped.words = {
       "render",      "-",      "--stream", "-o",    "a.png", "--camera-position", "5,5,5", "--camera-focal-point",
       "0.5,0.5,0.5", "--near", "1",        "--far", "20",    "--shadows",         "map"};
-  EXPECT_THAT(run(piped).err, testing::HasSubstr("shadows take another pass"));
+  EXPECT_THAT(run(piped).err, testing::HasSubstr("shadows need another pass"));
   piped.words.resize(13);
   piped.words.insert(piped.words.end(), {"--shading", "ids"});
   EXPECT_EQ(run(piped).status, 0);
@@ -182,12 +182,12 @@ TEST(BatchFiles, HoldMatricesOfRowsAndNothingDeeper) {
   };
   EXPECT_EQ(pose("[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]"), "none");
   EXPECT_EQ(pose("[1,0,0,0, 0,1,0,0, 0,0,1,0]"), "none");
-  EXPECT_EQ(pose("[[[1],0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]"), "b.json: views[0].pose: must hold numbers alone");
-  EXPECT_EQ(pose(R"([["1",0,0,0]])"), "b.json: views[0].pose: must hold numbers alone");
+  EXPECT_EQ(pose("[[[1],0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]"), "b.json: views[0].pose: must hold only numbers");
+  EXPECT_EQ(pose(R"([["1",0,0,0]])"), "b.json: views[0].pose: must hold only numbers");
   // Following nesting this deep would overflow the stack.
   for (const std::size_t depth : {std::size_t(20), std::size_t(200'000)})
     EXPECT_EQ(pose(std::string(depth, '[') + std::string(depth, ']')), "b.json: is nested deeper than 16");
-  EXPECT_EQ(pose(std::string(12, '[') + std::string(12, ']')), "b.json: views[0].pose: must hold numbers alone");
+  EXPECT_EQ(pose(std::string(12, '[') + std::string(12, ']')), "b.json: views[0].pose: must hold only numbers");
 }
 
 TEST(Blank, CountsWhatKeepsTrianglesOut) {
@@ -210,14 +210,14 @@ TEST(Blank, CountsWhatKeepsTrianglesOut) {
   EXPECT_EQ(clause({at(50, 0, -5)}), "all of the model is outside the picture");
   EXPECT_EQ(clause({at(0, -50, -5)}), "all of the model is outside the picture");
   EXPECT_EQ(clause({at(0, 0, -5)}), "all of the model is smaller than a pixel or seen edge-on");
-  EXPECT_EQ(clause({at(std::nanf(""), 0, -5)}), "all of the model has corners that are not finite");
+  EXPECT_EQ(clause({at(std::nanf(""), 0, -5)}), "all of the model has vertices that are not finite");
   view.culling = Culling::front;
-  EXPECT_EQ(clause({at(0, 0, -5)}), "all of the model faces the way that --cull leaves out");
+  EXPECT_EQ(clause({at(0, 0, -5)}), "all of the model faces the side that --cull leaves out");
   view.culling = Culling::back;
   EXPECT_EQ(clause({at(0, 0, -5)}), "all of the model is smaller than a pixel or seen edge-on");
   view.culling = Culling::both;
   EXPECT_EQ(clause({at(0, 0, -5), at(0, 0, -5), at(0, 0, 5)}),
-            "1 of 3 triangles: is behind the camera; 2 of 3 triangles: faces the way that --cull leaves out");
+            "1 of 3 triangles: is behind the camera; 2 of 3 triangles: faces the side that --cull leaves out");
   // Some vertices lie before and some behind the near plane: neither "nearer" nor "outside" applies.
   view.culling = Culling::none;
   EXPECT_EQ(clause({{glm::vec3(0, 0, -0.5f), glm::vec3(0, 0, -2), glm::vec3(0, 0, -3)}}),

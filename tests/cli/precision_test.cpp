@@ -77,7 +77,7 @@ TEST_F(Precision, WhatPositionsAddIsSaid) {
   const json at_far = succeed(line + " --json").json()["buffers"][0]["distances"].back();
   EXPECT_LT(at_far["format_gap"], 1e-7);
   EXPECT_GT(at_far["gap"], 1e-4) << "floats are 7.6e-6 apart there";
-  EXPECT_THAT(succeed(line).out, HasSubstr("what floats of positions and transforms add"));
+  EXPECT_THAT(succeed(line).out, HasSubstr("the rounding of positions and transforms"));
   EXPECT_THAT(succeed(line + " --gap 1e-6,100.5").out, HasSubstr("no format will do: positions add 0.00024"));
   EXPECT_TRUE(succeed(line + " --gap 1e-6,100.5 --json").json()["buffers"][0]["near_for_gap"].is_null());
   // Far from the eye, positions are coarser.
@@ -203,9 +203,9 @@ TEST_F(Precision, WrongUsageIsNamed) {
                  "--heat-map needs a MODEL and --format");
   expect_failure("precision cube.stl cube.stl", 2, "one model at a time");
   expect_failure("precision --near 1 --far 2 --plot none/a.svg", 1, "does not exist");
-  expect_failure("precision --near 1 --far 2 --json --plot -", 2, "both want standard output");
+  expect_failure("precision --near 1 --far 2 --json --plot -", 2, "both write to standard output");
   expect_failure("precision cube.stl --plot cube.stl", 2, "is the model itself");
-  expect_failure("render cube.stl --gap 1,2", 2, "--gap does not belong to 'frontmost render'");
+  expect_failure("render cube.stl --gap 1,2", 2, "--gap is not an option of 'frontmost render'");
 }
 
 }  // namespace

@@ -188,7 +188,7 @@ def try_failures(scratch):
     if sorted(files(scratch / "elsewhere")) != ["one.stl"]:
         fail("files were left behind elsewhere")
     result = run([*MPIRUN, "-n", "1", *command, "../one.stl", ":", "-n", "1", *command, "../one.stl", "--view", "top"], folder)
-    expect_failure(result, folder, 2, "not started with the same command line")
+    expect_failure(result, folder, 2, "different command lines")
     expect_failure(run([*MPIRUN, "-n", "2", PROGRAM, "render", "--mpi", "../one.stl"], folder), folder, 2, "nothing to do")
     (folder / "nowhere").mkdir()
     result = run([*MPIRUN, "-n", "2", PROGRAM, "render", "--mpi", "../one.stl", "--batch", "/dev/null", "--shard", "1/2"], folder)
@@ -263,7 +263,7 @@ def try_without_module(scratch):
     alone.mkdir()
     shutil.copy(PROGRAM, alone / "frontmost")
     result = run([alone / "frontmost", "render", "builtin:teapot", "--mpi", "-o", "a.png"], alone)
-    if result.returncode != 1 or "frontmost_mpi.so is not there; the package frontmost-mpi has it" not in result.stderr:
+    if result.returncode != 1 or "frontmost_mpi.so is missing; install the package frontmost-mpi" not in result.stderr:
         fail(f"without the module: {result.returncode}, {result.stderr}")
 
 

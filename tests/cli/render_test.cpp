@@ -113,7 +113,7 @@ TEST_F(Render, TheModelsOwnLightsShineWhenTheyAreAskedFor) {
     "bufferViews":[{"buffer":0,"byteLength":36}],
     "buffers":[{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
   const std::string lamp = "render lamp.gltf --view front --resolution 60,60 ";
-  const std::string hint = "the model has a light of its own, which --lights file or --lights both shows";
+  const std::string hint = "the model has a light of its own; --lights file or --lights both turns them on";
   const Outcome untold = succeed(lamp + "-o untold.png --json");
   EXPECT_THAT(untold.err, HasSubstr(hint));
   EXPECT_EQ(untold.json()["warnings"], json({hint}));
@@ -126,7 +126,7 @@ TEST_F(Render, TheModelsOwnLightsShineWhenTheyAreAskedFor) {
     EXPECT_EQ(told.json()["look"]["lights"], lights);
   }
   EXPECT_EQ(read("untold.png"), read("key.png"));
-  EXPECT_THAT(succeed(lamp + "-o map.png --lights file").err, HasSubstr("which throws no shadow by maps"));
+  EXPECT_THAT(succeed(lamp + "-o map.png --lights file").err, HasSubstr("that casts no shadow with --shadows map"));
   const auto middle = [&](const std::string& name, const char* channel) {
     return image(name).find(channel)->floats()[40 * 60 + 20];
   };
@@ -136,7 +136,7 @@ TEST_F(Render, TheModelsOwnLightsShineWhenTheyAreAskedFor) {
   EXPECT_GE(middle("both.png", "R"), middle("key.png", "R"));
   expect_failure(lamp + "-o a.png --lights moon", 2, "--lights");
   EXPECT_THAT(succeed("render cube.stl -o a.png --resolution 60,60 --lights file").err,
-              HasSubstr("the model has no lights of its own: --lights file leaves the surroundings alone"));
+              HasSubstr("the model has no lights of its own, so --lights file leaves only the environment's light"));
   EXPECT_THAT(succeed("render cube.stl -o a.png --resolution 60,60 --lights both").err, IsEmpty());
 }
 
@@ -167,7 +167,7 @@ TEST_F(Render, StandardOutputAndInput) {
 TEST_F(Render, TemplatesNameFiles) {
   succeed("render cube.stl --view top -o {model}_{view}.png --resolution 16,16");
   EXPECT_TRUE(exists("cube_top.png"));
-  expect_failure("render cube.stl -o {modle}.png", 2, "{model} and {view}");
+  expect_failure("render cube.stl -o {modle}.png", 2, "use {model}, {view}");
 }
 
 TEST_F(Render, JsonSaysWhatWasSeen) {
@@ -240,10 +240,10 @@ TEST_F(Render, OutputsAreCheckedBeforeAnyWork) {
   // The model does not exist: if it were read first, the message would be about it.
   expect_failure("render none.stl -o missing/a.png", 1, "the folder missing does not exist");
   expect_failure("render none.stl -o a.tif", 2, "a.tif: the suffix names no format");
-  expect_failure("render none.stl --depth a.jpg", 2, "a.jpg: JPEG and WebP hold pictures alone");
+  expect_failure("render none.stl --depth a.jpg", 2, "a.jpg: JPEG and WebP hold only pictures");
   expect_failure("render none.stl -o a.jpeg --background transparent", 2, "a.jpeg: JPEG holds no alpha");
   expect_failure("render none.stl -o a.jpg --quality 0", 2, "--quality");
-  expect_failure("render none.stl -o a.jpeg --format png", 2, "the suffix names another format than --format");
+  expect_failure("render none.stl -o a.jpeg --format png", 2, "--format differs from the suffix");
   expect_failure("render none.stl -o -", 2, "--format");
   expect_failure("render none.stl -o a.png --depth a.png", 2, "two outputs have this name");
   expect_failure("render none.stl -o a.exr --depth ./a.exr", 2, "would be written twice");
@@ -280,9 +280,9 @@ TEST_F(Render, ABlankPictureSaysWhy) {
       {"render cube.stl --camera-position 0,-5,0 --camera-direction y --near 50", "is nearer than the near plane"},
       {"render cube.stl --camera-position 0,-5,0 --camera-direction y --far 1", "is beyond the far plane"},
       {"render cube.stl --camera-position 0,-5,0 --camera-direction 1,0.3,0", "is outside the picture"},
-      {"render cube.stl --cull both", "faces the way that --cull leaves out"},
-      {"render flap.stl --view bottom --cull back", "faces the way that --cull leaves out"},
-      {"render flap.stl --view top --cull front", "faces the way that --cull leaves out"},
+      {"render cube.stl --cull both", "faces the side that --cull leaves out"},
+      {"render flap.stl --view bottom --cull back", "faces the side that --cull leaves out"},
+      {"render flap.stl --view top --cull front", "faces the side that --cull leaves out"},
       {"render cube.stl --camera-position 0.3,-90000,0.2 --camera-direction y", "is smaller than a pixel"},
   };
   for (const auto& [words, reason] : cases) {
@@ -341,7 +341,7 @@ TEST_F(Render, AmbientOcclusionDarkensWhatIsNear) {
   expect_failure(render + "x.png --ambient-occlusion 1 --camera-model panorama --camera-position 0,0,0",
                  cli::exit_usage, "--camera-model and --ambient-occlusion exclude each other");
   expect_failure("render cube.stl --stream --ambient-occlusion 1 -o x.png", cli::exit_usage,
-                 "--ambient-occlusion needs --occlusion-radius with --stream");
+                 "--stream does not keep the model, so --ambient-occlusion needs --occlusion-radius");
   expect_failure(render + "x.png --ambient-occlusion 1.5", cli::exit_usage, "--ambient-occlusion");
 }
 

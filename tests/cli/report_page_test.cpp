@@ -96,7 +96,7 @@ TEST_F(ReportPage, ThePageIsWrittenWholeOrNotAtAll) {
   write("old.html", "old");
   expect_failure("report squares.obj -o squares.obj", 2, "is the model itself");
   expect_failure("report squares.obj -o none/page.html", 1, "none");
-  expect_failure("report squares.obj --json -o -", 2, "both want standard output");
+  expect_failure("report squares.obj --json -o -", 2, "both write to standard output");
   expect_failure("report missing.obj -o old.html", 1, "missing.obj");
   EXPECT_EQ(read("old.html"), "old");
   EXPECT_THAT(run({"report", "squares.obj", "-o", "-"}).out, testing::EndsWith("</html>\n"));

@@ -80,10 +80,10 @@ TEST_F(Report, ExplainIsACommandThatSaysTheSame) {
             succeed(std::string("report squares.obj --why away --json") + view).json());
   expect_failure("explain squares.obj", 2, "no OBJECT given: its name or its number");
   expect_failure("explain", 2, "no MODEL given");
-  expect_failure("explain squares.obj far near", 2, "one object at a time: 'far' and 'near'");
+  expect_failure("explain squares.obj far near", 2, "two objects are given, 'far' and 'near'");
   expect_failure("explain squares.obj 3", 2, "squares.obj has no object 3; frontmost report lists all 3");
   expect_failure("explain squares.obj EA", 2, "squares.obj has no object EA; did you mean near?");
-  expect_failure("explain squares.obj far --canvas 2", 2, "--canvas does not belong to 'frontmost explain'");
+  expect_failure("explain squares.obj far --canvas 2", 2, "--canvas is not an option of 'frontmost explain'");
   EXPECT_THAT(succeed("explain --help").out, testing::HasSubstr("frontmost explain MODEL OBJECT [options]"));
 }
 
@@ -104,11 +104,11 @@ TEST_F(Report, ViewsOfAFileEqualThoseOneByOne) {
   EXPECT_THAT(succeed("report squares.obj --views views.json --resolution 40,40 --why near").out,
               testing::MatchesRegex("first:\nnear is .*\n\niso:\nnear is .*\n\n2:\nnear is .*\n\n"));
   expect_failure("report squares.obj --views views.json -o page.html", 2,
-                 "--views excludes --output: a page holds one view");
+                 "--views excludes --output, because a page holds one view");
   write("panorama.json", R"({"views": [{"camera-model": "panorama"}]})");
-  expect_failure("report squares.obj --views panorama.json", 2, "views[0]: objects are counted by pinhole cameras");
+  expect_failure("report squares.obj --views panorama.json", 2, "views[0]: report needs a pinhole camera");
   write("depth.json", R"({"views": [{"depth-func": "LESS"}]})");
-  expect_failure("report squares.obj --views depth.json", 2, "without a depth buffer");
+  expect_failure("report squares.obj --views depth.json", 2, "options of a depth buffer must be left out");
 }
 
 TEST_F(Report, AllHidersAreThereOnRequest) {
@@ -369,7 +369,7 @@ TEST_F(Report, AModelWithoutAnythingIsAllBackground) {
 
 TEST_F(Report, WrongOptionsAreNamed) {
   expect_failure("report squares.obj --canvas 0.5", 2, "--canvas: 0.5 is not between 1 and 16");
-  expect_failure("report squares.obj --samples 4", 2, "--samples does not belong to 'frontmost report'");
+  expect_failure("report squares.obj --samples 4", 2, "--samples is not an option of 'frontmost report'");
   expect_failure("report", 2, "no MODEL given");
 }
 

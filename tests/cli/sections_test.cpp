@@ -189,7 +189,7 @@ TEST_F(SectionsCommand, WhatCannotBeMeantIsRefused) {
   expect_failure("lines box.obj --sections front --hatch 1 -o a.svg", 2, "leave out hatch");
   expect_failure("lines box.obj --sections front --style figure -o a.svg", 2, "figures");
   EXPECT_THAT(succeed("lines open.obj --sections front=1,left=1 --up +y -o a.svg").err,
-              testing::HasSubstr("do not close"));
+              testing::HasSubstr("outlines are not closed"));
   // Curved models are cut as tessellated for drawing.
   succeed("lines builtin:spheres --views front --sections top --page a2 -o spheres.svg");
 }

@@ -158,14 +158,14 @@ TEST_F(Shards, KilledRunsGoOnWhereTheyEnded) {
 }
 
 TEST_F(Shards, AreRefusedWhereNothingCouldBeTold) {
-  expect_failure("render cube.stl -o c.png --shard 1/2", 2, "--shard takes a part of the views of --batch");
+  expect_failure("render cube.stl -o c.png --shard 1/2", 2, "--shard needs --batch");
   expect_failure(shard_line + "--shard 0/2", 2, "--shard: 0 is not between 1 and");
   expect_failure(shard_line + "--shard 3/2", 2, "--shard: 3/2: there are only 2 shards");
   expect_failure(shard_line + "--shard 3", 2, "'3' is not K/N, such as 3/16");
-  expect_failure(shard_line + "--shard 1/2 --reference cube.png", 2, "view 0 has a reference");
+  expect_failure(shard_line + "--shard 1/2 --reference cube.png", 2, "view 0 has a --reference");
   expect_failure("render - --batch v.json --shard 1/2", 2, "a model from standard input");
   write("none.json", R"({"views": [{"outputs": {"hash": true}}]})");
-  expect_failure("render cube.stl --batch none.json --shard 1/2", 2, "view 0 makes no files");
+  expect_failure("render cube.stl --batch none.json --shard 1/2", 2, "view 0 has no output file");
   write("cube.v.1-of-2.jsonl", "my own\n");
   expect_failure(shard_line + "--shard 1/2", 1, "cube.v.1-of-2.jsonl: line 1: this is not a manifest");
   EXPECT_EQ(read("cube.v.1-of-2.jsonl"), "my own\n");
@@ -212,16 +212,17 @@ TEST_F(Merging, GathersTheFilesOfAllFolders) {
 
 TEST_F(Merging, LeavesNothingWhereAPartIsMissingOrDamaged) {
   std::filesystem::resize_file(path("b/4.npy"), 100);
-  expect_failure("batch-merge a b -o all", 1, "b/4.npy: is not what b/cube.v.2-of-3.jsonl says");
+  expect_failure("batch-merge a b -o all", 1, "b/4.npy: differs from its entry in b/cube.v.2-of-3.jsonl");
   draw("b", "2/3");
   draw("b", "2/3", "--shading flat");
   expect_failure("batch-merge a b -o all", 1,
-                 "b/cube.v.2-of-3.jsonl: of another model, batch file, options or version");
+                 "b/cube.v.2-of-3.jsonl: has another model, batch file, version or other options than");
   EXPECT_FALSE(exists("all"));
   expect_failure("batch-merge cube.stl", 1, "cube.stl: line 1: this is not a manifest");
   expect_failure("batch-merge nowhere", 1, "nowhere: ");
   std::filesystem::create_directory(path("empty"));
-  expect_failure("batch-merge empty", 1, "empty: there is no manifest of a batch");
+  expect_failure("batch-merge empty", 1,
+                 "empty: the folder has no manifest of a batch; give a folder in which frontmost render --shard ran");
   expect_failure("batch-merge", 2, "no PART given");
 }
 
@@ -234,7 +235,7 @@ TEST_F(Merging, FilesInFoldersKeepThem) {
   write("v.json", R"({"views": [{"name": "x"}], "outputs": {"depth": "../{view}.npy"}})");
   draw("a", "1/1");
   succeed("batch-merge a/cube.v.1-of-1.jsonl");
-  expect_failure("batch-merge a/cube.v.1-of-1.jsonl -o other", 1, "../x.npy: lies outside of the folder");
+  expect_failure("batch-merge a/cube.v.1-of-1.jsonl -o other", 1, "../x.npy: lies outside the folder");
   EXPECT_FALSE(exists("other"));
 }
 

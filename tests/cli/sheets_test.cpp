@@ -164,7 +164,7 @@ TEST_F(SheetsCommand, AFrameAsksForAPageWithRoom) {
   expect_failure("lines box.obj --frame --views front --page fit --scale 1:1 -o a.svg", 2, "--page: a frame needs");
   expect_failure("lines box.obj --frame --views front --margin 90 -o a.svg", 2, "--margin: 90 mm at each side leave");
   expect_failure("lines box.obj --views front --title " + std::string(81, 'x') + " -o a.svg", 2,
-                 "--title: 81 characters are more than the 80 that have room");
+                 "--title: the text has 81 characters; at most 80 fit");
   expect_failure("lines box.obj --up +z --views front --frame --scale 50:1 --page a4 -o a.svg", 2,
                  "; 5:1 would fit, or take a larger page\n");
 }
@@ -219,7 +219,7 @@ TEST_F(SheetsCommand, SeveralModelsArePagesOfOnePdf) {
   }
   // Several models share a file if the name has no {model}; likewise on standard output.
   EXPECT_THAT(succeed("lines box.obj second.obj -o - --format pdf").out, HasSubstr("/Count 2 >>"));
-  expect_failure("lines box.obj second.obj -o - --format svg", 2, "make it a .pdf");
+  expect_failure("lines box.obj second.obj -o - --format svg", 2, "write a .pdf");
   expect_failure("lines box.obj second.obj -o box.pdf -o {model}.pdf", 2, "would be written twice");
   expect_failure("lines box.obj missing.obj -o none.pdf", 1, "missing.obj");
   EXPECT_FALSE(exists("none.pdf"));
@@ -264,7 +264,7 @@ TEST_F(SheetsCommand, WhatTheFilesNumbersAreIsNotWhatTheSheetStates) {
     EXPECT_TRUE(says(page, c.unit, 2.5)) << c.options;
     EXPECT_TRUE(holds_text(points_of(page, "7 dimensions"), c.width, 3.5)) << c.options;
     if (c.overrules)
-      EXPECT_THAT(said, HasSubstr("warning: --unit overrules the file, which says that its unit is ")) << c.options;
+      EXPECT_THAT(said, HasSubstr("warning: --unit overrides the unit of the file, ")) << c.options;
     else
       EXPECT_EQ(said, "") << c.options;
   }

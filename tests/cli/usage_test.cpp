@@ -103,7 +103,7 @@ TEST_F(Usage, WrongOptionsAreNamed) {
   write("cube.stl", cube_stl());
   expect_failure("camera", 2, "no MODEL given");
   expect_failure("camera cube.stl --camera-postion 1,2,3", 2, "did you mean --camera-position?");
-  expect_failure("camera cube.stl --depth x.exr", 2, "--depth does not belong to 'frontmost camera'");
+  expect_failure("camera cube.stl --depth x.exr", 2, "--depth is not an option of 'frontmost camera'");
   expect_failure("camera cube.stl -x", 2, "unknown option -x");
   expect_failure("camera cube.stl cube.stl", 2, "one model at a time");
   expect_failure("camera cube.stl --resolution", 2, "--resolution needs a value");

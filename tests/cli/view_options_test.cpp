@@ -238,7 +238,7 @@ TEST_F(ViewOptions, ModelCamerasAreTakenByNumber) {
   EXPECT_EQ(v.eye(), glm::dvec3(1, -20, 3));
   EXPECT_NEAR(v.projection.top, std::tan(0.25), 1e-12);
   EXPECT_EQ(v.projection.clip.near, 2);
-  EXPECT_THAT(complaint({{"camera-index", "1"}}), HasSubstr("the model has 1 cameras, there is no 1"));
+  EXPECT_THAT(complaint({{"camera-index", "1"}}), HasSubstr("there is no camera 1; cameras in the model: 1"));
 }
 
 TEST_F(ViewOptions, PlanesAreFittedUnlessGiven) {

@@ -151,17 +151,18 @@ TEST_F(VisibleCommand, AModelOfWhatIsSeenLeavesOutTheRest) {
 }
 
 TEST_F(VisibleCommand, WrongOptionsAreNamed) {
-  expect_failure("visible plate.obj --views views.json --sphere 3", 2, "--views and --sphere are two ways to say it");
+  expect_failure("visible plate.obj --views views.json --sphere 3", 2, "--views and --sphere exclude each other");
   expect_failure("visible plate.obj --sphere 3 --view top", 2, "--sphere looks from all around");
   expect_failure("visible plate.obj --sphere 0", 2, "--sphere: 0 is not between 1 and 100000");
   expect_failure("visible plate.obj -o faces.txt", 2, "faces.txt: the suffix names no format; use .csv, .npy or .ply");
   expect_failure("visible plate.obj --keep-visible a.obj", 2, "a.obj: the suffix names no format of models");
   expect_failure("visible plate.obj -o a.ply --keep-visible a.ply", 2, "would be written twice");
-  expect_failure("visible plate.obj -o - --json", 2, "both want standard output");
+  expect_failure("visible plate.obj -o - --json", 2, "both write to standard output");
   expect_failure("visible plate.obj --views missing.json", 1, "missing.json: ");
   expect_failure("visible plate.obj --views views.json -o views.json", 2, "the suffix names no format");
   write("panorama.json", R"({"views": [{"camera-model": "panorama"}]})");
-  expect_failure("visible plate.obj --views panorama.json", 2, "panorama.json: views[0]: faces are");
+  expect_failure("visible plate.obj --views panorama.json", 2,
+                 "panorama.json: views[0]: visible needs a pinhole camera");
   EXPECT_THAT(files(), ElementsAre("panorama.json", "plate.obj", "views.json"));
 }
 
