@@ -168,7 +168,7 @@ class Scene:
         """In the order of their numbers."""
     @property
     def triangle_count(self) -> int:
-        """Over all objects."""
+        """Number of triangles over all objects."""
     @property
     def warnings(self) -> list[str]:
         """What the reader passed over: "file: place: what"."""
@@ -223,47 +223,47 @@ class View:
         """A calibrated camera.
 
         K: 3x3 without skew, or (fx, fy, cx, cy), in pixels. pose: 4x4 rotation and translation; None: the identity.
-        convention: what the pose means. "opencv" is opencv_world_to_camera (x right, y down, z ahead; [R | t] of
+        convention: direction and axes of the pose. "opencv" is opencv_world_to_camera (x right, y down, z ahead; [R | t] of
         calibrations, BOP), "opengl" is opengl_camera_to_world (x right, y up, looks down -z), "robot" is
-        robot_camera_to_world (x ahead, y left, z up; the transforms of ROS). near, far: distances of the planes beyond which nothing is seen; far may be infinite, as it is by default. pixel_rule: where K has the
-        middle of the first pixel, (0, 0) as OpenCV or (0.5, 0.5).
+        robot_camera_to_world (x ahead, y left, z up; the transforms of ROS). near, far: distances of the clipping planes;
+        far is infinite by default. pixel_rule: the middle of the first pixel in K, (0, 0) as in OpenCV or (0.5, 0.5).
         """
     @staticmethod
     def look_at(eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0, 1, 0), *, width: int = 640, height: int = 480,
                 fov: float = 30.0, near: float = 0.1, far: float = ..., samples: int = 1,
                 culling: Culling = "none") -> View:
-        """From an eye towards a target. fov: degrees, of the smaller side of the picture."""
+        """A view from an eye towards a target. fov: degrees, of the smaller side of the picture."""
     @staticmethod
     def orthographic(eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0, 1, 0), *, width: int = 640, height: int = 480,
                      tall: float = 2.0, near: float = 0.1, far: float = 1000.0, samples: int = 1,
                      culling: Culling = "none") -> View:
-        """Parallel projection. tall: how much of the scene the height of the picture shows, in scene units."""
+        """A view in parallel projection. tall: height of the picture in scene units."""
     def placed(self, pose: ArrayLike, convention: Convention = "opencv") -> View:
-        """With this pose."""
+        """A copy of the view with this pose."""
     def looking(self, eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0, 1, 0)) -> View:
-        """At another place, turned towards a target."""
+        """A copy of the view from another eye towards a target."""
     def about(self, origin: ArrayLike) -> View:
-        """With an eye that was told in the coordinates of a file, told about that Scene.origin."""
+        """A copy of a view in the coordinates of a file, relative to this Scene.origin."""
     def between(self, near: float, far: float) -> View:
-        """With these near and far planes."""
+        """A copy of the view with these near and far planes."""
     def enclosing(self, bounds: ArrayLike | Surfaces) -> View:
-        """With the near and far planes that enclose a box, (2, 3) of low and high corners, or surfaces."""
+        """A copy whose near and far planes enclose surfaces or a box, (2, 3) of low and high corners."""
     def sampled(self, samples: int) -> View:
-        """With so many samples a pixel."""
+        """A copy of the view with so many samples a pixel."""
     def culled(self, culling: Culling) -> View:
-        """With other sides left out."""
+        """A copy of the view that leaves out other sides of triangles."""
     @property
     def width(self) -> int:
-        """Pixels."""
+        """Width of the picture in pixels."""
     @property
     def height(self) -> int:
-        """Pixels."""
+        """Height of the picture in pixels."""
     @property
     def samples(self) -> int:
-        """Of a pixel."""
+        """Samples of a pixel."""
     @property
     def culling(self) -> Culling:
-        """Which sides are left out."""
+        """Sides of triangles that are left out."""
     @property
     def is_orthographic(self) -> bool:
         """Whether the projection is parallel."""
@@ -275,10 +275,10 @@ class View:
         """The distance of the far plane; may be infinite."""
     @property
     def eye(self) -> NDArray[numpy.float64]:
-        """(3,) in the world."""
+        """(3,) position of the eye in the world."""
     @property
     def forward(self) -> NDArray[numpy.float64]:
-        """(3,) of unit length: where it looks."""
+        """(3,) of unit length: viewing direction."""
     @property
     def up(self) -> NDArray[numpy.float64]:
         """(3,) of unit length: up in the picture."""
@@ -287,11 +287,11 @@ class View:
         """(3,) of unit length: right in the picture."""
     @property
     def K(self) -> NDArray[numpy.float64]:
-        """3x3 with the middle of the first pixel at (0, 0), as from_intrinsics() takes it. Raises Error where parallel."""
+        """3x3 with the middle of the first pixel at (0, 0), as from_intrinsics() takes it. Raises Error for parallel projection."""
     def intrinsics(self, pixel_rule: PixelRule = "centre_at_integer") -> NDArray[numpy.float64]:
-        """3x3 by either rule."""
+        """3x3 camera matrix by either pixel rule."""
     def pose(self, convention: Convention = "opencv") -> NDArray[numpy.float64]:
-        """4x4, as from_intrinsics() takes it."""
+        """4x4 pose, as from_intrinsics() takes it."""
     def clip_from_eye(self, depth: DepthConvention = "opengl") -> NDArray[numpy.float64]:
         """4x4 projection. depth: -1 near to 1 far ("opengl"), 1 to -1 ("gortler"), 0 to 1 or 1 to 0 ("reversed")."""
     def clip_from_world(self, depth: DepthConvention = "opengl") -> NDArray[numpy.float64]:
@@ -301,40 +301,40 @@ def frame(scene: Scene | Surfaces | ArrayLike, width: int = 640, height: int = 4
           orthographic: bool = False, fov: float = 30.0, margin: float = 0.05, forward: ArrayLike | None = None,
           up: ArrayLike | None = None, target: ArrayLike | None = None, objects: Literal["subject", "all"] = "subject",
           samples: int = 1, culling: Culling = "none") -> View:
-    """A view that shows a scene from as near as the margin allows. Quicker of Surfaces than of a Scene.
+    """A view that shows a scene from as near as the margin allows. Quicker for Surfaces than for a Scene.
 
-    direction, or forward and up: where to look along. fov: degrees, of the smaller side. margin: of the picture, each
-    side. target: what is in the middle, None the model. objects: "subject" leaves out what lies or reaches far away.
-    In place of a scene its bounds, (2, 3) of low and high corners, where nobody has all of it: all of the box is shown,
-    and y is up.
+    direction, or forward and up: viewing direction. fov: degrees, of the smaller side. margin: share of the picture at
+    each side. target: middle of the picture, by default that of the model. objects: "subject" does not fit objects that lie
+    or reach far away. scene may be bounds, (2, 3) of low and high corners: the view then shows the whole box, and y is up.
     """
 
 class Surfaces:
-    """All triangles of a scene in world space, with stable numbers: what is seen is asked of these.
+    """All triangles of a scene in world space, with stable numbers. Visibility methods work on surfaces.
 
     The number of a triangle is its running number over all objects in the order of the scene. Long calls release the
-    interpreter's lock; take threads, 0 for one per core (no answer depends on them); stop at Ctrl-C; and take progress:
-    True shows a bar, a function is called with a stage and a fraction from 0 to 1.
+    interpreter's lock and stop at Ctrl-C. threads: 0 for one per core; results do not depend on threads. progress: True
+    shows a bar; a function is called with a stage and a fraction from 0 to 1.
     """
     def __init__(self, scene: Scene, *, threads: int = 0, progress: Progress = None) -> None: ...
     def zbuffer(self, view: View, *, threads: int = 0, progress: Progress = None) -> Visible:
         """The front-most triangle at every sample, by rasterisation. O(triangles + covered samples)."""
     def raycast(self, view: View, *, threads: int = 0, progress: Progress = None) -> Visible:
-        """The same by rays, with an index made for this view. Nothing is snapped to 1/256 pixel."""
+        """The front-most triangle at every sample, by rays, with an index made for this view. Vertices are not snapped."""
     def abuffer(self, view: View, *, grid: int = 0, opacity: float = 1.0, threads: int = 0,
                 progress: Progress = None) -> Fragments:
-        """Everything that a view sees, as data: what each triangle covers of each pixel, in the order of depth.
+        """All fragments of a view: the coverage of each triangle in each pixel, in the order of depth.
 
-        grid: sub-samples, 0 those of the view, or 2, 4 or 8 squared. opacity: below 1 nothing is cut off behind what is
-        opaque. Raises Error limit_exceeded beyond 2^28 fragments and 1,024 for each triangle, 2^30 in all.
+        grid: sub-samples, 0 for those of the view, or 2, 4 or 8 squared. opacity: below 1, fragments behind opaque surfaces
+        are kept. Raises Error limit_exceeded beyond 2^28 fragments and 1,024 for each triangle, 2^30 in all.
         """
     def draw_lines(self, view: View, *, crease_angle: float | None = None, counts_hidden: bool = False,
                    kinds: Sequence[EdgeKind] = ..., outlines: bool = False, threads: int = 0,
                    progress: Progress = None) -> Drawing:
         """The feature edges, each cut exactly into seen and hidden parts.
 
-        crease_angle: degrees between normals from which an edge is a crease; None finds out. counts_hidden: Drawing.hidden_by
-        counts, else it tells 0 from more. kinds: those of edge_kinds that are wanted. outlines: finds Drawing.is_outline.
+        crease_angle: degrees between normals from which an edge is a crease; None decides by the surfaces on both sides.
+        counts_hidden: Drawing.hidden_by counts surfaces, else it is 0 or 1. kinds: wanted edge_kinds. outlines: finds
+        Drawing.is_outline.
         """
     def draw_sheet(self, views: Sequence[Direction] | View = ("front", "top", "left"), *,
                    sections: list[Direction | tuple[Direction, float]] = [],
@@ -353,8 +353,9 @@ class Surfaces:
 
         sections: directions, or (direction, place of the plane in the coordinates of the file). page: "a4", "a3-landscape",
         ..., or (width, height). pen, margin, hatch, stipple, shortest_stroke: millimetres. scale: paper to model.
-        millimetres_per_unit: what the model's numbers are, in place of what its file says. in_inches: what dimensions say,
-        True by default for models in inches. title_block: title, number, author, date, owner. hatch_angle, crease_angle: degrees. plot: strokes in an order for plotters.
+        millimetres_per_unit: unit of the model's coordinates, in place of the file's. in_inches: unit of dimensions, by
+        default True for models in inches. title_block: title, number, author, date, owner. hatch_angle, crease_angle:
+        degrees. plot: strokes in an order for plotters.
         Raises Error: bad_argument, limit_exceeded.
         """
     def draw_figure(self, view: View, *, tolerance: float = 6.0, visible_only: bool = True,
@@ -364,67 +365,66 @@ class Surfaces:
                     title: str | None = None, threads: int = 0, progress: Progress = None) -> Figure:
         """A picture of polygons, by the painter's algorithm.
 
-        tolerance: steps of 8-bit sRGB by which a polygon's colour may differ. visible_only: what is hidden is left out, else
-        all is there in the order of painting. merges_neighbours: of one colour. title: the scene's
-        name where it is None. Raises Error limit_exceeded beyond
-        most_polygons.
+        tolerance: steps of 8-bit sRGB by which a polygon's colour may differ. visible_only: leaves out hidden polygons, else
+        all polygons are in the order of painting. merges_neighbours: joins neighbours of one colour. title: by default the
+        scene's name. Raises Error limit_exceeded beyond most_polygons.
         """
     def painter(self, view: View, *, method: PaintMethod = "depth_sort", most_polygons: int = 134217728,
                 most_cuts: int = 1048576, threads: int = 0, progress: Progress = None) -> PaintOrder:
         """Triangles, and pieces of them, in an order in which painting one over the other is right everywhere.
 
-        method: "depth_sort" (Newell, Newell and Sancha) cuts only what has no order, "bsp" cuts much more; "farthest" and
-        "centroid" sort by one depth alone, and are wrong where that does not decide. Raises Error limit_exceeded.
+        method: "depth_sort" (Newell, Newell and Sancha) cuts only triangles that have no order, "bsp" cuts many more;
+        "farthest" and "centroid" sort by one depth, and are wrong where it does not decide. Raises Error limit_exceeded.
         """
     def visible_faces(self, view: View, *, threads: int = 0, progress: Progress = None) -> NDArray[Any]:
-        """Every triangle of which a part is seen, however small, by number: exact, not sampled.
+        """Every triangle that is at least partly seen, in the order of numbers: exact, not sampled.
 
-        (n,) records: primitive, object, triangle; pixels, its area in the picture in square pixels; area, on the triangle in
-        scene units squared; solid_angle, in steradians from the eye, 0 in parallel projection.
+        (n,) records: primitive, object, triangle; pixels, visible area in square pixels; area, visible area on the triangle
+        in scene units squared; solid_angle, in steradians from the eye, 0 in parallel projection.
         """
     def faces_ever_seen(self, views: Sequence[View], *, threads: int = 0, progress: Progress = None) -> NDArray[Any]:
-        """Every triangle of which a part is seen in any of these views, by number.
+        """Every triangle that is at least partly seen in any of these views, in the order of numbers.
 
-        (n,) records: primitive, object, triangle; views, in how many a part of it is seen; best_view, which shows most of
-        it; largest_share, of its own area, that one view shows; largest_pixels, the most square pixels in any.
+        (n,) records: primitive, object, triangle; views, number of views that show it; best_view, the view that shows most of
+        it; largest_share, largest share of its area that one view shows; largest_pixels, largest visible area in a view.
         """
     def find_exact_visible(self, view: View, *, threads: int = 0, progress: Progress = None) -> ExactVisible:
-        """What is nearest at every sample, decided without rounding: what depth buffers are held against."""
+        """The nearest triangle at every sample, decided without rounding: the reference for depth buffers."""
     def find_fighting_faces(self, view: View, format: DepthFormat = "d24", *, reversed: bool = False, threads: int = 0,
                             progress: Progress = None) -> FightAreas:
         """The faces that a depth buffer of this format may show wrongly, and where.
 
-        reversed: depth 1 at the near plane, 0 at the far one. Raises Error limit_exceeded where more than 2^22 areas are
-        found, or thousands of faces lie in one place.
+        reversed: depth 1 at the near plane, 0 at the far one. Raises Error limit_exceeded if more than 2^22 areas are found,
+        or thousands of faces lie in one place.
         """
     def cut(self, towards: Up, at: float = 0.0, *, threads: int = 0, progress: Progress = None) -> Section:
-        """What a plane across an axis of the world leaves, with the faces of the cut.
+        """The part of the scene behind a plane across an axis of the world, with the faces of the cut.
 
-        towards: what lies on this side is taken away. at: the plane's coordinate along that axis, also of a minus axis.
+        towards: the part on this side is removed. at: the plane's coordinate along that axis, also of a minus axis.
         """
     def move(self, object: int | str | Any, pose: ArrayLike, *, threads: int = 0) -> None:
         """Gives an object another pose, 4x4, in the scene and here; or each object of a list the pose of its place in
-        (n, 4, 4). What was visible before is so no more: its pictures and reports raise Error. Raises Error where other
-        surfaces show the same scene."""
+        (n, 4, 4). Earlier results become invalid: their pictures and reports raise Error. Raises Error if other surfaces
+        show the same scene."""
     @property
     def scene(self) -> Scene:
-        """What they are of."""
+        """The scene of the surfaces."""
     @property
     def triangle_count(self) -> int:
-        """Over all objects."""
+        """Number of triangles over all objects."""
     @property
     def bounds(self) -> NDArray[numpy.float32]:
         """(2, 3): low and high corner of the box around all, in the world; infinite the wrong way round without any."""
 
 class Visible:
-    """The front-most triangle at every sample of a view, and how deep it is. Planes are (height, width), rows from the
-    top, of the first sample; primitives and keys have all samples. They outlive what made them."""
+    """The front-most triangle at every sample of a view, and its depth. Planes are (height, width), rows from the top, of
+    the first sample; primitives and keys have all samples. Arrays stay valid when their Visible is gone."""
     @property
     def view(self) -> View:
-        """Of which it is."""
+        """The view of the answer."""
     @property
     def surfaces(self) -> Surfaces:
-        """Of which it is."""
+        """The surfaces of the answer."""
     @property
     def depth(self) -> NDArray[numpy.float32]:
         """Planar distance along the viewing axis, in scene units; inf where nothing is seen. Found once, and kept."""
@@ -433,7 +433,7 @@ class Visible:
         """Numbers of triangles; no_primitive where nothing is seen. No copy; not writable."""
     @property
     def key(self) -> NDArray[numpy.float32]:
-        """What was compared: near / distance, or in parallel projection (far - distance) / (far - near). No copy."""
+        """The compared depth key: near / distance, or in parallel projection (far - distance) / (far - near). No copy."""
     @property
     def primitives(self) -> NDArray[numpy.uint32]:
         """(samples, height, width). No copy; not writable."""
@@ -448,7 +448,7 @@ class Visible:
         """Numbers of materials; no_index where nothing is seen, or none is set."""
     @property
     def face(self) -> NDArray[numpy.uint32]:
-        """Rows of the faces that a mesh was made of, polygons of files; no_index where nothing is seen."""
+        """Numbers of a mesh's original faces, such as polygons of a file; no_index where nothing is seen."""
     @property
     def triangle(self) -> NDArray[numpy.uint32]:
         """Rows of Mesh.faces; no_index where nothing is seen."""
@@ -461,13 +461,13 @@ class Visible:
               shows_environment: bool = False, exposure: float = 0.0,
               tone_mapping: Literal["none", "aces", "khronos"] = "none", light_direction: ArrayLike | None = None,
               light_intensity: float | None = None, threads: int = 0, progress: Progress = None) -> Bitmap:
-        """A picture, to the byte that of the program's.
+        """A picture, with the same bytes as that of the command line.
 
         shading: "lit", "flat" base colours, "normals", "depth", "ids" or "uv". background: sRGB, 0 to 1; None:
-        transparent. opacity: 0 to 1, of everything. grid: the A-buffer's sub-samples, 0 those of the view, or 2, 4 or 8
+        transparent. opacity: 0 to 1, multiplies every opacity. grid: the A-buffer's sub-samples, 0 those of the view, or 2, 4 or 8
         squared. ambient_occlusion: strength, 0 to 1; its radius in scene units. environment: "studio", "sky", "none",
         the path of a picture, or an Environment, which is made once for many pictures; environment_angle: degrees.
-        exposure: stops. light_direction: towards the key light. Raises Error where objects were moved since.
+        exposure: stops. light_direction: towards the key light. Raises Error if objects were moved since.
         """
     def shade_linear(self, *, shading: Shading = "lit", background: ArrayLike | None = (1.0, 1.0, 1.0),
                      shadows: Literal["off", "map", "rays"] = "map", opacity: float = 1.0,
@@ -478,7 +478,7 @@ class Visible:
                      shows_environment: bool = False, exposure: float = 0.0,
                      tone_mapping: Literal["none", "aces", "khronos"] = "none", light_direction: ArrayLike | None = None,
                      light_intensity: float | None = None, threads: int = 0, progress: Progress = None) -> NDArray[numpy.float32]:
-        """The same as (height, width, 4) of linear light, multiplied by alpha."""
+        """The picture of shade() as (height, width, 4) of linear light, multiplied by alpha."""
     @property
     def normals(self) -> NDArray[numpy.float32]:
         """(height, width, 3) unit normals in the world; 0 where nothing is seen."""
@@ -486,30 +486,30 @@ class Visible:
     def ray_distance(self) -> NDArray[numpy.float32]:
         """Distance from the eye along the ray; inf where nothing is seen. In parallel projection as depth."""
     def layers(self, count: int, *, opacity: float = 1.0, threads: int = 0, progress: Progress = None) -> list[Visible]:
-        """The nearest layers of the same view, 1 to 1024: the k-th holds the k-th nearest triangle at every sample. Behind
-        what is opaque nothing is seen, unless opacity is below 1. The first is what the z-buffer gives. shade() shows
+        """The nearest layers of the same view, 1 to 1024: the k-th holds the k-th nearest triangle at every sample. Nothing
+        is seen behind opaque surfaces unless opacity is below 1. The first layer is the z-buffer's answer. shade() shows
         one with see_through="never"."""
     def account(self, *, canvas: float = 3.0, all_hiders: bool = False, threads: int = 0,
                 progress: Progress = None) -> Accounting:
-        """How much of every object is seen, how much lies beyond the frame, and who hides the rest; of what zbuffer() gave.
+        """Shares of every object that are seen, hidden and beyond the frame, and its hiders. Needs a result of zbuffer().
 
-        canvas: objects are counted alone on so many times the picture's width and height, 1 to 16. all_hiders: also
-        hidden_by_any and hidden_only_by, for some ten times the time.
+        canvas: size of the area in which objects are counted alone, as a multiple of the picture's, 1 to 16. all_hiders: also
+        finds hidden_by_any and hidden_only_by, in some ten times the time.
         """
     def report(self, *, threads: int = 0, progress: Progress = None) -> list[Explanation]:
-        """Why each object is seen, or is not, by number; print(*seen.report(), sep="\\n") says it in sentences."""
+        """Why each object is seen or not, by number; print(*seen.report(), sep="\\n") prints sentences."""
     def explain(self, object: int | str, *, threads: int = 0, progress: Progress = None) -> Explanation:
         """Why one object, a number or a name, is seen, or is not, and what to change."""
     def mask(self, object: int | str, *, part: MaskPart = "visible") -> NDArray[numpy.bool_]:
-        """(height, width): where an object is visible, or, with "whole", would be if nothing hid it."""
+        """(height, width): True where an object is visible, or with "whole" would be visible alone."""
     def coco_runs(self, object: int | str, *, part: MaskPart = "visible") -> str:
         """A mask as COCO's compressed run lengths."""
     def coco_polygons(self, object: int | str, *, part: MaskPart = "visible") -> list[list[int]]:
         """A mask as polygons along the sides of pixels: x and y in turn, from the picture's top left."""
     def check_agreement(self, other: Visible, *, behind: Visible | None = None, threads: int = 0,
                         progress: Progress = None) -> Agreement:
-        """Compares with the answer of another method for the same surfaces and view: wherever they part, exact arithmetic
-        says why both may be right, or that one is wrong. behind: other's second layer, for what shows through."""
+        """Compares with the answer of another method for the same surfaces and view. Where they differ, exact arithmetic
+        finds why both may be right, or that one is wrong. behind: other's second layer, for translucent surfaces."""
     def content_hash(self) -> int:
         """Equal for equal answers, on every machine; the number that `frontmost render --hash` prints."""
 
@@ -518,7 +518,7 @@ class Bitmap(numpy.ndarray[Any, numpy.dtype[numpy.uint8]]):
     itself in notebooks."""
 
 class Environment:
-    """The light that comes from all around, made ready once for many pictures.
+    """Light from all directions, prepared once for many pictures.
 
     source: "studio", "sky", "none", the path of an equirectangular picture (.hdr, .exr, ...), or (height, 2 * height, 3)
     floats of linear light. Raises Error: bad_argument, file_unreadable, file_malformed.
@@ -526,22 +526,23 @@ class Environment:
     def __init__(self, source: Path | ArrayLike, *, threads: int = 0, progress: Progress = None) -> None: ...
     @property
     def turns_with_camera(self) -> bool:
-        """True of the studio: what is ahead in it is ahead of the camera."""
+        """True for the studio, which keeps its direction relative to the camera."""
 
 def save(image: ArrayLike | dict[str, Any], path: Path, *, format: ImageFormat | None = None, bits: int = 8,
          depth_scale: float | None = None, quality: int = 90) -> None:
-    """Writes an image whole or not at all; the format is the suffix's: PNG, OpenEXR, PFM, NPY, JPEG, WebP.
+    """Writes an image whole or not at all. The suffix decides the format: PNG, OpenEXR, PFM, NPY, JPEG, WebP.
 
     image: (height, width, 3 or 4) of uint8 (sRGB, straight alpha) or floats (linear light, multiplied by alpha); a bool mask
     (height, width), which becomes a black and white picture; or planes (height, width) by name, as files hold them:
-    {"Z": seen.depth}, {"object": seen.object}, {"N.X": ..., ...}; there bool masks are 0 and 1. bits: 8 or 16, of colours in PNG. depth_scale: PNG holds
-    depth times this, rounded; None fits the range. quality: 1 to 100, of JPEG and WebP. Raises Error: file_unwritable, unsupported, limit_exceeded, bad_argument.
+    {"Z": seen.depth}, {"object": seen.object}, {"N.X": ..., ...}; bool masks become 0 and 1. bits: 8 or 16, of colours in
+    PNG. depth_scale: PNG holds depth times this, rounded; None fits the range. quality: 1 to 100, of JPEG and WebP.
+    Raises Error: file_unwritable, unsupported, limit_exceeded, bad_argument.
     """
 
 def signed_ids(ids: NDArray[numpy.uint32], *, dtype: Literal["int32", "int64"] = "int64") -> NDArray[Any]:
-    """Ids as signed numbers, for libraries that know no uint32: -1 where there is nothing.
+    """Ids as signed numbers, for libraries without uint32: -1 where nothing is seen.
 
-    torch.from_numpy(fm.signed_ids(seen.object)) shares the new array. Raises ValueError where int32 does not hold an id.
+    torch.from_numpy(fm.signed_ids(seen.object)) shares the new array. Raises ValueError if an id does not fit into int32.
     """
 
 def load_image(path: Path) -> dict[str, NDArray[Any]]:
@@ -552,7 +553,7 @@ def load_image(path: Path) -> dict[str, NDArray[Any]]:
     """
 
 class Hits:
-    """What rays met: an element for each ray."""
+    """The hits of rays: an element for each ray."""
     @property
     def primitive(self) -> NDArray[numpy.uint32]:
         """(n,) numbers of triangles; no_primitive where nothing is met."""
@@ -561,7 +562,7 @@ class Hits:
         """(n,): the hit is at origin + t * direction, or start + t * (end - start); inf where nothing is met."""
     @property
     def is_front(self) -> NDArray[numpy.bool_]:
-        """(n,) whether it was met from the side on which corners run counter-clockwise."""
+        """(n,) True if the ray hit the side on which vertices are counter-clockwise."""
     @property
     def object(self) -> NDArray[numpy.uint32]:
         """(n,) numbers of objects; no_index where nothing is met."""
@@ -573,9 +574,9 @@ class Hits:
 class RayIndex:
     """A hierarchy of boxes over the triangles of surfaces, for any number of views and queries.
 
-    Points and directions are (n, 3), or (3,), which is for all; they are about Scene.origin and rounded to float32.
-    Queries see both sides of all triangles and are decided exactly, without a tolerance; a ray through an edge meets its
-    triangles. Those that are not finite meet nothing. After Surfaces.move() queries raise Error until refit().
+    Points and directions are (n, 3), or (3,) for all rays; they are relative to Scene.origin and rounded to float32. Queries
+    see both sides of all triangles and are exact, without a tolerance; a ray through an edge hits its triangles. Rays that
+    are not finite hit nothing. After Surfaces.move() queries raise Error until refit().
     """
     def __init__(self, surfaces: Surfaces, *, threads: int = 0, progress: Progress = None) -> None: ...
     def closest_hit(self, origins: ArrayLike, directions: ArrayLike | None = None, *, end: ArrayLike | None = None,
@@ -586,29 +587,29 @@ class RayIndex:
         """Every surface along each ray, nearest first: the hits of ray i are those from first[i] to first[i + 1]."""
     def is_clear(self, start: ArrayLike, end: ArrayLike, *, threads: int = 0,
                  progress: Progress = None) -> NDArray[numpy.bool_]:
-        """(n,) whether nothing is between two points: the line of sight."""
+        """(n,) True if no surface lies between two points: the line of sight."""
     def are_lit(self, primitives: ArrayLike, weights: ArrayLike, to_light: ArrayLike, *, threads: int = 0,
                 progress: Progress = None) -> NDArray[numpy.bool_]:
-        """(n,) whether a light at infinity reaches points of triangles.
+        """(n,) True if a light at infinity reaches points of triangles.
 
-        primitives: (n,) numbers of triangles. weights: (n, 3) of their corners, of any sum. to_light: (3,). Nothing
-        throws a shadow on itself.
+        primitives: (n,) numbers of triangles. weights: (n, 3) of their vertices, of any sum. to_light: (3,). A triangle
+        casts no shadow on itself.
         """
     def raycast(self, view: View, *, threads: int = 0, progress: Progress = None) -> Visible:
-        """What Surfaces.raycast() gives, with this index."""
+        """The answer of Surfaces.raycast(), with this index."""
     def scan(self, camera: RayCamera, *, threads: int = 0, progress: Progress = None) -> RangeScan:
-        """What the rays of a camera meet."""
+        """Finds the nearest surface along the rays of a camera."""
     def refit(self, *, threads: int = 0) -> None:
-        """Follows what Surfaces.move() moved."""
+        """Updates the index after Surfaces.move()."""
     @property
     def surfaces(self) -> Surfaces:
-        """Of which it is."""
+        """The surfaces of the index."""
 
 class RayCamera:
-    """A camera that only rays can serve. pose: 4x4; None: the identity. Azimuths go from ahead to the right, elevations
+    """A camera without an image plane, for rays only. pose: 4x4; None: the identity. Azimuths go from ahead to the right, elevations
     from the horizon upwards; ahead is -z of the "opengl" convention, which is the default here, +z of "opencv",
-    +x of "robot". ranges: least and greatest, both allowed; what is met elsewhere counts as nothing, and still hides what
-    is behind it.
+    +x of "robot". ranges: least and greatest, inclusive; a hit outside counts as none, and still hides
+    surfaces behind it.
     Raises Error: bad_argument, limit_exceeded, singular_camera.
     """
     @staticmethod
@@ -633,21 +634,21 @@ class RayCamera:
                 convention: Convention = "opengl") -> RayCamera:
         """Any rays from one point: (n, 3) directions in the camera's space, x right, y up, -z ahead. One row."""
     def looking(self, eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0, 1, 0)) -> RayCamera:
-        """At another place, turned towards a target."""
+        """A copy of the camera at another eye, turned towards a target."""
     def pose(self, convention: Convention = "opengl") -> NDArray[numpy.float64]:
         """4x4, as panorama() takes it."""
     @property
     def samples(self) -> int:
-        """Of a pixel."""
+        """Rays of a pixel."""
     @property
     def shape(self) -> tuple[int, int]:
         """Rows and columns of its rays."""
 
 class RangeScan:
-    """What the rays of a camera met, as planes of its shape, of the first sample. They outlive what made them."""
+    """The hits of a camera's rays, as planes of its shape, of the first sample."""
     @property
     def camera(self) -> RayCamera:
-        """Whose rays they were."""
+        """The camera of the rays."""
     @property
     def range(self) -> NDArray[numpy.float32]:
         """Distance along the ray; inf where nothing is met. No copy; not writable."""
@@ -665,13 +666,13 @@ class RangeScan:
         """Distance along the viewing axis; inf where nothing is met, and for rays that do not lead ahead."""
     @property
     def points(self) -> NDArray[numpy.float64]:
-        """(rows, columns, 3): where surfaces are met, in the world; NaN where none is."""
+        """(rows, columns, 3): points where rays hit surfaces, in the world; NaN where a ray hits nothing."""
     @property
     def robot_points(self) -> NDArray[numpy.float64]:
-        """The same in the scanner's own axes: x ahead, y left, z up."""
+        """Hit points in the scanner's own axes: x ahead, y left, z up."""
     @property
     def incidence(self) -> NDArray[numpy.float32]:
-        """Degrees between the ray and the normal of what it meets: 0 head-on; NaN where nothing is met."""
+        """Degrees between the ray and the surface's normal: 0 head-on; NaN where nothing is met."""
     def shade(self, *, shading: Shading = "lit", background: ArrayLike | None = (1.0, 1.0, 1.0),
               shadows: Literal["off", "map", "rays"] = "map", opacity: float = 1.0,
               see_through: Literal["where_needed", "always", "never"] = "where_needed", grid: int = 0,
@@ -691,13 +692,13 @@ class RangeScan:
                      shows_environment: bool = False, exposure: float = 0.0,
                      tone_mapping: Literal["none", "aces", "khronos"] = "none", light_direction: ArrayLike | None = None,
                      light_intensity: float | None = None, threads: int = 0, progress: Progress = None) -> NDArray[numpy.float32]:
-        """The same as (height, width, 4) of linear light, multiplied by alpha."""
+        """The picture of shade() as (height, width, 4) of linear light, multiplied by alpha."""
 
 def ring_elevations(rings: int, lowest: float, highest: float) -> NDArray[numpy.float64]:
     """Elevations of so many rings, evenly from highest down to lowest; degrees."""
 
 class Fragments:
-    """What each triangle covers of each pixel, nearer first. Arrays are views without a copy; not writable."""
+    """The coverage of each triangle in each pixel, nearer first. Arrays are views without a copy; not writable."""
     @property
     def rows(self) -> NDArray[Any]:
         """(n,) records: mask (a bit for each sub-sample), primitive, key, key_dx, key_dy, opacity."""
@@ -1006,7 +1007,7 @@ class Explanation:
         """Who hides it, and how much of what is in frame; the greatest share first."""
     @property
     def remedy(self) -> str:
-        """What to change; empty where there is nothing to do."""
+        """The change that would show the object; empty if there is none."""
     def remedied(self, view: View) -> View:
         """The view, changed as the remedy says; as it is where that changes the scene."""
 
