@@ -123,7 +123,7 @@ std::optional<std::string> lights_warning(const Scene& scene, const Job& job) {
   const std::size_t count = scene.lights.size();
   const std::string own =
       count == 1 ? "the model has a light of its own" : fmt::format("the model has {} lights of its own", count);
-  if (!job.output.lights) return own + "; --lights file or --lights both turns them on";
+  if (!job.output.lights) return own + "; use --lights file or --lights both";
   if (job.output.shadows != Shadows::map || *job.output.lights == Lights::key || *job.output.lights == Lights::none)
     return std::nullopt;
   const auto points = std::size_t(std::count_if(scene.lights.begin(), scene.lights.end(),

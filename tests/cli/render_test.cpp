@@ -113,7 +113,7 @@ TEST_F(Render, TheModelsOwnLightsShineWhenTheyAreAskedFor) {
     "bufferViews":[{"buffer":0,"byteLength":36}],
     "buffers":[{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
   const std::string lamp = "render lamp.gltf --view front --resolution 60,60 ";
-  const std::string hint = "the model has a light of its own; --lights file or --lights both turns them on";
+  const std::string hint = "the model has a light of its own; use --lights file or --lights both";
   const Outcome untold = succeed(lamp + "-o untold.png --json");
   EXPECT_THAT(untold.err, HasSubstr(hint));
   EXPECT_EQ(untold.json()["warnings"], json({hint}));
