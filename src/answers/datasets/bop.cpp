@@ -146,7 +146,8 @@ void append_view(std::string& file, std::size_t view, const std::string& text) {
 
 void BopFolder::begin_view(const DatasetView& view, const Execution& execution) {
   if (view.visible.view.projection.orthographic)
-    throw Error(ErrorCode::unsupported, "bop", "needs a perspective camera: BOP has no others");
+    throw Error(ErrorCode::unsupported, "bop",
+                "the view is a parallel projection; BOP stores perspective cameras only");
   millimetres_ = millimetres_per_unit(view.surfaces.scene());
   const Image depths = depth_image(view.visible);
   if (visible_ == BopVisible::bop19) distances_ = ray_distance_image(view.visible);

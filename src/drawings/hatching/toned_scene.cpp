@@ -31,7 +31,7 @@ glm::dvec3 light_of(const ToneOptions& tone, const View& view) {
   if (!tone.to_light) return glm::normalize(-0.48 * view.right() + 0.68 * view.up() - 0.72 * view.forward());
   const double length = glm::length(*tone.to_light);
   if (!(length > 1e-100 && length < 1e100))
-    throw Error(ErrorCode::bad_argument, "hatch", "the light must come from somewhere");
+    throw Error(ErrorCode::bad_argument, "hatch", "to_light must be a finite vector other than 0");
   return *tone.to_light / length;
 }
 

@@ -79,8 +79,10 @@ TEST(ExrHeader, ChannelListsAreCounted) {
 
 TEST(ExrHeader, WindowsAreHeldAgainstTheFile) {
   constexpr std::int32_t most = 0x7FFFFFFF, least = -most - 1;
-  EXPECT_EQ(image_error(header(one_channel + window(0, 0, -1, 0))), "malformed, m: EXR: an image of 0 x 1 pixels");
-  EXPECT_EQ(image_error(header(one_channel + window(5, 5, 4, 3))), "malformed, m: EXR: an image of 0 x 0 pixels");
+  EXPECT_EQ(image_error(header(one_channel + window(0, 0, -1, 0))),
+            "malformed, m: EXR: the image has 0 x 1 pixels; width and height must be at least 1");
+  EXPECT_EQ(image_error(header(one_channel + window(5, 5, 4, 3))),
+            "malformed, m: EXR: the image has 0 x 0 pixels; width and height must be at least 1");
   EXPECT_EQ(image_error(header(one_channel + window(least, 0, most, 0))).substr(0, 35),
             "limit, m: EXR: 4294967296 x 1 pixel");
   EXPECT_EQ(image_error(header(one_channel + window(-16384, 0, 0, 0))).substr(0, 29), "limit, m: EXR: 16385 x 1 pixe");

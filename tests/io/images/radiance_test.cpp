@@ -142,7 +142,8 @@ TEST(Radiance, SizesThatTheBytesCannotHoldGetNoMemory) {
             "malformed, m: Radiance: 1000 bytes cannot hold 16384 x 16384 pixels");
   EXPECT_EQ(image_error(radiance_header("-Y 16385 +X 1") + "1234"),
             "limit, m: Radiance: 1 x 16385 pixels, more than 16384 on a side or 268435456 in all");
-  EXPECT_EQ(image_error(radiance_header("-Y 0 +X 4") + "1234"), "malformed, m: Radiance: an image of 4 x 0 pixels");
+  EXPECT_EQ(image_error(radiance_header("-Y 0 +X 4") + "1234"),
+            "malformed, m: Radiance: the image has 4 x 0 pixels; width and height must be at least 1");
 }
 
 }  // namespace

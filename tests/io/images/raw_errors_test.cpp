@@ -139,8 +139,10 @@ TEST(NpyHeader, Shapes) {
   for (const char* shape : {"()", "(1,)", "(1, 1, 1, 1)", "(-1, 1)", "(1.0, 1)", "(a, b)", "(4294967296, 1)"})
     EXPECT_EQ(image_error(npy_of_shape(shape, four)), "malformed, m: NPY: the shape is not (height, width[, channels])")
         << shape;
-  EXPECT_EQ(image_error(npy_of_shape("(0, 3)", "")), "malformed, m: NPY: an image of 3 x 0 pixels");
-  EXPECT_EQ(image_error(npy_of_shape("(3, 0)", "")), "malformed, m: NPY: an image of 0 x 3 pixels");
+  EXPECT_EQ(image_error(npy_of_shape("(0, 3)", "")),
+            "malformed, m: NPY: the image has 3 x 0 pixels; width and height must be at least 1");
+  EXPECT_EQ(image_error(npy_of_shape("(3, 0)", "")),
+            "malformed, m: NPY: the image has 0 x 3 pixels; width and height must be at least 1");
   EXPECT_EQ(image_error(npy_of_shape("(1, 2)", four)),
             "malformed, m: NPY: the header asks for 8 bytes of numbers, but 4 follow");
   EXPECT_EQ(image_error(npy_of_shape("(16384, 16384, 1024)", four)),
@@ -180,7 +182,8 @@ TEST(PfmHeader, WhatIsNotANumber) {
   EXPECT_EQ(image_error("Pf\n1 1\n"), "malformed, m: PFM: the header is cut short");
   EXPECT_EQ(image_error("Pf\n1  1\n-1.0\n" + one), "malformed, m: PFM: the header is cut short");
   EXPECT_EQ(image_error("Pf\n" + std::string(64, '1') + " 1\n-1.0\n"), "malformed, m: PFM: the header is cut short");
-  EXPECT_EQ(image_error("PF\n1 0\n-1.0\n"), "malformed, m: PFM: an image of 1 x 0 pixels");
+  EXPECT_EQ(image_error("PF\n1 0\n-1.0\n"),
+            "malformed, m: PFM: the image has 1 x 0 pixels; width and height must be at least 1");
 }
 
 TEST(PfmHeader, ThreeChannelsLieSideBySide) {

@@ -283,7 +283,7 @@ TEST(GltfMaterials, WhatACallersDecoderRefusesOrGetsWrongIsTold) {
   EXPECT_THAT(refused.warnings, testing::ElementsAre(HasSubstr("grey.glb: images[0]: not three bytes")));
   decoder.scale = 2;
   EXPECT_THAT(load_by(&decoder, {std::byte('S'), std::byte(3), std::byte(2)}).warnings,
-              testing::ElementsAre(HasSubstr("gave another image than it told")));
+              testing::ElementsAre(HasSubstr("gave pixels of another size than it had stated")));
   decoder.scale = 1 << 20;
   EXPECT_THAT(load_by(&decoder, {std::byte('S'), std::byte(3), std::byte(2)}).warnings,
               testing::ElementsAre(HasSubstr("more than 16384 on a side")));

@@ -69,7 +69,8 @@ void check_image_size(const std::string& name, std::uint64_t width, std::uint64_
                       double densest, const char* format) {
   const std::string size = std::to_string(width) + " x " + std::to_string(height);
   if (width == 0 || height == 0)
-    throw Error(ErrorCode::file_malformed, name, format, "an image of " + size + " pixels");
+    throw Error(ErrorCode::file_malformed, name, format,
+                "the image has " + size + " pixels; width and height must be at least 1");
   // The sides are checked first, so that their product stays far below 64 bits.
   if (width > std::uint64_t(max_image_side) || height > std::uint64_t(max_image_side) ||
       width * height > max_image_pixels)
@@ -111,7 +112,8 @@ Texture decode_texture(std::span<const std::byte> bytes, const std::string& name
   Texture texture = ask_decoder(name, [&] { return decoder->pixels(bytes); });
   if (glm::ivec2(texture.width, texture.height) != size ||
       texture.pixels.size() != std::size_t(size.x) * std::size_t(size.y))
-    throw Error(ErrorCode::bad_argument, name, "", "the image decoder gave another image than it told");
+    throw Error(ErrorCode::bad_argument, name, "",
+                "LoadOptions::image_decoder gave pixels of another size than it had stated");
   return texture;
 }
 
