@@ -70,21 +70,6 @@ double CellDepth::farthest(const Square& square) const {
   return value > 0 ? std::clamp(1 / value, low_, high_) : high_;
 }
 
-bool CellDepth::is_beside(const Square& square) const {
-  return is_without(0, square) || is_without(1, square) || is_without(2, square);
-}
-
-bool CellDepth::covers(const Square& square) const {
-  return is_within(0, square) && is_within(1, square) && is_within(2, square);
-}
-
-bool CellDepth::is_beyond(const CellDepth& other, const Square& square) const {
-  if (!has_plane_ || !other.has_plane_) return false;
-  const Linear &a = linear_, &b = other.linear_;
-  const Linear difference{a.at_0 - b.at_0, a.by_x - b.by_x, a.by_y - b.by_y, a.slack + b.slack};
-  return is_parallel_ ? difference.at(square, -1) > 0 : difference.at(square, 1) < 0;
-}
-
 CellDepth::Side CellDepth::side(int k, const glm::dvec2& corner) const {
   const Linear& side = sides_[k];
   const double size = std::abs(side.by_x) + std::abs(side.by_y);

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A triangle over the squares of a plane: which squares it covers, and its distance within each.
 //
-// A triangle that covers a whole cell hides everything beyond it there, and a triangle beside a cell need not be listed
-// in it. Both answers come from rounded places, so each leaves room for rounding: "covers" and "is beside" are true
-// only where they are certain.
+// A triangle that covers a whole cell hides everything beyond it there. The answer comes from rounded places, so it
+// leaves room for rounding: a cell counts as covered only where that is certain.
 #pragma once
 
 #include <algorithm>
 #include <glm/glm.hpp>
 
-#include "lines/cell_tree.h"
+#include "lines/square_grid.h"
 
 namespace frontmost::lines_detail {
 
@@ -30,15 +29,6 @@ class CellDepth {
   /// Bounds of the triangle's distance within a square.
   [[nodiscard]] double nearest(const Square& square) const;
   [[nodiscard]] double farthest(const Square& square) const;
-  /// Whether the triangle certainly lies beside the square; or covers it whole.
-  [[nodiscard]] bool is_beside(const Square& square) const;
-  [[nodiscard]] bool covers(const Square& square) const;
-  /// Whether the square is certainly within side k, from corner k to the next; or outside of it.
-  [[nodiscard]] bool is_within(int k, const Square& square) const { return has_sides_ && sides_[k].at(square, -1) > 0; }
-  [[nodiscard]] bool is_without(int k, const Square& square) const { return has_sides_ && sides_[k].at(square, 1) < 0; }
-  /// Whether the whole of this triangle's plane over the square lies beyond the other's plane.
-  [[nodiscard]] bool is_beyond(const CellDepth& other, const Square& square) const;
-
   struct Columns {
     int first, last;  ///< none if first > last
   };

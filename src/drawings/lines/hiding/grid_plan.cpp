@@ -24,8 +24,8 @@ namespace {
 /// 32, the time for the million-triangle terrain falls from 1.1 to 0.8 s in all; 64 gains nothing more.
 constexpr double kTrianglesPerCell = 32;
 constexpr double kMostCells = 1 << 22;
-/// The mean number of cells that a triangle may take; bounds memory.
-constexpr double kEntriesPerTriangle = 16;
+/// The mean number of cells that a triangle may take, and the most of all; both bound memory.
+constexpr double kEntriesPerTriangle = 16, kMostEntries = 4e9;
 constexpr std::size_t kPerPart = 4096, kSeenPerPart = 1024;
 /// How far ahead triangles at random addresses are prefetched.
 constexpr std::size_t kAhead = 16;
@@ -39,7 +39,7 @@ double widened(double value, double direction) { return value + direction * 1e-9
 GridPlan::GridPlan(const SeenMesh& its_seen, const View& view, bool all, const Execution& its_execution)
     : seen(its_seen), sight(view), keeps_all(all), execution(its_execution), places_(seen.mesh.positions.size()) {
   const auto triangles = double(seen.mesh.triangles.size());
-  const double most = kEntriesPerTriangle * triangles + kMostCells;
+  const double most = std::min(kEntriesPerTriangle * triangles + kMostCells, kMostEntries);
   double cells = std::clamp(triangles / kTrianglesPerCell, 1.0, kMostCells);
   set_cells(view, cells);
   while (entries_ > most && cells > 1) {

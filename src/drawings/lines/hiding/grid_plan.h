@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "lines/crowded_cells.h"
 #include "lines/hiding/cell_depth.h"
 #include "lines/hiding/occluder.h"
 #include "lines/mesh/seen_mesh.h"
@@ -38,15 +37,6 @@ struct CellRange {
   int first_column, last_column, first_row, last_row;
   /// Whether the triangle's outline may leave out some of these cells.
   [[nodiscard]] bool is_large() const { return last_row - first_row >= 2 && last_column > first_column; }
-};
-
-/// A triangle in a cell. The nearest comes first.
-struct CellEntry {
-  float nearest;  ///< least planar distance of the part that may lie in the cell
-  std::uint32_t footprint;
-  friend bool operator<(const CellEntry& a, const CellEntry& b) {
-    return a.nearest != b.nearest ? a.nearest < b.nearest : a.footprint < b.footprint;
-  }
 };
 
 class GridPlan {
@@ -123,14 +113,5 @@ class GridPlan {
   Buffer<glm::dvec3> places_;  ///< of vertices: x and y in cells, z the planar distance
   double entries_ = 0;         ///< an upper bound on the cells that all footprints take
 };
-
-/// Divides a cell with these triangles, as long as that makes queries cheaper, if there are as many edges. Unless the
-/// plan keeps all, a part that a triangle covers whole omits triangles whose planes lie beyond it there. (J. Warnock. A
-/// Hidden Surface Algorithm for Computer Generated Halftone Pictures. 1969.)
-///
-/// Cost: as for divide_cell(). Triangles that lie upon each other, as in a stack of visible sheets or around a common
-/// vertex or edge, are not separated. There, every edge is compared with every triangle by the boxes and sides of the
-/// kernels, 16 at a time.
-[[nodiscard]] DividedCell<CellEntry> divide_entries(const GridPlan& plan, CrowdedCell<CellEntry> cell);
 
 }  // namespace frontmost::lines_detail

@@ -45,8 +45,6 @@ class EdgeCutter {
   /// Appends the parts of `edge`, whose number is `number`, that lie within the view. Its distances need not be set.
   void cut(const SightedEdge& edge, std::uint32_t number, std::vector<DrawnPart>& parts);
 
-  /// The number of occluder boxes that were tested for all edges so far; running time is proportional to it.
-  [[nodiscard]] std::uint64_t boxes_asked() const { return search_.boxes; }
   /// The work since the last call, in tested boxes. A batch that is compared with an edge counts as 256 boxes.
   [[nodiscard]] std::uint64_t take_work() {
     const std::uint64_t work = search_.boxes + 256 * search_.batches;

@@ -3,7 +3,6 @@
 //
 // A grid of square cells lies over the picture, with about 32 triangles to the cell. Each cell lists the triangles that
 // may cover some of it. A triangle behind another that covers the whole cell hides nothing more there and is left out.
-// Cells with more than a thousand triangles are divided (lines/cell_tree.h).
 #pragma once
 
 #include <atomic>
@@ -17,22 +16,12 @@
 namespace frontmost::lines_detail {
 
 class GridPlan;
-struct CellEntry;
-
-/// Cells with at least `least` occluders are divided, if the squares of their numbers of occluders add up to more than
-/// `worth`. That sum estimates how many comparisons of lines and occluders there would be, for as many lines.
-struct CrowdLimits {
-  std::size_t least = 1024;
-  double worth = 1 << 27;
-};
 
 class OccluderGrid {
  public:
   /// Takes the triangles that are not seen edge-on. Unless `keeps_all`, cells omit triangles that lie wholly behind a
-  /// triangle that covers the cell whole. O(triangles), with at most about 20 cells per triangle; crowded cells cost
-  /// what divide_entries() says.
-  OccluderGrid(const SeenMesh& seen, const View& view, bool keeps_all, const Execution& execution,
-               const CrowdLimits& limits = {});
+  /// triangle that covers the cell whole. O(triangles), with at most about 20 cells per triangle.
+  OccluderGrid(const SeenMesh& seen, const View& view, bool keeps_all, const Execution& execution);
 
   /// A cell that a segment passes. Its occluders are the entries from `first` to `last`.
   struct Visit : PassedCell {
@@ -78,14 +67,9 @@ class OccluderGrid {
   [[nodiscard]] Crowd largest_crowd() const;
 
  private:
-  static constexpr std::size_t kMany = 512, kManyInPart = 32;
-  [[nodiscard]] bool has_sides(std::size_t cell) const {
-    return first_[cell + 1] - first_[cell] >= (cell < cells_.whole_count() ? kMany : kManyInPart);
-  }
+  static constexpr std::size_t kMany = 512;
+  [[nodiscard]] bool has_sides(std::size_t cell) const { return first_[cell + 1] - first_[cell] >= kMany; }
   void fill_cells(const GridPlan& plan);
-  void divide_crowds(const GridPlan& plan, const CrowdLimits& limits);
-  void set_entry_count(std::size_t count);
-  void set_entry(const GridPlan& plan, std::size_t e, const CellEntry& entry);
   void fill_sides(const GridPlan& plan);
   void set_side(std::size_t i, int k, const CellDepth::Side& side) {
     sides_[3 * k][i] = side.a;
@@ -93,7 +77,7 @@ class OccluderGrid {
     sides_[3 * k + 2][i] = side.c;
   }
 
-  CellTree cells_;
+  SquareGrid cells_;
   double scale_ = 1;
   std::vector<std::size_t> first_;  ///< by cell: index of its first entry
   Buffer<float> low_x_, low_y_, high_x_, high_y_, nearest_;

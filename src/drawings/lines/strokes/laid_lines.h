@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "lines/crowded_cells.h"
+#include "lines/square_grid.h"
 #include "lines/strokes/long_lines.h"
 
 namespace frontmost::lines_detail {
@@ -17,7 +17,7 @@ namespace frontmost::lines_detail {
 class LaidLines {
  public:
   /// For pieces of `lines`. Precondition: not empty.
-  LaidLines(const std::vector<Line>& lines, const Nearness& nearness) : LaidLines(lines, nearness, Extent(lines)) {}
+  LaidLines(const std::vector<Line>& lines, const Nearness& nearness) : LaidLines(Extent(lines), nearness) {}
 
   void add(std::uint32_t number, const Line& line) {
     if (line.is_long()) return long_.add(number, line);
@@ -31,8 +31,9 @@ class LaidLines {
   /// a stretch by Nearness::overlap(), and of long ones those that LongLines::for_each() finds. \returns how many were
   /// tested.
   ///
-  /// Cost: a few tests per line in drawings. Where thousands of lines begin in one pixel, or run through it lengthwise,
-  /// each is tested against each: 20 thousand take 1.4 s, and four times as many take sixteen times as long.
+  /// Cost: a few tests per line in drawings. Where thousands of lines are in one cell, as the details of a model that
+  /// is seen very small, each is tested against each: 20 thousand take up to 1.4 s, four times as many sixteen times as
+  /// long.
   template <class Visit>
   std::size_t for_each(const Line& line, const Visit& visit) const {
     const SoughtLine sought(line, near_);
@@ -52,14 +53,13 @@ class LaidLines {
     glm::dvec2 low{1e300}, high{-1e300};
     double short_length = 0, short_count = 0;
   };
-  LaidLines(const std::vector<Line>& lines, const Nearness& nearness, const Extent& extent);
-  void divide_crowds(const std::vector<Line>& lines);
+  LaidLines(const Extent& extent, const Nearness& nearness);
 
   /// The greatest distance from a line of lines that lie on it, with some room.
   [[nodiscard]] double reach_of(const Line& line) const { return near_.reach_of(line.length + Nearness::shortest); }
 
   const Nearness near_;
-  CellTree cells_;
+  SquareGrid cells_;
   std::vector<std::vector<BriefLine>> lines_;  ///< the short lines by cell
   LongLines long_;
 };
