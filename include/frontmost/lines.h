@@ -89,13 +89,14 @@ struct Drawing {
 //   edges are boundaries.
 // - Duplicates. A triangle that occurs again, with its vertices in any order, counts once. Objects may share triangles
 //   and then part, such as a housing and its cover; surfaces of one object may do so, too. Each of them then continues
-//   by itself, and their common edge is drawn once, with the kind that comes first in EdgeKind.
+//   by itself, and their common edge is drawn once, with the kind that comes first in EdgeKind. So no line is drawn
+//   where two objects, each smooth, pass through each other exactly along a common edge.
 
 /// Finds the feature edges of `surfaces` and cuts each into seen and hidden parts. The result is the same to the bit
 /// for any number of threads and every instruction set. Near-linear: each edge is tested against triangles in the cells
-/// of a screen grid that it passes, and crowded cells are divided. Quadratic in a cell with `counts_hidden`, or if
-/// edges and triangles coincide, as in stacks of sheets that are all seen or at a vertex of thousands of slivers:
-/// 20,000 take 11 s. (A. Appel. The Notion of Quantitative Invisibility and the Machine Rendering of Solids. 1967.)
+/// of a screen grid that it passes. Quadratic in a cell with `counts_hidden`, or if thousands of edges and triangles
+/// share a cell, as in stacks of triangles that are all seen or at a vertex of thousands of slivers: 20,000 take 11 s.
+/// (A. Appel. The Notion of Quantitative Invisibility and the Machine Rendering of Solids. 1967.)
 /// \throws Error as validate(view) does; bad_argument for an angle out of range; limit_exceeded for more than 2^20
 /// segments of intersections and 16 for each triangle, 2^21 parts and 4 for each edge, or about 20 s of work.
 [[nodiscard]] Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions& options = {},

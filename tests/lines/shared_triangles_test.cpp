@@ -6,7 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "frontmost/lines.h"
-#include "lines/mesh/sheets.h"
+#include "lines/mesh/feature_edges.h"
 #include "support/meshes.h"
 
 namespace frontmost::test {
@@ -145,52 +145,34 @@ TEST(SharedTriangles, LeaveOpenWhatIsOpen) {
   };
   EXPECT_EQ(edge_kind(scene_of(fans)), EdgeKind::boundary);
   EXPECT_EQ(edge_kind(scene_of_objects({fans, turned(fans)})), EdgeKind::boundary);
-  // Two sheets of different objects meet only in the edge; one sheet occurs twice.
-  Mesh flat, upright;
-  add_triangle(flat, low, high, {1, 0, 0});
-  add_triangle(flat, low, high, {-1, 0, 0});
-  add_triangle(upright, low, high, {0, 0, 1});
-  add_triangle(upright, low, high, {0, 0, -1});
-  EXPECT_EQ(edge_kind(scene_of_objects({flat, upright})), EdgeKind::boundary);
-  EXPECT_EQ(edge_kind(scene_of_objects({flat, upright, flat})), EdgeKind::boundary);
 }
 
 lines_detail::Side side(std::uint32_t triangle, std::uint32_t opposite) { return {1, triangle, opposite, true}; }
 
-lines_detail::SheetQuestions asking(const std::function<lines_detail::SurfaceOf(std::uint32_t)>& surface_of) {
-  return {surface_of, [](const lines_detail::Side&, const lines_detail::Side&) { return false; }};
-}
-
-TEST(Sheets, PairCopiesOfOneMaterial) {
+TEST(PairedSides, PairCopiesOfOneMaterial) {
   using namespace lines_detail;
   // Triangles 0 and 1 at vertex 5 have materials 0 and 1; their neighbours have one each.
   const std::vector<Side> sides = {side(0, 5), side(1, 5), side(2, 6), side(3, 7)};
-  const auto sheets = find_sheets(sides, asking([](std::uint32_t triangle) {
-                                    return SurfaceOf{0, triangle == 1 || triangle == 2};
-                                  }));
-  ASSERT_TRUE(sheets);
-  ASSERT_EQ(sheets->size(), 2u);
-  EXPECT_EQ((*sheets)[0].first.triangle, 1u);
-  EXPECT_EQ((*sheets)[0].second.triangle, 2u);
-  EXPECT_EQ((*sheets)[1].first.triangle, 0u);
-  EXPECT_EQ((*sheets)[1].second.triangle, 3u);
+  const auto pairs = paired_sides(sides, [](std::uint32_t triangle) {
+    return SurfaceOf{0, triangle == 1 || triangle == 2};
+  });
+  ASSERT_TRUE(pairs);
+  ASSERT_EQ(pairs->size(), 2u);
+  EXPECT_EQ((*pairs)[0].first.triangle, 1u);
+  EXPECT_EQ((*pairs)[0].second.triangle, 2u);
+  EXPECT_EQ((*pairs)[1].first.triangle, 0u);
+  EXPECT_EQ((*pairs)[1].second.triangle, 3u);
 }
 
-TEST(Sheets, OfTwoCommonSidesNoneCanBeTold) {
+TEST(PairedSides, OfTwoCommonSidesNoneCanBeTold) {
   using namespace lines_detail;
   const std::vector<Side> sides = {side(0, 5), side(1, 5), side(2, 6), side(3, 6), side(4, 7), side(5, 8)};
-  EXPECT_FALSE(find_sheets(sides, asking([](std::uint32_t) { return SurfaceOf{0, 0}; })));
-  // Objects tell sheets apart: two share 5 and 6; 7 and 8 belong to a third, which only meets them.
-  EXPECT_FALSE(find_sheets(sides, asking([](std::uint32_t triangle) {
-                             return SurfaceOf{triangle < 4 ? triangle % 2 : 2, 0};
-                           })));
+  EXPECT_FALSE(paired_sides(sides, [](std::uint32_t) { return SurfaceOf{0, 0}; }));
   // The objects have 5 and 6, 5 and 7, and 6 and 8.
   const std::uint32_t instances[] = {0, 1, 0, 2, 1, 2};
-  const auto sheets = find_sheets(sides, asking([&](std::uint32_t triangle) {
-                                    return SurfaceOf{instances[triangle], 0};
-                                  }));
-  ASSERT_TRUE(sheets);
-  EXPECT_EQ(sheets->size(), 3u);
+  const auto pairs = paired_sides(sides, [&](std::uint32_t triangle) { return SurfaceOf{instances[triangle], 0}; });
+  ASSERT_TRUE(pairs);
+  EXPECT_EQ(pairs->size(), 3u);
 }
 
 }  // namespace

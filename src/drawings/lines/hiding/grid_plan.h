@@ -41,8 +41,8 @@ struct CellRange {
 
 class GridPlan {
  public:
-  /// Keeps references to its arguments. Takes fewer cells where triangles are large: a thousand sheets before a million
-  /// cells would give a thousand million entries. O(triangles).
+  /// Keeps references to its arguments. Takes fewer cells where triangles are large: a thousand large triangles before
+  /// a million cells would give a thousand million entries. O(triangles).
   GridPlan(const SeenMesh& seen, const View& view, bool keeps_all, const Execution& execution);
 
   const SeenMesh& seen;

@@ -161,7 +161,7 @@ bool ask_entries(std::uint64_t bits, std::size_t first, const PassedCell& cell, 
   return true;
 }
 
-/// For cells of many entries: asks the nearest first, then those just before the edge. In a stack of sheets, those
+/// For cells of many entries: asks the nearest first, then those just before the edge. In a stack of triangles, those
 /// between hide less and less; they are skipped once nothing in the cell is open.
 void ask_many(const OccluderGrid::Visit& cell, const EdgeQuestion& question, EdgeSearch& search) {
   const OccluderGrid& grid = question.o.grid;

@@ -6,7 +6,17 @@
 //    triangles at the edge     what is drawn
 //    one                       boundary
 //    two                       silhouette where only one faces the eye; border; crease by their angle
-//    more                      each of their sheets (sheets.h) is judged like two; without sheets, surfaces meet
+//    more                      each pair of sides of one surface is judged like two; without pairs, surfaces meet
+//
+// Assemblies are exported part by part, and parts that touch have the same triangles where they do. Sides with the same
+// third vertex are copies. Two groups of copies form a pair. Three or more form pairs only if one group is as large as
+// all others together: it is the part that the others share, like the wall between two rooms.
+//
+//        A       B            three sides at an edge (o), S twice: the pairs are A-S and B-S
+//         .     /
+//          .   /
+//            o
+//            |  S (twice)
 //
 // A kernel finds the vertices that have no features, many corners at a time, and these are skipped.
 #include "lines/mesh/feature_edges.h"
@@ -22,7 +32,6 @@
 #include "lines/creases/creases.h"
 #include "lines/lists.h"
 #include "lines/mesh/corner_table.h"
-#include "lines/mesh/sheets.h"
 
 namespace frontmost::lines_detail {
 namespace {
@@ -53,12 +62,11 @@ class Classifier {
   [[nodiscard]] std::optional<EdgeKind> open_kind() const {
     return options_.boundaries ? std::optional(EdgeKind::boundary) : std::nullopt;
   }
-  [[nodiscard]] std::optional<EdgeKind> kind_of(const SidesOfSheet& sheet) const {
-    const int a = side_of(sheet.first), b = side_of(sheet.second);
+  [[nodiscard]] std::optional<EdgeKind> kind_of(const SidePair& pair) const {
+    const int a = side_of(pair.first), b = side_of(pair.second);
     if (options_.silhouettes && (a * b > 0 || (a == 0) != (b == 0))) return EdgeKind::silhouette;
-    if (has_borders_ && !(surface_of(sheet.first.triangle) == surface_of(sheet.second.triangle)))
-      return EdgeKind::border;
-    if (options_.creases && is_crease(sheet.first, sheet.second)) return EdgeKind::crease;
+    if (has_borders_ && !(surface_of(pair.first.triangle) == surface_of(pair.second.triangle))) return EdgeKind::border;
+    if (options_.creases && is_crease(pair.first, pair.second)) return EdgeKind::crease;
     return std::nullopt;
   }
 
@@ -67,14 +75,11 @@ class Classifier {
     return {source.instance, surfaces_.scene().meshes[source.mesh].material_of(source.triangle)};
   }
 
-  [[nodiscard]] GapOptions gap_options(double widest, std::size_t twins) const {
-    return {cosine_, widest, mesh_.triangles.size() - twins,
-            [this](std::uint32_t triangle) { return surface_of(triangle); }};
+  [[nodiscard]] SurfaceOfTriangle surface_of_triangle() const {
+    return [this](std::uint32_t triangle) { return surface_of(triangle); };
   }
-
-  [[nodiscard]] SheetQuestions questions() const {
-    return {[this](std::uint32_t triangle) { return surface_of(triangle); },
-            [this](const Side& a, const Side& b) { return overlap(a, b); }};
+  [[nodiscard]] GapOptions gap_options(double widest, std::size_t twins) const {
+    return {cosine_, widest, mesh_.triangles.size() - twins, surface_of_triangle()};
   }
 
   /// The side of the edge on which no triangle lies, as seen; 0 where triangles are on both sides.
@@ -100,11 +105,6 @@ class Classifier {
     const Positions& at = mesh_.positions;
     return FacePlane(at[t.x], at[t.y], at[t.z]).height(at[b.opposite]).sign == 0;
   }
-  [[nodiscard]] bool overlap(const Side& a, const Side& b) const {
-    const double along = glm::dot(normal_of(mesh_, a.triangle), normal_of(mesh_, b.triangle));
-    return along * (a.is_forward == b.is_forward ? 1 : -1) > 0 && is_in_plane(a, b);
-  }
-
   [[nodiscard]] bool is_crease(const Side& a, const Side& b) const {
     // Neighbours that run along their edge the same way are wound against each other.
     const glm::dvec3 n = normal_of(mesh_, a.triangle), m = normal_of(mesh_, b.triangle);
@@ -161,18 +161,60 @@ void find_sides(const WeldedMesh& mesh, std::uint32_t vertex, std::span<const Co
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key() < b.key(); });
 }
 
+struct OwnedSide {
+  Side side;
+  SurfaceOf surface;
+};
+
+/// Sides with the same opposite vertex.
+using SidesOfCopy = std::span<const OwnedSide>;
+
+/// Groups of copies. Precondition: `sides` are sorted by opposite vertex.
+std::vector<SidesOfCopy> copies_of(std::span<const OwnedSide> sides) {
+  std::vector<SidesOfCopy> all;
+  for (auto begin = sides.begin(); begin != sides.end();) {
+    const auto end =
+        std::find_if(begin, sides.end(), [&](const OwnedSide& s) { return s.side.opposite != begin->side.opposite; });
+    all.emplace_back(begin, end);
+    begin = end;
+  }
+  return all;
+}
+
+/// One side of each group: of the same object and material if possible, else the first ones.
+SidePair pair_of(const SidesOfCopy& a, const SidesOfCopy& b) {
+  for (const OwnedSide& one : a)
+    for (const OwnedSide& other : b)
+      if (one.surface == other.surface) return {one.side, other.side};
+  return {a[0].side, b[0].side};
+}
+
+/// Appends pairs that hold all sides. \returns false, and appends none, where that is impossible.
+bool pair_up(std::span<const OwnedSide> sides, std::vector<SidePair>& pairs) {
+  const std::vector<SidesOfCopy> copies = copies_of(sides);
+  if (copies.size() < 2) return false;
+  // With two groups, their sizes do not matter.
+  const auto centre = std::find_if(copies.begin(), copies.end(), [&](const SidesOfCopy& c) {
+    return copies.size() == 2 || 2 * c.size() == sides.size();
+  });
+  if (centre == copies.end()) return false;
+  for (auto other = copies.begin(); other != copies.end(); ++other)
+    if (other != centre) pairs.push_back(pair_of(*centre, *other));
+  return true;
+}
+
 /// The kind with which an edge is drawn, and the triangles that cause it.
 struct Drawn {
   EdgeKind kind;
   std::uint32_t left, right;
 };
 
-/// An edge with several sheets is drawn once, with the kind that comes first in EdgeKind.
-std::optional<Drawn> first_of(std::span<const SidesOfSheet> sheets, const Classifier& classifier) {
+/// An edge with several pairs is drawn once, with the kind that comes first in EdgeKind.
+std::optional<Drawn> first_of(std::span<const SidePair> pairs, const Classifier& classifier) {
   std::optional<Drawn> first;
-  for (const SidesOfSheet& sheet : sheets)
-    if (const std::optional<EdgeKind> kind = classifier.kind_of(sheet); kind && (!first || *kind < first->kind))
-      first = {*kind, sheet.first.triangle, sheet.second.triangle};
+  for (const SidePair& pair : pairs)
+    if (const std::optional<EdgeKind> kind = classifier.kind_of(pair); kind && (!first || *kind < first->kind))
+      first = {*kind, pair.first.triangle, pair.second.triangle};
   return first;
 }
 
@@ -180,11 +222,11 @@ std::optional<Drawn> first_of(std::span<const SidesOfSheet> sheets, const Classi
 std::optional<Drawn> drawn_of(std::span<const Side> sides, std::span<const Side> distinct,
                               const Classifier& classifier) {
   if (distinct.size() == 2) {
-    const SidesOfSheet sheet(distinct[0], distinct[1]);
-    return first_of({&sheet, 1}, classifier);
+    const SidePair pair(distinct[0], distinct[1]);
+    return first_of({&pair, 1}, classifier);
   }
   if (distinct.size() > 2)
-    if (const auto sheets = find_sheets(sides, classifier.questions())) return first_of(*sheets, classifier);
+    if (const auto pairs = paired_sides(sides, classifier.surface_of_triangle())) return first_of(*pairs, classifier);
   const std::optional<EdgeKind> kind = classifier.open_kind();
   if (!kind) return std::nullopt;
   return Drawn{*kind, distinct[0].triangle, distinct.size() > 1 ? distinct[1].triangle : no_index};
@@ -210,6 +252,27 @@ void add_features(std::span<const Side> sides, std::uint32_t v, const Classifier
 }
 
 }  // namespace
+
+std::optional<std::vector<SidePair>> paired_sides(std::span<const Side> sides, const SurfaceOfTriangle& surface_of) {
+  std::vector<OwnedSide> owned;
+  owned.reserve(sides.size());
+  for (const Side& side : sides) owned.push_back({side, surface_of(side.triangle)});
+  // The stable sort keeps sides of one object with the same opposite vertex together, also in `left`.
+  std::stable_sort(owned.begin(), owned.end(),
+                   [](const OwnedSide& a, const OwnedSide& b) { return a.surface.instance < b.surface.instance; });
+  std::vector<SidePair> pairs;
+  std::vector<OwnedSide> left;
+  for (auto begin = owned.begin(); begin != owned.end();) {
+    const auto end = std::find_if(begin, owned.end(),
+                                  [&](const OwnedSide& s) { return s.surface.instance != begin->surface.instance; });
+    if (!pair_up({&*begin, std::size_t(end - begin)}, pairs)) left.insert(left.end(), begin, end);
+    begin = end;
+  }
+  std::stable_sort(left.begin(), left.end(),
+                   [](const OwnedSide& a, const OwnedSide& b) { return a.side.opposite < b.side.opposite; });
+  if (!left.empty() && !pair_up(left, pairs)) return std::nullopt;
+  return pairs;
+}
 
 Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options,
                        const Execution& execution) {

@@ -8,12 +8,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "frontmost/lines.h"
 #include "lines/mesh/seen_mesh.h"
-#include "lines/mesh/sheets.h"
 
 namespace frontmost::lines_detail {
 
@@ -39,11 +41,40 @@ struct Features {
 [[nodiscard]] Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options,
                                      const Execution& execution);
 
+/// A triangle at an edge; the edge's lower vertex is known from the context.
+struct Side {
+  std::uint32_t upper;  ///< the edge's other vertex
+  std::uint32_t triangle;
+  std::uint32_t opposite;  ///< the vertex that is not on the edge
+  bool is_forward;         ///< the triangle runs from the lower vertex to the upper
+
+  [[nodiscard]] auto key() const { return std::make_tuple(upper, opposite, triangle); }
+};
+
+/// Two sides of an edge between which a surface goes on.
+using SidePair = std::pair<Side, Side>;
+
+/// Which object and material a triangle belongs to.
+struct SurfaceOf {
+  std::uint32_t instance, material;
+  friend bool operator==(const SurfaceOf&, const SurfaceOf&) = default;
+};
+using SurfaceOfTriangle = std::function<SurfaceOf(std::uint32_t triangle)>;
+
+/// The surfaces through an edge with more than two opposite vertices. Where objects share triangles, as a housing and
+/// its cover do, each object is paired by itself. An object's two sides are a pair. A side that occurs as often as all
+/// of the object's others together forms a pair with each of them. Sides that no object pairs are paired together in
+/// the same way. `sides` are all sides of one edge, copies included, sorted by opposite vertex; their winding does not
+/// matter. O(sides log sides).
+/// \returns none where surfaces meet: a side has no partner or too many.
+[[nodiscard]] std::optional<std::vector<SidePair>> paired_sides(std::span<const Side> sides,
+                                                                const SurfaceOfTriangle& surface_of);
+
 struct GapOptions {
   double cosine;          ///< least cosine of the angle by which a continuing surface turns
   double widest;          ///< greatest width of a gap, in world space
   std::size_t triangles;  ///< number of triangles of the mesh, copies counted once
-  std::function<SurfaceOf(std::uint32_t triangle)> surface_of;
+  SurfaceOfTriangle surface_of;
 };
 
 /// Removes from `edges` the boundaries across which their surface continues. All along such a boundary lie others of
