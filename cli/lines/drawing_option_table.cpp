@@ -100,7 +100,7 @@ constexpr Option drawing_options[] = {
        s.drawing.sheet.crease_angle = glm::radians(g.number({0, 180}));
      }},
     {"shortest-stroke", 0, "MM",
-     "Join shorter strokes to others, or leave them out unless they are pieces of outlines, 0 to 10; 0.5 by default "
+     "Leave out shorter strokes, unless they hold other strokes or are pieces of outlines, 0 to 10; 0.5 by default "
      "with --plot, 0 otherwise.",
      Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.shortest_stroke = g.number(); }},
     {"hatch", 0, "MM",

@@ -131,8 +131,8 @@ struct StrokeOptions {
   /// distance of each part, unless two of the six parts nearest to it (three before, three after) are at least half as
   /// long.
   double arc_tolerance = 0;
-  /// Pixels, 0 to 10000: a shorter stroke is joined to a stroke that it touches. It is left out if it ends in the air,
-  /// or lies between lines that continue without it. Pieces of silhouettes and boundaries that close an outline stay.
+  /// Pixels, 0 to 10000: a shorter stroke is left out if it ends in the air, or lies between lines that continue
+  /// without it. Pieces of silhouettes and boundaries that close an outline stay.
   double shortest = 0;
   /// True: each stroke begins as near as possible to the end of the one before, and continues it if they touch: for
   /// plotters. False: strokes come in the order of their parts.

@@ -389,7 +389,7 @@ TEST(StrokesOnce, LinesBesideEachOtherAreOneWhereTheyAreAskedToBe) {
   EXPECT_NEAR(length_of(chain_strokes(surfaces, drawing, options), false), 100 + 100 + 5.02, 0.01);
 }
 
-TEST(StrokesOnce, CrumbsAreNoLinesButLinesOfCrumbsAre) {
+TEST(StrokesOnce, TinyPiecesAreNoLinesButLinesOfThemAre) {
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
   std::vector<std::array<glm::dvec2, 2>> parts = {{{{210, 300}, {210.05, 300}}}};

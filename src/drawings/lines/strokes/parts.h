@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The steps from the parts of a drawing to strokes, and their data:
 //
-//    parts of a drawing --> segments --draw_once--> --chained--> chains --without_crumbs-->
+//    parts of a drawing --> segments --draw_once--> --chained--> chains --without_short_ones-->
 //        --straighten--> --find_arcs--> --nearest_first--> Strokes
 //
 // Each step takes the result of the step before and nothing else: a chain knows its rank and its points, but not the
@@ -46,17 +46,17 @@ inline constexpr double places_per_pixel = 1000;
 /// Joins segments of one rank wherever exactly two ends meet. Chains are sorted by rank, then by their first segment.
 [[nodiscard]] std::vector<Chain> chained(const std::vector<LineSegment>& segments);
 
-struct CrumbRule {
-  double shortest;  ///< pixels: shorter chains are crumbs
+struct ShortChainRule {
+  double shortest;  ///< pixels: shorter chains are short
   double touching;  ///< pixels: nearer ends and lines touch
   std::function<bool(std::uint32_t rank)> is_hidden;
 };
 
-/// Chains without crumbs. A crumb with an end that touches nothing is removed; so is one between lines that continue
-/// without it, unless it is a contour. A crumb that holds others together is joined to one of its rank, or stays.
-/// Hidden chains hold no visible ones. Near-linear. Precondition: no arcs.
-[[nodiscard]] std::vector<Chain> without_crumbs(std::vector<Chain> chains, const CrumbRule& rule,
-                                                const Execution& execution);
+/// Chains without short ones: those with an end that touches nothing, and those between lines that continue without
+/// them, unless they are contours. Short chains that hold others together stay. Hidden chains hold no visible ones.
+/// Near-linear. Precondition: no arcs.
+[[nodiscard]] std::vector<Chain> without_short_ones(std::vector<Chain> chains, const ShortChainRule& rule,
+                                                    const Execution& execution);
 
 /// Removes corners that lie within `tolerance` of the line between the remaining ones.
 void straighten(Chain& chain, double tolerance);

@@ -153,7 +153,7 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
   report_progress(execution, "strokes", 0.6);
   if (options.shortest > 0) {
     const auto is_hidden = [&](std::uint32_t rank) { return parts.strokes[rank].is_hidden; };
-    chains = without_crumbs(std::move(chains), {options.shortest, 2 * options.apart, is_hidden}, execution);
+    chains = without_short_ones(std::move(chains), {options.shortest, 2 * options.apart, is_hidden}, execution);
   }
   parallel_for(execution, chains.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
