@@ -14,7 +14,6 @@
 
 #include "base/parallel.h"
 #include "frontmost/lines.h"
-#include "sections/plane_axes.h"
 #include "sections/regions.h"
 #include "surfaces/cluster_set.h"
 

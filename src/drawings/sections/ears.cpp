@@ -18,7 +18,6 @@
 
 #include "base/orientation.h"
 #include "base/parallel.h"
-#include "sections/plane_axes.h"
 #include "sections/regions.h"
 
 namespace frontmost::lines_detail {

@@ -15,7 +15,7 @@
 
 #include "base/orientation.h"
 #include "base/parallel.h"
-#include "sections/plane_axes.h"
+#include "geometry/buckets.h"
 #include "sections/regions.h"
 
 namespace frontmost::lines_detail {
@@ -62,24 +62,12 @@ std::vector<Step> steps_of(const std::vector<CutSegment>& segments, std::vector<
   return steps;
 }
 
-/// The steps at each place.
-class StepLists {
- public:
-  template <class Place>
-  StepLists(const std::vector<Step>& steps, std::size_t places, const Place& place)
-      : first_(places + 1), steps_(steps.size()) {
-    for (const Step& step : steps) ++first_[place(step) + 1];
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    for (std::uint32_t i = 0; i < steps.size(); ++i) steps_[next[place(steps[i])]++] = i;
-  }
-  [[nodiscard]] std::span<const std::uint32_t> at(std::uint32_t place) const {
-    return {steps_.data() + first_[place], first_[place + 1] - first_[place]};
-  }
-
- private:
-  std::vector<std::uint32_t> first_, steps_;
-};
+/// The steps at each place, by an end of them.
+Buckets<std::uint32_t> steps_at(const std::vector<Step>& steps, std::size_t places, std::uint32_t Step::*end,
+                                const Execution& execution) {
+  const auto list = [&](std::size_t i, const auto& add) { add(steps[i].*end, std::uint32_t(i)); };
+  return {places, steps.size(), list, execution};
+}
 
 /// Walks along steps until none is left.
 class Walker {
@@ -88,15 +76,15 @@ class Walker {
       : places_(places),
         steps_(steps),
         execution_(execution),
-        out_(steps, places.size(), [](const Step& step) { return step.from; }),
-        in_(steps, places.size(), [](const Step& step) { return step.to; }),
+        out_(steps_at(steps, places.size(), &Step::from, execution)),
+        in_(steps_at(steps, places.size(), &Step::to, execution)),
         is_used_(steps.size()),
         at_(places.size(), no_index) {}
 
   void run() {
     // Open lines begin at places with more steps out than in.
     for (std::uint32_t i = 0; i < steps_.size(); ++i)
-      if (out_.at(steps_[i].from).size() > in_.at(steps_[i].from).size()) walk(i);
+      if (out_[steps_[i].from].size() > in_[steps_[i].from].size()) walk(i);
     for (std::uint32_t i = 0; i < steps_.size(); ++i) walk(i);
   }
 
@@ -144,10 +132,10 @@ class Walker {
   std::uint32_t next() {
     const std::uint32_t end = path_.back();
     std::uint32_t best = no_index;
-    for (const std::uint32_t step : out_.at(end))
+    for (const std::uint32_t step : out_[end])
       if (!is_used_[step] && (best == no_index || is_before(steps_[step].to, steps_[best].to))) best = step;
     if (best != no_index) return take(best, false);
-    for (const std::uint32_t step : in_.at(end))
+    for (const std::uint32_t step : in_[end])
       if (!is_used_[step]) return take(step, true);
     return no_index;
   }
@@ -164,7 +152,7 @@ class Walker {
   const std::vector<glm::vec2>& places_;
   const std::vector<Step>& steps_;
   const Execution& execution_;
-  const StepLists out_, in_;
+  const Buckets<std::uint32_t> out_, in_;
   std::vector<std::uint8_t> is_used_;
   std::vector<std::uint32_t> path_, at_;  ///< at_: by place, its number in the path
   std::size_t taken_ = 0;

@@ -14,11 +14,12 @@
 #include <span>
 
 #include "base/parallel.h"
+#include "geometry/buckets.h"
 
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::size_t kEdgesPerPart = 256, kEdgesPerPoll = 1 << 16;
+constexpr std::size_t kEdgesPerPart = 256;
 constexpr double kGoesOn = 0.5;          // the least cosine of the angle between a crease and its continuation
 constexpr double kBend = 0.25;           // the least cosine between two edges that count as one line
 constexpr double kFaintest = 0.75;       // a fainter crease goes: share of the greatest jump of a triangle's creases
@@ -52,9 +53,7 @@ class CreaseGraph {
   [[nodiscard]] bool is_drawn(std::size_t edge) const { return folds_[edge].grade >= FoldGrade::strong; }
 
  private:
-  [[nodiscard]] std::span<const std::uint32_t> at(std::uint32_t vertex) const {
-    return {at_.data() + first_[vertex], first_[vertex + 1] - first_[vertex]};
-  }
+  [[nodiscard]] std::span<const std::uint32_t> at(std::uint32_t vertex) const { return edges_at_[vertex]; }
   [[nodiscard]] std::uint32_t other_end(std::uint32_t edge, std::uint32_t vertex) const {
     return edges_[edge].from == vertex ? edges_[edge].to : edges_[edge].from;
   }
@@ -76,30 +75,18 @@ class CreaseGraph {
   const std::vector<FeatureEdge>& edges_;
   const Execution& execution_;
   std::vector<JudgedFold> folds_;
-  Buffer<std::uint32_t> first_;  ///< by vertex
-  std::vector<std::uint32_t> at_;
+  Buckets<std::uint32_t> edges_at_;  ///< by vertex
 };
 
 CreaseGraph::CreaseGraph(const WeldedMesh& mesh, const std::vector<FeatureEdge>& edges, std::vector<JudgedFold> folds,
                          const Execution& execution)
-    : mesh_(mesh),
-      edges_(edges),
-      execution_(execution),
-      folds_(std::move(folds)),
-      first_(mesh.positions.size() + 2, 0) {
-  const auto for_each_end = [&](const auto& visit) {
-    for (std::size_t i = 0; i < edges_.size(); ++i) {
-      if (i % kEdgesPerPoll == 0) check_cancelled(execution_);
-      if (folds_[i].grade == FoldGrade::smooth) continue;
-      visit(edges_[i].from, std::uint32_t(i));
-      visit(edges_[i].to, std::uint32_t(i));
-    }
+    : mesh_(mesh), edges_(edges), execution_(execution), folds_(std::move(folds)) {
+  const auto list = [&](std::size_t i, const auto& add) {
+    if (folds_[i].grade == FoldGrade::smooth) return;
+    add(edges_[i].from, std::uint32_t(i));
+    add(edges_[i].to, std::uint32_t(i));
   };
-  // Counts go two places further on, so that filling moves each beginning to its place.
-  for_each_end([&](std::uint32_t vertex, std::uint32_t) { ++first_[vertex + 2]; });
-  for (std::size_t v = 2; v < first_.size(); ++v) first_[v] += first_[v - 1];
-  at_.resize(first_[first_.size() - 1]);
-  for_each_end([&](std::uint32_t vertex, std::uint32_t edge) { at_[first_[vertex + 1]++] = edge; });
+  edges_at_ = Buckets<std::uint32_t>(mesh.positions.size(), edges_.size(), list, execution);
 }
 
 /// Makes weak folds strong that continue strong ones.

@@ -3,16 +3,97 @@
 // would pass too many cells and are stored by the infinite lines on which they lie.
 //
 //    short lines    cells that they pass               a cell holds a few lines, and each is tested
-//    long lines     a plane of heights (long_lines.h)  a line crosses hundreds of others, and lies on one or two
+//    long lines     a plane of heights (LongLines)      a line crosses hundreds of others, and lies on one or two
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "lines/square_grid.h"
-#include "lines/strokes/long_lines.h"
+#include "lines/strokes/nearness.h"
 
 namespace frontmost::lines_detail {
+
+/// Long segments, indexed by the infinite line on which they lie.
+///
+/// A long line passes many cells of a grid, and in them many lines that it only crosses. A line on top of it meets two
+/// opposite sides of the drawing, prolonged, at nearly the same heights. These two heights are a point in a dual plane,
+/// in which lines that cross or run in parallel lie apart.
+///
+///     drawing          dual plane     The plane is a table of buckets. Lines that may lie on a line are near its
+///    |            _b    |   . b       point. A line that turns about its middle moves there along a straight way.
+///   a|  ___-----  |     |
+///    |--          |     +------ a
+class LongLines {
+ public:
+  /// `low` and `high` are the corners of a box around all segments. Precondition: they differ.
+  LongLines(const glm::dvec2& low, const glm::dvec2& high, const Nearness& near)
+      : low_(low), extent_(std::max(high.x - low.x, high.y - low.y)), bucket_(extent_ / 512), near_(near) {}
+
+  [[nodiscard]] bool is_empty() const { return flat_.empty() && steep_.empty(); }
+
+  void add(std::uint32_t number, const Line& segment) {
+    const BriefLine brief(segment, number);
+    const glm::dvec2 d = glm::abs(segment.to - segment.from);
+    // Near the diagonal, a line on top of the segment may be of the other kind.
+    if (d.y <= 1.05 * d.x) flat_[key(heights(segment, 0))].push_back(brief);
+    if (d.x <= 1.05 * d.y) steep_[key(heights(segment, 1))].push_back(brief);
+  }
+
+  /// Calls visit(numbers) for segments that may lie on this one: their lines turn from its line by at most the angle
+  /// that Nearness allows at its length, and pass near its middle. \returns how many were tested.
+  template <class Visit>
+  std::size_t for_each(const Line& segment, const SoughtLine& sought, const Visit& visit) const {
+    const double slope = near_.slope_within(segment.length), off = near_.apart();
+    const glm::dvec2 d = glm::abs(segment.to - segment.from);
+    const int axis = d.y <= d.x ? 0 : 1;
+    const Table& table = axis == 0 ? flat_ : steep_;
+    std::size_t looked_at = 0;
+    if (table.empty()) return looked_at;
+    // A line that turns about the middle moves by up to `spread` at the farther side, and by a share of it at the
+    // nearer one.
+    const glm::dvec2 at = heights(segment, axis);
+    const double middle = ((segment.from[axis] + segment.to[axis]) / 2 - low_[axis]) / extent_;
+    const int far = middle < 0.5 ? 1 : 0;
+    const double way = far == 1 ? 1 - middle : middle, share = (1 - way) / way;
+    const double play = 2 * off, spread = 2 * slope * way * extent_ + play;  // slopes are at most 1: twice the angle
+    for (int i = index(at[far] - spread); i <= index(at[far] + spread); ++i) {
+      const double low = i * bucket_ - at[far] - play, high = low + bucket_ + 2 * play;
+      const int last = index(at[1 - far] - low * share + play);
+      for (int j = index(at[1 - far] - high * share - play); j <= last; ++j) {
+        const auto found = table.find(far == 1 ? key(j, i) : key(i, j));
+        if (found == table.end()) continue;
+        looked_at += found->second.size();
+        visit_likely(found->second, sought, visit);
+      }
+    }
+    return looked_at;
+  }
+
+ private:
+  using Table = std::unordered_map<std::uint64_t, std::vector<BriefLine>>;
+
+  /// The heights at which the segment's line meets both ends of the axis.
+  [[nodiscard]] glm::dvec2 heights(const LineSegment& s, int axis) const {
+    const double slope = (s.to[1 - axis] - s.from[1 - axis]) / (s.to[axis] - s.from[axis]);
+    const double first = s.from[1 - axis] + slope * (low_[axis] - s.from[axis]);
+    return glm::dvec2(first, first + slope * extent_) - low_[1 - axis];
+  }
+  [[nodiscard]] int index(double height) const { return int(std::floor(height / bucket_)); }
+  [[nodiscard]] static std::uint64_t key(int first, int second) {
+    return std::uint64_t(std::uint32_t(first)) << 32 | std::uint32_t(second);
+  }
+  [[nodiscard]] std::uint64_t key(const glm::dvec2& at) const { return key(index(at[0]), index(at[1])); }
+
+  const glm::dvec2 low_;
+  const double extent_, bucket_;
+  const Nearness near_;
+  Table flat_, steep_;
+};
 
 class LaidLines {
  public:
