@@ -89,7 +89,7 @@ TEST(ObjectTree, BoxesFollowWhatMoves) {
     tree.refit();
     ASSERT_NO_FATAL_FAILURE(expect_tree_of(tree, boxes)) << step;
   }
-  EXPECT_FALSE(tree.is_worn());
+  EXPECT_FALSE(tree.is_outdated());
 }
 
 TEST(ObjectTree, NeighboursAreInOneGroup) {

@@ -53,6 +53,9 @@ class Buckets {
   }
 
   [[nodiscard]] std::size_t count() const { return first_.empty() ? 0 : first_.size() - 1; }
+  [[nodiscard]] std::size_t byte_count() const {
+    return first_.size() * sizeof(first_[0]) + items_.size() * sizeof(Item);
+  }
   [[nodiscard]] std::span<const Item> operator[](std::size_t bucket) const {
     return {items_.data() + first_[bucket], first_[bucket + 1] - first_[bucket]};
   }

@@ -16,7 +16,7 @@
 
 #include "frontmost/scene.h"
 #include "surfaces/cones.h"
-#include "surfaces/holders.h"
+#include "surfaces/groups_by_instance.h"
 #include "surfaces/placed_scene.h"
 
 namespace frontmost {
@@ -63,7 +63,7 @@ struct ClusterSet {
   Buffer<std::uint8_t> i0, i1, i2;
   Buffer<PrimitiveId> id;
   LazyCones cones;
-  std::optional<Holders> holders;  ///< made once an instance has moved
+  std::optional<Buckets<std::uint32_t>> of_instances;  ///< groups_by_instance(), made once an instance has moved
 
   /// Moves an instance to its place in the scene. O(triangles) the first time, later O(size of the instance's
   /// clusters). \returns false if the set must be made anew, because vertices became finite or ceased to be.

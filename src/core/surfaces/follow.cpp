@@ -116,15 +116,16 @@ void ClusterSet::fit(std::size_t cluster) {
 
 bool ClusterSet::follow(const PlacedScene& placed, const InstanceMove& move, Isa isa) {
   cutouts = placed.cutouts;
-  if (!holders)
-    holders.emplace(placed.first_primitives, clusters.size(), [&](std::uint32_t c) {
+  if (!of_instances)
+    of_instances = groups_by_instance(placed.first_primitives, clusters.size(), [&](std::uint32_t c) {
       return std::span(id.data() + clusters[c].first_triangle, clusters[c].triangle_count);
     });
-  for (const std::uint32_t cluster : holders->of(move.instance)) {
+  const std::span<const std::uint32_t> moved = (*of_instances)[move.instance];
+  for (const std::uint32_t cluster : moved) {
     if (!move_triangles(placed, move, cluster)) return false;
     fit(cluster);
   }
-  cones.follow(*this, holders->of(move.instance), isa);
+  cones.follow(*this, moved, isa);
   return true;
 }
 

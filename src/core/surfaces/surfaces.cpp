@@ -17,7 +17,7 @@ namespace {
 std::size_t byte_count(const ClusterSet& set) {
   return sizeof set + set.clusters.size() * (sizeof(Cluster) + sizeof(Box)) + 3 * set.x.size() * sizeof(float) +
          (3 + sizeof(PrimitiveId)) * set.id.size() + set.cones.byte_count() +
-         (set.holders ? set.holders->byte_count() : 0);
+         (set.of_instances ? set.of_instances->byte_count() : 0);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ class ObjectTree {
   /// Makes the boxes of all groups hold the moved objects. O(moved x levels).
   void refit();
   /// Whether so many objects have moved that a new order may be better.
-  [[nodiscard]] bool is_worn() const { return moves_ > 4 * objects_.size(); }
+  [[nodiscard]] bool is_outdated() const { return moves_ > 4 * objects_.size(); }
 
   [[nodiscard]] const BoxColumns& boxes() const { return boxes_; }  ///< by item
   [[nodiscard]] std::size_t item_count() const { return first_.back(); }

@@ -36,7 +36,7 @@ struct Occlusion::State {
       for (std::uint32_t part = 0; part < parts; ++part) objects.push_back({i, part});
     }
     first_objects.push_back(std::uint32_t(objects.size()));
-    plant();
+    make_tree();
     sights.resize(objects.size());
   }
 
@@ -46,7 +46,7 @@ struct Occlusion::State {
     return world_box(it.world_from_mesh, meshes[it.mesh].parts[object.part].bounds);
   }
 
-  void plant() {
+  void make_tree() {
     std::vector<Box> boxes;
     boxes.reserve(objects.size());
     for (const CulledObject& object : objects) boxes.push_back(box_of(object));
@@ -59,7 +59,7 @@ struct Occlusion::State {
         tree.move(i, box_of(objects[i]));
     });
     tree.refit();
-    if (tree.is_worn()) plant();
+    if (tree.is_outdated()) make_tree();
   }
 
   void find_meshes(const Execution& execution) {

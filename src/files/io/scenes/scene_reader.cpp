@@ -11,9 +11,9 @@
 
 #include "io/models/budget.h"
 #include "io/models/mesh_building.h"
-#include "io/scenes/carried.h"
 #include "io/scenes/one_mesh.h"
 #include "io/scenes/scene_file.h"
+#include "io/scenes/transformed.h"
 
 namespace frontmost {
 namespace {
@@ -101,8 +101,8 @@ class PlacedMeshes {
   /// Adds the model's cameras and lights to the scene, placed with the object.
   void carry(const PlacedModel& object, const glm::dmat4& scene_from_model) {
     budget_.charge(model_.cameras.size() + model_.lights.size(), sizeof(Light) + longest_name, object.place, source_);
-    for (const Camera& camera : model_.cameras) scene_.cameras.push_back(carried(camera, scene_from_model));
-    for (const Light& light : model_.lights) scene_.lights.push_back(carried(light, scene_from_model));
+    for (const Camera& camera : model_.cameras) scene_.cameras.push_back(transformed(camera, scene_from_model));
+    for (const Light& light : model_.lights) scene_.lights.push_back(transformed(light, scene_from_model));
   }
 
  private:

@@ -73,11 +73,12 @@ bool move_instance(const PlacedScene& placed, std::uint32_t instance, RayTree& t
   if (tree.copies || tree.root == no_index) return false;
   if (!tree.links) {
     tree.links = links_of(tree);
-    tree.links->holders.emplace(placed.first_primitives, tree.leaves.size(),
-                                [&](std::uint32_t leaf) { return std::span(tree.leaves[leaf].id, kRayLanes); });
+    tree.links->leaves_of_instances =
+        groups_by_instance(placed.first_primitives, tree.leaves.size(),
+                           [&](std::uint32_t leaf) { return std::span(tree.leaves[leaf].id, kRayLanes); });
   }
   std::uint32_t count = 0;
-  for (const std::uint32_t leaf : tree.links->holders->of(instance)) {
+  for (const std::uint32_t leaf : std::as_const(*tree.links->leaves_of_instances)[instance]) {
     const std::uint32_t moved = move_triangles(placed, instance, tree.leaves[leaf]);
     if (moved == no_index) return false;
     count += moved;

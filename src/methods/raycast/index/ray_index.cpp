@@ -16,7 +16,7 @@ void build(RayTree& tree, const Execution& execution) {
 
 std::size_t byte_count(const RayLinks& links) {
   return (links.above_node.size() + links.above_leaf.size()) * sizeof(std::uint32_t) +
-         (links.holders ? links.holders->byte_count() : 0);
+         (links.leaves_of_instances ? links.leaves_of_instances->byte_count() : 0);
 }
 
 std::size_t byte_count(const RayTree& tree) {

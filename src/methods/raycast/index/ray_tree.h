@@ -17,7 +17,7 @@
 #include "base/memory.h"
 #include "frontmost/raycast.h"
 #include "surfaces/cutouts.h"
-#include "surfaces/holders.h"
+#include "surfaces/groups_by_instance.h"
 #include "surfaces/material_sides.h"
 
 namespace frontmost {
@@ -52,7 +52,7 @@ struct alignas(64) RayLeaf {
 struct RayLinks {
   std::vector<std::uint32_t> above_node;
   std::vector<std::uint32_t> above_leaf;
-  std::optional<Holders> holders;  ///< the leaves of an instance's triangles
+  std::optional<Buckets<std::uint32_t>> leaves_of_instances;  ///< groups_by_instance()
 };
 
 struct RayTree {

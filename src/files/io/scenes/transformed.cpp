@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Models bring their cameras and lights along. A transform may stretch and shear, but cameras and lights must stay
 // rigid. So their axes are made orthonormal again: the viewing direction is kept exactly, and up is adjusted.
-#include "io/scenes/carried.h"
+#include "io/scenes/transformed.h"
 
 namespace frontmost {
 namespace {
@@ -21,7 +21,7 @@ RigidPlace rigid_place(const glm::dmat4& placed) {
 
 }  // namespace
 
-Camera carried(Camera camera, const glm::dmat4& scene_from_model) {
+Camera transformed(Camera camera, const glm::dmat4& scene_from_model) {
   const RigidPlace place = rigid_place(scene_from_model * camera.world_from_eye);
   camera.world_from_eye = place.world_from_thing;
   if (camera.near) *camera.near *= place.growth;
@@ -30,7 +30,7 @@ Camera carried(Camera camera, const glm::dmat4& scene_from_model) {
   return camera;
 }
 
-Light carried(Light light, const glm::dmat4& scene_from_model) {
+Light transformed(Light light, const glm::dmat4& scene_from_model) {
   const RigidPlace place = rigid_place(scene_from_model * light.world_from_light);
   light.world_from_light = place.world_from_thing;
   if (light.range) *light.range *= place.growth;

@@ -8,8 +8,8 @@ namespace frontmost {
 
 /// A camera of the model in the scene. The camera stays rigid: it looks along its transformed viewing direction.
 /// Lengths (planes, the height of a parallel projection) are scaled by the transform's factor along that direction.
-[[nodiscard]] Camera carried(Camera camera, const glm::dmat4& scene_from_model);
+[[nodiscard]] Camera transformed(Camera camera, const glm::dmat4& scene_from_model);
 /// A light of the model in the scene. An object that is scaled with the light is as bright as before.
-[[nodiscard]] Light carried(Light light, const glm::dmat4& scene_from_model);
+[[nodiscard]] Light transformed(Light light, const glm::dmat4& scene_from_model);
 
 }  // namespace frontmost
