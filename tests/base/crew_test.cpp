@@ -94,7 +94,7 @@ TEST(CrewThreads, SeveralCallersShareThem) {
 
 // Loops go on with the threads that there are.
 TEST(CrewThreads, TheSystemMayRefuseThreads) {
-  static std::vector<Crew*> kept;  // threads wait in a crew until the process ends
+  static auto& kept = *new std::vector<Crew*>;  // threads wait in a crew until the process ends
   for (const int given : {0, 1, 3})
     for (const bool lacks_memory : {false, true}) {
       std::atomic<int> started{0}, refused{0};

@@ -97,7 +97,7 @@ def test_wrong_arguments(views, tmp_path):
     assert not (tmp_path / "m").exists()
     with pytest.raises(ValueError, match="names: fewer than there are views"):
         fm.write_coco(tmp_path / "c.json", [seen, seen], names=["a.png"])
-    with pytest.raises(fm.Error, match="bop: needs a perspective camera"):
+    with pytest.raises(fm.Error, match="bop: the view is a parallel projection"):
         view = fm.View.orthographic((0, 3, 12), (0, 1, 0), width=32, height=32, tall=8)
         fm.write_bop(tmp_path / "b", fm.Surfaces(views).zbuffer(view))
     with pytest.raises(ValueError, match="categories: none is called 'teepot'"):
