@@ -100,6 +100,7 @@ void set_positions(Mesh& mesh, const py::handle& given) {
   // numbers() gives contiguous rows.
   const std::span points(reinterpret_cast<const glm::dvec3*>(values.data()), std::size_t(values.shape(0)));
   mesh.origin = fitting_origin(points);
+  mesh.positions.reserve(points.size());
   for (const glm::dvec3& point : points) mesh.positions.emplace_back(point - mesh.origin);
 }
 

@@ -37,7 +37,7 @@ struct ReportRun {
 /// Reports that `where`, a model, has no `what` called `name`, and suggests similar names. \throws UsageError always.
 [[noreturn]] void complain_of_name(const std::string& where, std::string_view what, std::string_view name,
                                    const std::vector<std::string_view>& known);
-/// Names of the nodes that the model's file hides; with --why, only those of that name.
+/// Names of the nodes that the model's file hides; with --why NAME, only nodes called NAME.
 [[nodiscard]] std::vector<std::string> hidden_asked_for(const Settings& settings, const Scene& scene);
 /// Numbers of objects, sorted by visible samples, then by samples in the frame, then by number.
 [[nodiscard]] std::vector<std::uint32_t> objects_by_sight(const Accounting& accounts);

@@ -353,7 +353,8 @@ struct Round {
 
 struct Rounds {
   std::vector<Round> rounds;
-  /// Triangles with an edge on the circle, or of the surface; in the order of the rounds, ascending for each.
+  /// For each round, the triangles with an edge on its circle, or the triangles of its surface. Rounds come in order,
+  /// and the triangles of one round ascend.
   std::vector<PrimitiveId> triangles;
   /// Cylinders of 7 to 17 sides with a sharp rim at either end. They count as polygons: nothing is drawn for them.
   std::vector<Round> prisms;

@@ -74,10 +74,10 @@ struct ExactVisible {
   Buffer<std::uint8_t> tied;       ///< 1 if another triangle is exactly as near
 };
 
-/// Finds the nearest triangle at every sample; the result is the same on every machine. O(triangles + covered samples);
-/// a sample that doubles cannot decide takes microseconds.
-/// \throws Error as validate(view) does; limit_exceeded for more than 2^29 steps, 128 more for each sample and 1,024
-/// for each triangle. A triangle at a sample is one step, or 64 if doubles cannot decide.
+/// Finds the nearest triangle at every sample; the result is the same on every machine. O(triangles + covered samples).
+/// A sample that cannot be decided in double precision takes microseconds.
+/// \throws Error as validate(view) does; limit_exceeded if more steps are needed than 2^29 + 128 per sample + 1,024 per
+/// triangle. A triangle at a sample is one step, or 64 if double precision cannot decide.
 [[nodiscard]] ExactVisible find_exact_visible(const Surfaces& surfaces, const View& view,
                                               const Execution& execution = {});
 
@@ -184,9 +184,9 @@ struct FightRemedy {
   std::uint64_t wrong = 0;  ///< DepthFights::wrong
 };
 
-/// Draws the view with the usual remedies: near and far planes close around the faces of the picture; 24 bits; reversed
-/// floats; reversed floats with the close planes. \returns the remedies that leave fewer wrong samples than `setup`.
-/// Costs up to five pictures. \throws Error bad_argument if `exact` is of another view.
+/// Draws the view with the usual remedies: near and far planes that fit tightly around the visible faces; 24-bit
+/// depths; reversed floats; reversed floats with the tight planes. \returns the remedies that leave fewer wrong samples
+/// than `setup`. Costs up to five pictures. \throws Error bad_argument if `exact` is of another view.
 [[nodiscard]] std::vector<FightRemedy> try_remedies(const Surfaces& surfaces, const ExactVisible& exact,
                                                     const DepthSetup& setup, const Execution& execution = {});
 

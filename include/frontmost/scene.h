@@ -283,7 +283,7 @@ void add(Scene& scene, Scene part);
 /// by a round number is thus moved back to the bit. Near zero a few vertices are examined, otherwise all. Precondition:
 /// validate(scene) passes.
 [[nodiscard]] glm::dvec3 fitting_origin(const Scene& scene);
-/// The fitting origin of points in doubles. Points that are not finite are ignored. O(points).
+/// The fitting origin of points in doubles. Points that are not finite as floats are ignored. O(points).
 [[nodiscard]] glm::dvec3 fitting_origin(std::span<const glm::dvec3> points);
 /// Moves the world's zero to `origin`, in coordinates of the file. Instances, cameras and lights stay in place: their
 /// transforms are adjusted, in doubles. load() has already set the fitting origin. O(instances + cameras + lights).

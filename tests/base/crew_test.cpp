@@ -97,10 +97,10 @@ TEST(CrewThreads, TheSystemMayRefuseThreads) {
   static auto& kept = *new std::vector<Crew*>;  // threads wait in a crew until the process ends
   for (const int given : {0, 1, 3})
     for (const bool lacks_memory : {false, true}) {
-      std::atomic<int> started{0}, refused{0};
+      std::atomic<int> started{0}, refused{0}, most{given};
       kept.push_back(new Crew([&](std::function<void()> body) {
-        if (started == given && ++refused == 1 && lacks_memory) throw std::bad_alloc();
-        if (started == given) throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again));
+        if (started == most && ++refused == 1 && lacks_memory) throw std::bad_alloc();
+        if (started == most) throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again));
         ++started;
         std::thread(std::move(body)).detach();
       }));
@@ -111,6 +111,9 @@ TEST(CrewThreads, TheSystemMayRefuseThreads) {
       }
       EXPECT_EQ(started, given);
       EXPECT_EQ(refused, 1) << "the system is not asked again at every loop";
+      most = 7;
+      for (int round = 0; round < 1000; ++round) kept.back()->run(7, [] {});
+      EXPECT_EQ(started, 7) << "the system is asked again later";
     }
 }
 

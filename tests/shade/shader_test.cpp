@@ -61,6 +61,22 @@ void expect_same(const Image& expected, const Image& found) {
   }
 }
 
+// Shadow maps of a flight are drawn from clusters, those of a single picture without.
+TEST(Shader, ManyShadowMapsMakeClusters) {
+  const Scene scene = scene_of_everything(Material::Alpha::opaque);
+  const Surfaces surfaces(scene);
+  const std::size_t without = surfaces.byte_count();
+  Shader shader(surfaces);
+  for (int i = 0; i < 4; ++i) {
+    const Visible visible = zbuffer(surfaces, view_of_flight(surfaces, i));
+    ShadeOptions options;
+    options.light.shadows = Shadows::map;
+    options.light.direction = glm::dvec3(i, 1, 2);
+    (void)shader.shade({.visible = &visible}, options);
+    EXPECT_EQ(surfaces.byte_count() > without, i >= 2) << i;
+  }
+}
+
 TEST(Shader, PicturesOneAfterAnotherAreThoseOfTheFunctions) {
   for (const Material::Alpha alpha : {Material::Alpha::opaque, Material::Alpha::mask, Material::Alpha::blend}) {
     const Scene scene = scene_of_everything(alpha);

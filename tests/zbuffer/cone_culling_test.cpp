@@ -158,5 +158,18 @@ TEST(ConeCulling, FramesStayTheSame) {
   EXPECT_NE(cluster_set(surfaces).cones.made(), nullptr);
 }
 
+// A ZBuffer that draws new surfaces every few frames makes cones for none of them.
+TEST(ConeCulling, FramesOfEachSetAreCounted) {
+  const Scene scene = scene_of(bumpy_ball(20, 0.003f, 1));
+  const View view{300,          200, 1, look_at({0, 1, 3}, {0, 0, 0}, {0, 1, 0}), make_projection(0.9, 1.5, {1, 10}),
+                  Culling::back};
+  ZBuffer buffer;
+  for (int i = 0; i < 12; ++i) {
+    const Surfaces surfaces(scene);
+    for (int frame = 0; frame < 3; ++frame) buffer.draw(surfaces, view);
+    EXPECT_EQ(cluster_set(surfaces).cones.made(), nullptr) << i;
+  }
+}
+
 }  // namespace
 }  // namespace frontmost::test

@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <mutex>
+#include <span>
+#include <utility>
 
 #include "base/orientation.h"
 #include "base/parallel.h"
@@ -56,7 +58,7 @@ struct EdgeCounts {
   }
 };
 
-/// Calls visit(group, sums) for all items of a bucket that are the same, from several threads. \returns all `sums`.
+/// Calls visit(group, sums) for each group of equal items of a bucket, from several threads. \returns all `sums`.
 template <class Sums, class Item, class Visit>
 Sums for_each_group(Buckets<Item>& buckets, const Execution& execution, const Visit& visit) {
   Sums all{};

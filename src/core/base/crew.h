@@ -21,6 +21,7 @@
 #include <functional>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace frontmost {
@@ -62,7 +63,7 @@ class Crew {
       std::erase(jobs_, &job);
       places_ -= job.wanted;
     }
-    if (look_out_for([&] { return job.inside == 0; })) return;
+    if (spin_until([&] { return job.inside == 0; })) return;
     std::unique_lock lock(mutex_);
     left_.wait(lock, [&] { return job.inside == 0; });
   }
@@ -74,21 +75,22 @@ class Crew {
     std::atomic<int> inside = 0;  ///< threads at work
   };
 
-  /// Waits for a while. \returns whether `has_come` is true.
-  template <class HasCome>
-  static bool look_out_for(const HasCome& has_come) {
+  /// Waits up to 50 us without sleeping until `is_true()`. \returns whether it is.
+  template <class Condition>
+  static bool spin_until(const Condition& is_true) {
     constexpr std::chrono::microseconds a_while(50);
-    if (has_come()) return true;
+    if (is_true()) return true;
     const auto end = std::chrono::steady_clock::now() + a_while;
     do {
       std::this_thread::yield();
-      if (has_come()) return true;
+      if (is_true()) return true;
     } while (std::chrono::steady_clock::now() < end);
     return false;
   }
 
   /// Makes as many threads as the largest loop so far wanted.
   void hire(int helpers) {
+    if (size_ >= helpers) return;
     if (pause_ > 0) return void(--pause_);
     try {
       for (; size_ < helpers; ++size_) start_([this] { serve(); });
@@ -106,7 +108,7 @@ class Crew {
 
   void serve() {
     for (;;) {
-      look_out_for([&] { return places_ > 0; });
+      spin_until([&] { return places_ > 0; });
       std::unique_lock lock(mutex_);
       ++asleep_;
       called_.wait(lock, [&] { return open_job() != nullptr; });
@@ -116,7 +118,7 @@ class Crew {
       lock.unlock();
       (*job.work)();
       if (--job.inside > 0) continue;
-      lock.lock();  // the caller either sees that nobody is inside, or waits already
+      lock.lock();  // so that the notification does not fall between the caller's test and its sleep
       left_.notify_all();
     }
   }
@@ -128,7 +130,7 @@ class Crew {
   std::atomic<int> places_{0};  ///< helpers that all jobs still want
   int asleep_ = 0;
   int size_ = 0;
-  int pause_ = 0;  ///< loops until more threads are asked for, after a refusal
+  int pause_ = 0;  ///< loops that lack threads, until more are asked for after a refusal
 };
 
 }  // namespace frontmost

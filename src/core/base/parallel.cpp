@@ -33,7 +33,7 @@ class ChunkQueue {
   void drain() noexcept {
     const IeeeScope ieee;
     for (;;) {
-      // Relaxed: only the number matters; the caller sees the writes of bodies at the end of the loop.
+      // Relaxed, as only the number matters. At the end of the loop the caller sees everything that the bodies wrote.
       const std::size_t chunk = next_.fetch_add(1, std::memory_order_relaxed);
       if (chunk >= chunk_count() || failed_.load(std::memory_order_relaxed)) return;
       try {

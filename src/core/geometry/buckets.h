@@ -23,7 +23,8 @@ class Buckets {
  public:
   Buckets() = default;
   /// Calls `list(source, add)` twice for each of `sources`; it calls add(bucket, item) for each item of the source,
-  /// both times the same. Precondition: fewer than 2^32 items. O(sources + items + buckets * threads), in parallel.
+  /// both times the same. O(sources + items + buckets * threads), in parallel.
+  /// \throws Error limit_exceeded for 2^32 items and more; no bucket may have as many of one band.
   template <class List>
   Buckets(std::size_t buckets, std::size_t sources, const List& list, const Execution& execution)
       : first_(buckets + 1) {
@@ -40,12 +41,13 @@ class Buckets {
     };
     parallel_for(execution, bands, 1, [&](std::size_t band, std::size_t) { next[band].assign(buckets, 0); });
     for_bands([](std::vector<std::uint32_t>& counts, std::size_t bucket, const Item&) { ++counts[bucket]; });
-    std::uint32_t count = 0;
+    std::uint64_t count = 0;
     for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
-      first_[bucket] = count;
-      for (std::vector<std::uint32_t>& places : next) count += std::exchange(places[bucket], count);
+      first_[bucket] = std::uint32_t(count);
+      for (std::vector<std::uint32_t>& places : next) count += std::exchange(places[bucket], std::uint32_t(count));
     }
-    first_[buckets] = count;
+    if (count > 0xFFFFFFFFu) throw Error(ErrorCode::limit_exceeded, "mesh", "more than 4294967295 items to sort");
+    first_[buckets] = std::uint32_t(count);
     items_ = Buffer<Item>(count);
     for_bands([&](std::vector<std::uint32_t>& places, std::size_t bucket, const Item& item) {
       items_[places[bucket]++] = item;

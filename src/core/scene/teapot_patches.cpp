@@ -9,8 +9,8 @@
 namespace frontmost {
 namespace {
 
-// One ring of control points: its radius, the length of the arms that bend a quarter of it, and its height. The arms
-// are 0.56 of the radius, except for the knob: 0.45 / 0.8.
+// One ring of control points: its radius, the length of the handles that shape each quarter circle, and its height. A
+// handle is 0.56 times the radius long, but 0.45 / 0.8 times for the knob.
 struct ProfileRing {
   double radius, arm, height;
 };

@@ -10,6 +10,7 @@
 // Everything is padded to 16, so that kernels read whole vectors and need no loop for the rest.
 #pragma once
 
+#include <atomic>
 #include <mutex>
 #include <optional>
 #include <vector>

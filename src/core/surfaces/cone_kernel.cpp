@@ -16,7 +16,7 @@
 #define HWY_TARGET_INCLUDE "surfaces/cone_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// The include follows Highway in a block of its own.
+// This header must come after Highway's, so it is included in a separate block.
 #include "base/lane_types-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -196,8 +196,7 @@ ConeArrays make_cones(const ClusterSet& set, const Execution& execution) {
 
 const ConeArrays& LazyCones::get(const ClusterSet& set, const Execution& execution) const {
   if (const ConeArrays* const cones = made()) return *cones;
-  // Several threads may come here: all make the same cones, and one result is kept. Waiting for each other might never
-  // end, if the threads that make the cones are lent to draw another view.
+  // Several threads may come here: all make the same cones, and the first result is kept.
   auto mine = std::make_unique<ConeArrays>(make_cones(set, execution));
   ConeArrays* first = nullptr;
   if (!made_->cones.compare_exchange_strong(first, mine.get())) return *first;

@@ -46,6 +46,8 @@ class LazyCones {
   [[nodiscard]] const ConeArrays& get(const ClusterSet& set, const Execution& execution) const;
   /// The cones, or null if they have not been made.
   [[nodiscard]] const ConeArrays* made() const { return made_->cones.load(); }
+  /// Tells the set from every other one that ever lived.
+  [[nodiscard]] std::weak_ptr<const void> identity() const { return made_; }
   [[nodiscard]] std::size_t byte_count() const;
   /// Updates existing cones of some clusters after their triangles moved. Not while another call runs.
   void follow(const ClusterSet& set, std::span<const std::uint32_t> clusters, Isa isa);
@@ -58,7 +60,7 @@ class LazyCones {
     Made& operator=(const Made&) = delete;
     ~Made() { delete cones.load(); }
   };
-  std::unique_ptr<Made> made_ = std::make_unique<Made>();
+  std::shared_ptr<Made> made_ = std::make_shared<Made>();
 };
 
 }  // namespace frontmost

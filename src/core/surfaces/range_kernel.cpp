@@ -12,7 +12,7 @@
 #define HWY_TARGET_INCLUDE "surfaces/range_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// The include follows Highway in a block of its own.
+// This header must come after Highway's, so it is included in a separate block.
 #include "base/lane_types-inl.h"
 
 HWY_BEFORE_NAMESPACE();

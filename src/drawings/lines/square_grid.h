@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A grid of square cells over a plane, for both indices of this room: triangles that may hide an edge, and lines that
-// may lie on another line.
+// A grid of square cells over a plane, for the indices of this room: triangles that may hide an edge, lines that may
+// lie on another line, and ends of short chains.
 //
 //   +-------+-------+-------+      A segment visits the cells that it passes, each with a box around the part of the
 //   |       |      .|--'    |      segment that may lie in the cell.
@@ -10,12 +10,9 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <vector>
-
-#include "frontmost/base.h"
 
 namespace frontmost::lines_detail {
 

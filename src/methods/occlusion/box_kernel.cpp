@@ -8,7 +8,7 @@
 
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// The include follows Highway in a block of its own.
+// This header must come after Highway's, so it is included in a separate block.
 #include "base/lane_types-inl.h"
 #include "base/lanes-inl.h"
 #include "occlusion/cell_rows-inl.h"

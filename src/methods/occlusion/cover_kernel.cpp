@@ -9,7 +9,7 @@
 
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// The include follows Highway in a block of its own.
+// This header must come after Highway's, so it is included in a separate block.
 #include "occlusion/cell_rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();

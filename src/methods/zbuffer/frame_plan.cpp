@@ -43,6 +43,11 @@ void FramePlan::make(const ClusterSet& set, const PlaceTarget& target, const Exe
   if (culling == Culling::back || culling == Culling::front) {
     // Cones save between a fortieth and a half of their own cost in each frame, so they pay after some frames.
     constexpr int kFramesWithout = 8;
+    const std::weak_ptr<const void> identity = set.cones.identity();
+    if (identity.owner_before(last_set_) || last_set_.owner_before(identity)) {
+      last_set_ = identity;
+      frames_by_facing_ = 0;
+    }
     cones = frames_by_facing_++ < kFramesWithout ? set.cones.made() : &set.cones.get(set, execution);
   }
   const CullInput input{set.boxes, cones, target.transform, view};

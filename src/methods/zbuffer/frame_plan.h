@@ -66,7 +66,8 @@ class FramePlan {
   void list_clusters(const View& view);
 
   CullResult culled_;
-  std::int64_t frames_by_facing_ = 0;                     // frames that leave front or back faces out
+  std::int64_t frames_by_facing_ = 0;  // frames of last_set_ that leave front or back faces out
+  std::weak_ptr<const void> last_set_;
   std::vector<std::uint32_t> apart_;                      // clusters to be taken apart
   std::vector<std::vector<TriangleRecord>> apart_parts_;  // records of each chunk of apart_
   RecordLists records_;

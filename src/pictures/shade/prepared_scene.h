@@ -72,7 +72,7 @@ struct PreparedScene {
     } else {
       View view = input.view();
       view.samples = 1;
-      occlusion.find(zbuffer(opaque, view, execution), 1, reach);
+      occlusion.find(shadows.draw_casters(view, {}, execution), 1, reach);
     }
     return &occlusion;
   }

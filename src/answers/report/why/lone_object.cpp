@@ -32,8 +32,8 @@ struct PixelStretch {
         count(std::clamp(int(std::ceil(extent.high)) - first, 1, size - first)) {}
 };
 
-/// The pixels in which a picture with `factor` times the width and height may show the object, including snapped
-/// corners.
+/// The pixels where the object may appear in a picture with `factor` times the width and height, with room for the
+/// snapping of corners.
 accounting_detail::PixelRect touched_pixels(const View& enlarged, const ObjectPlaces& places, int factor) {
   const auto stretch = [factor](const ValueRange& extent, int size) {
     return PixelStretch({extent.low * factor - 1, extent.high * factor + 1}, size);

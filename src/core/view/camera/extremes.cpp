@@ -241,7 +241,7 @@ class Extremes::Search {
     std::array<double, direction_count> most;
     std::array<std::size_t, direction_count> farthest{};
     most.fill(-kInfinity);
-    // A sample of the parts is as good a beginning as all.
+    // To start the search, a sample of the parts serves as well as all parts.
     const std::size_t step = parts_.count() / 4096 + 1;
     for (std::size_t part = 0; part < parts_.count(); part += step) {
       const Box box = parts_.box(part);

@@ -14,7 +14,7 @@
 namespace frontmost {
 namespace {
 
-// In 1/16 pixel from the pixel's centre, x right, y down.
+// Places of samples in units of 1/16 pixel from the pixel's centre; x points right, y down.
 constexpr std::array<glm::ivec2, 1> kOne{{{0, 0}}};
 constexpr std::array<glm::ivec2, 2> kTwo{{{4, 4}, {-4, -4}}};
 constexpr std::array<glm::ivec2, 4> kFour{{{-2, -6}, {6, -2}, {-6, 2}, {2, 6}}};

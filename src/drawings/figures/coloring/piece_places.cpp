@@ -12,8 +12,8 @@ namespace {
 
 /// Square pixels, and pixels from end to end: smaller pieces have the colour of their middle.
 constexpr double kLeastArea = 1.5, kLeastLength = 2;
-/// Square pixels per sample, for usual and for large pieces; pixels per sample, for slivers; then the fewest samples,
-/// and the number from which a piece counts as large.
+/// Square pixels per sample, for usual and for large pieces. Pixels per sample, for slivers. The least number of
+/// samples of a piece, and the number of samples from which a piece counts as large.
 constexpr double kAreaPerSample = 2, kMostAreaPerSample = 9, kLengthPerSample = 1;
 constexpr double kFewSamples = 4, kManySamples = 64;
 

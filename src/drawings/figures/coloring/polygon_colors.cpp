@@ -25,7 +25,7 @@ namespace frontmost::shading {
 namespace {
 
 /// In pixels: the least width of a cut piece, and the distance from a cut below which no samples are taken. Textures
-/// and shadows are filtered over about as much, so colours there belong to neither side.
+/// and shadows are filtered over about this distance, so colours this close to a cut belong to neither side.
 constexpr double kLeastWidth = 0.25, kBesideCut = 0.35;
 /// The share of the tolerance for differences within a piece, where pieces are grouped; the rest is for differences
 /// between pieces of a group.

@@ -46,6 +46,8 @@ GridPlan::GridPlan(const SeenMesh& its_seen, const View& view, bool all, const E
     cells = std::max(1.0, std::min(cells / 2, cells * most / entries_));
     set_cells(view, cells);
   }
+  if (entries_ > kMostEntries)
+    throw Error(ErrorCode::limit_exceeded, "lines", "more than 4000000000 triangles in the cells of the picture");
 }
 
 /// Sets the resolution, the places of vertices in cells, and the footprints.

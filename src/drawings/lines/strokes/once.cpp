@@ -12,6 +12,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "base/work_limit.h"
 #include "lines/strokes/laid_lines.h"
 
 namespace frontmost::lines_detail {
@@ -23,9 +24,13 @@ class OverlapRemover {
   OverlapRemover(const std::vector<Line>& lines, double apart) : near_(apart), index_(lines, near_) {}
 
   /// Appends the uncovered stretches of `line` to `fresh`.
-  void lay(const Line& line, std::vector<LineSegment>& fresh) {
-    find_covered(line);
-    if (covered_.empty()) return add(line, fresh);
+  /// \returns how many lines were compared with it.
+  std::size_t lay(const Line& line, std::vector<LineSegment>& fresh) {
+    const std::size_t compared = find_covered(line);
+    if (covered_.empty()) {
+      add(line, fresh);
+      return compared;
+    }
     std::sort(covered_.begin(), covered_.end(), [](const Stretch& a, const Stretch& b) { return a.begin < b.begin; });
     covered_.push_back({line.length, line.length});
     const double least = std::max(Nearness::shortest, near_.apart());
@@ -39,13 +44,14 @@ class OverlapRemover {
       }
       at = std::max(at, c.end);
     }
+    return compared;
   }
 
  private:
-  void find_covered(const Line& line) {
+  std::size_t find_covered(const Line& line) {
     covered_.clear();
     ++asking_;
-    (void)index_.for_each(line, [&](std::span<const std::uint32_t> numbers) {
+    return index_.for_each(line, [&](std::span<const std::uint32_t> numbers) {
       for (const std::uint32_t other : numbers) {
         if (asked_[other] == asking_) continue;
         asked_[other] = asking_;
@@ -85,10 +91,17 @@ std::vector<LineSegment> draw_once(const std::vector<LineSegment>& segments, dou
   if (lines.empty()) return fresh;
   fresh.reserve(lines.size());
   OverlapRemover overlaps(lines, apart);
+  constexpr std::uint64_t most = std::uint64_t(1) << 33;  // half a minute
+  WorkLimit limit(execution, most, "strokes");
+  std::uint64_t compared = 0;
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (i % 256 == 0) check_cancelled(execution);
+    if (i % 256 == 0)
+      limit.add(std::exchange(compared, 0), [&] {
+        return "more than " + std::to_string(most) + " comparisons of " + std::to_string(lines.size()) +
+               " lines, of which most lie within some pixels of each other; draw the model larger, or leave some out";
+      });
     if (i % 4096 == 0) report_progress(execution, "strokes", 0.1 + 0.4 * double(i) / double(lines.size()));
-    overlaps.lay(lines[i], fresh);
+    compared += overlaps.lay(lines[i], fresh);
   }
   return fresh;
 }

@@ -31,15 +31,14 @@ double distance_to(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b
   return glm::distance(p, a + t * along);
 }
 
-/// A grid over these places, with about one to a cell; cells are no smaller than `least`.
+/// A grid of at most 2^20 cells over these places; cells are no smaller than `least`.
 SquareGrid grid_over(const std::vector<glm::dvec2>& places, double least) {
   glm::dvec2 low(1e300), high(-1e300);
   for (const glm::dvec2& place : places) {
     low = glm::min(low, place);
     high = glm::max(high, place);
   }
-  const double size = std::max({high.x - low.x, high.y - low.y}) / std::sqrt(double(places.size()));
-  const double cell = std::max({size, least, 1e-6});
+  const double cell = std::max({(high.x - low.x) / 1023, (high.y - low.y) / 1023, least, 1e-6});
   return {low, cell, int((high.x - low.x) / cell) + 1, int((high.y - low.y) / cell) + 1};
 }
 

@@ -68,7 +68,7 @@ class FrameDrawing {
   void trimming_mark(PageGroup& group, const glm::dvec2& corner) const {
     constexpr double length = 10, width = 5;
     const glm::dvec2 inwards = 1.0 - 2.0 * corner;
-    // Rounds are so near that the pen's round corners leave no gaps along the diagonals.
+    // Successive passes of the pen are so close together that its round tip leaves no gaps at the corners.
     for (double in = frame_width / 2; in < width / 2; in += 0.6 * frame_width) {
       const double far = length - in, near = width - in;
       std::vector<glm::dvec2> points = {{in, in}, {far, in}, {far, near}, {near, near}, {near, far}, {in, far}};

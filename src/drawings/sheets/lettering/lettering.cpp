@@ -21,7 +21,7 @@ constexpr double edge = 0.5;    // half of the pen width
 constexpr double capital = 10;  // height of capitals, from edge to edge
 constexpr double eighth = 0.7853981633974483;
 
-/// Visits the points of strokes: visit(point, bulge of the way to it, whether a stroke begins there).
+/// Visits the points of strokes: visit(point, bulge of the arc that leads to it, whether a stroke begins at it).
 template <class Visit>
 void for_each_point(const char* strokes, const Visit& visit) {
   bool begins = true;

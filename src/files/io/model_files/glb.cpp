@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writer of GLB: objects that name meshes, one primitive for each material of a mesh, materials with layers and
+// Writer of GLB: objects that refer to meshes, one primitive for each material of a mesh, materials with layers and
 // textures.
 #include <cmath>
 

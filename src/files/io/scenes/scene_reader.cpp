@@ -81,8 +81,8 @@ class PlacedMeshes {
   std::vector<Instance> place(const PlacedModel& object, const glm::dmat4& scene_from_model) {
     const bool is_one = !object.has_parts && model_.instances.size() > 1;
     const std::vector<std::uint32_t>& meshes = meshes_of(object, is_one);
-    // Triangles are charged although they take no memory here: code that transforms them to world space needs ten times
-    // as much.
+    // Triangles are charged although they take no memory here, because code that transforms them to world space needs
+    // ten times the charged amount.
     constexpr std::uint64_t least_cost = 4;
     budget_.charge(triangle_count(model_), least_cost, object.place, source_);
     const std::string name = object.name.empty() ? model_.name : object.name;

@@ -12,7 +12,7 @@
 #define HWY_TARGET_INCLUDE "abuffer/composite/composite_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// The include follows Highway in a block of its own.
+// This header must come after Highway's, so it is included in a separate block.
 #include "abuffer/composite/conflicts-inl.h"
 #include "abuffer/composite/group_composite-inl.h"
 #include "abuffer/composite/pixel_composite-inl.h"

@@ -64,7 +64,7 @@ class GroupReader {
 
  private:
   static constexpr std::size_t kLastBit = 63;
-  /// Longer lists are searched pixel by pixel, up to so many pairs a fragment.
+  /// Lists longer than kLong are searched pixel by pixel, with at most kMostPairs pairs per fragment.
   static constexpr std::size_t kLong = 256, kMostPairs = 64;
 
   /// Reads slots from the last to the first. \returns, as bits, the slots whose key ranges overlap those of slots

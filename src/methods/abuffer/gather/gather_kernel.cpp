@@ -14,7 +14,7 @@
 #define HWY_TARGET_INCLUDE "abuffer/gather/gather_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// The include follows Highway in a block of its own.
+// This header must come after Highway's, so it is included in a separate block.
 #include "abuffer/gather/fragment_sink-inl.h"
 #include "abuffer/gather/large_triangles-inl.h"
 #include "abuffer/gather/list_sort-inl.h"

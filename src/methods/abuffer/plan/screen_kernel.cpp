@@ -10,7 +10,7 @@
 #define HWY_TARGET_INCLUDE "abuffer/plan/screen_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// The include follows Highway in a block of its own.
+// This header must come after Highway's, so it is included in a separate block.
 #include "view/snap-inl.h"
 
 HWY_BEFORE_NAMESPACE();

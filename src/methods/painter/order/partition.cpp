@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts pieces by the plane of one of them.
+// Divides a list of pieces by the plane of one piece.
 //
 // H. Fuchs, Z. Kedem, B. Naylor. On Visible Surface Generation by A Priori Tree Structures. 1980.
 //
-//    planes of a few members are tried against a few others, spread evenly over the list
-//    the best one cuts few of them and leaves both sides about as large
+//    planes of a few pieces are tested against a few other pieces, spread evenly over the list
+//    the best plane cuts few of the tested pieces and leaves about as many on either side
 //
 // Pieces in the plane are only ordered by id, and the plane's own triangle is always among them. So neither side is as
-// large as the whole, and parting ends.
+// large as the whole, and the division ends.
 #include <algorithm>
 
 #include "painter/stages.h"

@@ -44,9 +44,9 @@ struct ScreenPolygon {
   bool is_occluder = true;              ///< nothing is seen through it
 };
 
-/// All polygons of an order on the screen, with affine depths. A polygon has a place in the order of painting, and is
-/// stored in a slot. Slots are in the order of the grid's cells, so polygons that are near on the screen are near in
-/// memory: a polygon is always read together with its neighbours.
+/// All polygons of one painting order, projected to the screen, with affine depths. A polygon has a place in the order
+/// of painting, and is stored in a slot. Slots are in the order of the grid's cells, so polygons that are near on the
+/// screen are near in memory: a polygon is always read together with its neighbours.
 class ScreenPolygons {
  public:
   ScreenPolygons(const PaintOrder& order, const Occluders& occluders);
@@ -92,7 +92,7 @@ class ScreenPolygons {
   [[nodiscard]] bool is_within_reach(Outline outline) const;
   /// Cuts outlines that reach so far beyond the picture that doubles lose places in it.
   void cut_at_reach(const std::vector<std::size_t>& far_slots);
-  /// A polygon's data beside its corners. Consecutive polygons of one group belong together.
+  /// A polygon's data other than its corners. Consecutive polygons with the same group number are one group.
   struct Description {
     std::uint32_t group, corner_count;
     bool is_occluder;

@@ -77,7 +77,8 @@ void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& ex
 /// empty, as after an error.
 [[nodiscard]] bool follow_instance(const Surfaces& surfaces, std::uint32_t instance, RayTree& tree);
 
-/// Two vertices are the same: no ray meets the triangle, or Surfaces marked it as not finite.
+/// Whether two vertices are the same. No ray meets such a triangle; Surfaces makes vertices the same to mark a triangle
+/// that is not finite.
 inline bool is_degenerate(const ClusterSet& set, std::size_t t) {
   return set.i0[t] == set.i1[t] || set.i1[t] == set.i2[t] || set.i2[t] == set.i0[t];
 }

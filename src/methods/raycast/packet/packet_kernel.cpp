@@ -18,7 +18,7 @@
 #define HWY_TARGET_INCLUDE "raycast/packet/packet_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// The include follows Highway in a block of its own.
+// This header must come after Highway's, so it is included in a separate block.
 #include "base/lanes-inl.h"
 #include "raycast/packet/packet_hits-inl.h"
 

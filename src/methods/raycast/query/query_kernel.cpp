@@ -19,7 +19,7 @@
 #define HWY_TARGET_INCLUDE "raycast/query/query_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// The include follows Highway in a block of its own.
+// This header must come after Highway's, so it is included in a separate block.
 #include "base/lanes-inl.h"
 #include "raycast/query/ray_axis-inl.h"
 

@@ -16,7 +16,7 @@
 
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// The include follows Highway in a block of its own.
+// This header must come after Highway's, so it is included in a separate block.
 #include "base/compactor-inl.h"
 #include "view/snap-inl.h"
 #include "zbuffer/packet-inl.h"

@@ -79,8 +79,8 @@ class LeastKey {
   using D = DWI;
   static constexpr std::uint32_t kLowHalf = 0xFFFFFFFF;
 #else
-  // Words are folded by their halves, as all targets have a minimum of halves but not of words. Odd halves are keys;
-  // the minima of even halves mean nothing.
+  // Minima are taken over half words, because every target has a minimum instruction for half words but not for words.
+  // The odd halves hold the keys; the minima of the even halves are meaningless.
   using D = hn::Repartition<std::int32_t, DWI>;
   static constexpr std::uint32_t kLowHalf = 0x80000000;  // the least value of an even lane
 #endif

@@ -51,8 +51,8 @@ class OctahedralMap {
 
   /// Copies the texels beyond the folds into the border.
   void close_border();
-  /// A map of half the size with its border: means of four texels each, weighted by solid angle. Precondition: an even
-  /// size.
+  /// A map of half the size, with a border. Each texel is the mean of four, weighted by solid angle. Precondition: an
+  /// even size.
   [[nodiscard]] OctahedralMap half() const;
 
  private:

@@ -116,6 +116,19 @@ void LightShadows::take_map(const Visible& seen_by_light, const Execution& execu
   maps_[0].map.draw(seen_by_light, execution);
 }
 
+Visible LightShadows::draw_casters(const View& view, Visible&& planes, const Execution& execution) {
+  // The first two pictures, a shadow map and the occlusion of a single picture, are drawn sooner without clusters.
+  constexpr int kDirectly = 2;
+  const Surfaces& surfaces = casters(execution);
+  if (!made_cluster_set(surfaces) && drawn_directly_ < kDirectly) {
+    ++drawn_directly_;
+    return zbuffer(surfaces, view, execution);
+  }
+  drawer_.give_back(std::move(planes));
+  drawer_.draw(surfaces, view, execution);
+  return drawer_.take();
+}
+
 const ShadowMap* LightShadows::draw_map(std::size_t number, const std::optional<View>& light,
                                         const ShadedPicture& picture, const Execution& execution) {
   DrawnMap& drawn = maps_[number];
@@ -125,15 +138,7 @@ const ShadowMap* LightShadows::draw_map(std::size_t number, const std::optional<
     return &drawn.map;
   }
   if (!drawn.has_drawn) {
-    const Surfaces& surfaces = casters(execution);
-    // A first map may be the only one, and a ZBuffer would build clusters for it.
-    if (!made_cluster_set(surfaces)) {
-      drawn.planes = zbuffer(surfaces, *light, execution);
-    } else {
-      drawer_.give_back(std::move(drawn.planes));
-      drawer_.draw(surfaces, *light, execution);
-      drawn.planes = drawer_.take();
-    }
+    drawn.planes = draw_casters(*light, std::move(drawn.planes), execution);
     drawn.map.draw(drawn.planes, execution);
     drawn.has_drawn = true;
   }

@@ -62,6 +62,8 @@ class LightShadows {
 
   /// The surfaces, or their opaque part. The first call makes the opaque part if some material is see-through.
   [[nodiscard]] const Surfaces& casters(const Execution& execution);
+  /// What a view sees of the casters; reuses `planes`, of any size.
+  [[nodiscard]] Visible draw_casters(const View& view, Visible&& planes, const Execution& execution);
 
  private:
   /// The map of one light; its address does not change.
@@ -85,6 +87,7 @@ class LightShadows {
 
   const PictureLights* lights_ = nullptr;
   ZBuffer drawer_;
+  int drawn_directly_ = 0;                              ///< pictures of casters without clusters
   std::vector<DrawnMap> maps_;                          ///< the key light's first, then those of the file
   std::vector<const ShadowMap*> far_maps_, near_maps_;  ///< by light of the picture; null: no shadows
   std::optional<RayIndex> index_;
