@@ -170,12 +170,15 @@ TEST(LaidLines, LookAtFewOthers) {
     }
 }
 
-/// Lines within a cell may all be compared with each other, as the header states, but not more often.
+/// Lines within a cell may all be compared with each other, as the header states, but each pair only once. A heap that
+/// fills its grid is looked up like any drawing.
 TEST(LaidLines, LookAtNoMoreThanAllWithinACell) {
   constexpr std::size_t count = 4000;
-  for (const MakeSegment& make : {MakeSegment(long_in_a_pixel), MakeSegment(short_in_a_pixel), MakeSegment(in_a_heap),
-                                  MakeSegment(in_a_far_heap)})
-    EXPECT_LT(looked_at(lines_of(make, count), 0.002), 1u);
+  const std::pair<MakeSegment, std::size_t> cases[] = {{long_in_a_pixel, count * count / 2},
+                                                       {short_in_a_pixel, count * count / 4},
+                                                       {in_a_heap, 20 * count},
+                                                       {in_a_far_heap, count * count / 2}};
+  for (const auto& [make, most] : cases) EXPECT_LE(looked_at(lines_of(make, count), 0.002), most);
 }
 
 }  // namespace
