@@ -84,7 +84,7 @@ py::object offset_of_pair(const HeldFightAreas& areas, const HeldExact& exact, s
   if (exact.of != areas.of || exact.moves != areas.moves)
     throw Error(ErrorCode::bad_argument, "exact", "is of other surfaces");
   if (!py::cast(exact.exact->view).equal(py::cast(found.view)))
-    throw Error(ErrorCode::bad_argument, "exact", "is of another view");
+    throw Error(ErrorCode::bad_argument, "exact", "was made for another view; both must have the same view");
   exact.check_current();
   const auto remedy = run(threads, progress, [&](const Execution& execution) {
     const std::shared_lock lock(exact.of->scene->reading);

@@ -109,7 +109,7 @@ def test_maps_are_the_command_lines(cli):
     (lambda s, v: s.find_exact_visible(v).find_depth_fights(fm.Surfaces(s.scene.copy()).zbuffer(v)), fm.Error,
      "^answer: is of other surfaces"),
     (lambda s, v: s.find_fighting_faces(v, "d16").find_offset(s.find_exact_visible(v.sampled(2)), 0), fm.Error,
-     "^exact: is of another view"),
+     "^exact: was made for another view"),
 ])
 def test_wrong_uses_end_in_errors(plates, call, error, message):
     with pytest.raises(error, match=message):

@@ -87,7 +87,7 @@ TEST(RefusedReports, AnswersOfDifferentViews) {
   EXPECT_NE(agreement_words.find("different views"), std::string::npos) << agreement_words;
   const ExactVisible exact = find_exact_visible(surfaces, small_view());
   EXPECT_EQ(words([&] { (void)find_depth_fights(surfaces, exact, wider); }),
-            "depth fights: the two answers are of different views");
+            "depth fights: the two results were made for different views; both must have the same view");
   EXPECT_EQ(words([&] { (void)find_depth_fights(surfaces, exact, a); }), "none");
   Agreement fine = check_agreement(surfaces, a, a);
   EXPECT_EQ(words([&] { see_through(fine, surfaces, wider, wider); }), "agreement: the layers are of different views");

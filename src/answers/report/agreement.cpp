@@ -323,7 +323,8 @@ void check_views(const Visible& a, const Visible& b) {
   const std::size_t count = v.sample_count();
   if (v.width != w.width || v.height != w.height || v.samples != w.samples || v.world_from_eye != w.world_from_eye ||
       a.primitives.size() != count || b.primitives.size() != count || a.keys.size() != count || b.keys.size() != count)
-    throw Error(ErrorCode::bad_argument, "agreement", "the two answers are of different views");
+    throw Error(ErrorCode::bad_argument, "agreement",
+                "the two results were made for different views; both must have the same view");
 }
 
 }  // namespace

@@ -63,7 +63,8 @@ void check_views(const ExactVisible& exact, const Visible& answer) {
   const View &a = exact.view, &b = answer.view;
   if (a.width != b.width || a.height != b.height || a.samples != b.samples || a.world_from_eye != b.world_from_eye ||
       exact.primitives.size() != a.sample_count() || exact.tied.size() != a.sample_count())
-    throw Error(ErrorCode::bad_argument, "depth fights", "the two answers are of different views");
+    throw Error(ErrorCode::bad_argument, "depth fights",
+                "the two results were made for different views; both must have the same view");
 }
 
 glm::vec3 heat(float share) {

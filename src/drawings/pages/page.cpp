@@ -81,7 +81,7 @@ void save(std::span<const Page> pages, const std::string& path, std::optional<Pa
   if (!format)
     throw Error(ErrorCode::bad_argument, path, "", "the suffix names no format; use .svg, .pdf, .dxf or .json");
   if (pages.size() > 1 && *format != PageFormat::pdf)
-    throw Error(ErrorCode::unsupported, path, "", "of these formats PDF alone has several pages");
+    throw Error(ErrorCode::unsupported, path, "", "only PDF files can have several pages");
   const Page& page = pages[0];
   OutputFile file(path);
   switch (*format) {

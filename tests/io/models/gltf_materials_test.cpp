@@ -90,7 +90,8 @@ void expect_no_glow_and_no_metal(const Scene& scene, const std::string& who) {
   EXPECT_EQ(m.emissive, glm::vec3(0)) << "white on white";
   EXPECT_EQ(m.metallic, 0.0f);
   EXPECT_EQ(m.roughness, 0.75f);
-  EXPECT_THAT(scene.warnings, testing::Contains("t.glb: " + who + ": does not glow without its emissive texture"));
+  EXPECT_THAT(scene.warnings,
+              testing::Contains("t.glb: " + who + ": the emissive texture is missing, so the material does not glow"));
   EXPECT_THAT(scene.warnings,
               testing::Contains("t.glb: " + who + ": is no metal without its metallic-roughness texture"));
 }

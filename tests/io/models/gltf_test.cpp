@@ -182,7 +182,8 @@ TEST(Gltf, MatricesArePaddedByColumn) {
   GltfMaker maker = points_maker();
   maker.accessor(std::vector<float>(20), {"MAT2", 5126}, 5);
   maker.show(R"({"attributes":{"POSITION":0,"COLOR_0":1}})");
-  EXPECT_THAT(error_of(maker), HasSubstr("COLOR_0: is of matrices")) << "four numbers, but no colour";
+  EXPECT_THAT(error_of(maker), HasSubstr("COLOR_0: holds matrices, which are not allowed here"))
+      << "four numbers, but no colour";
 }
 
 TEST(Gltf, IndicesWithoutBufferViewAreZero) {

@@ -185,8 +185,9 @@ TEST(Obj, WithoutItsTextureNothingGlows) {
     const Scene scene = load(path);
     EXPECT_EQ(scene.materials.at(0).emissive, glm::vec3(0)) << lines;
     EXPECT_EQ(scene.materials[0].base_color, glm::vec4(1)) << "nor is all of it black";
-    EXPECT_THAT(scene.warnings, ElementsAre(path + ": material lamp: texture left out: none.png: cannot be found",
-                                            path + ": material lamp: does not glow without its emissive texture"));
+    EXPECT_THAT(scene.warnings,
+                ElementsAre(path + ": material lamp: texture left out: none.png: cannot be found",
+                            path + ": material lamp: the emissive texture is missing, so the material does not glow"));
   }
 }
 

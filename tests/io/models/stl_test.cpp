@@ -103,7 +103,7 @@ TEST(Stl, AsciiErrorsNameTheLine) {
             "model: line 5: \"endloop\" where \"vertex\" was expected");
   EXPECT_EQ(error("solid a\nface"), "model: line 2: \"face\" where \"facet\" or \"endsolid\" was expected");
   EXPECT_EQ(error("solid a\nsolid b\n"), "model: line 2: \"solid\" within a solid");
-  EXPECT_EQ(error("just text"), "model: line 1: text STL starts with \"solid\"");
+  EXPECT_EQ(error("just text"), "model: line 1: the file looks like a text STL, but does not start with \"solid\"");
   EXPECT_THAT(error("solid a\nfacet normal 0 0"), HasSubstr("the file ends within a triangle"));
 }
 

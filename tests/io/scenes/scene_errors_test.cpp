@@ -29,7 +29,7 @@ TEST(SceneErrors, NameThePlaceAndTheReason) {
   EXPECT_EQ(error(R"({"objects": [], "categories": ["a", {"name": "b", "number": 1}]})"),
             "categories[1]: the number is there twice");
   EXPECT_EQ(error(R"({"objects": [], "materials": {"red": {"color": "red"}}})"),
-            R"(materials.red.color: "red" is not a colour; #rgb, #rrggbb and three numbers from 0 to 1 are)");
+            R"(materials.red.color: "red" is not a colour; expected #rgb, #rrggbb or three numbers from 0 to 1)");
   EXPECT_EQ(error(R"({"objects": [], "materials": {"red": {"opacity": 2}}})"),
             "materials.red.opacity: the number is not between 0 and 1");
   const auto object = [&](const std::string& text) { return folder.error_of_object(text); };
@@ -44,7 +44,7 @@ TEST(SceneErrors, NameThePlaceAndTheReason) {
   EXPECT_EQ(error(R"({"materials": {"red": {}}, "objects": [{"model": "pair.obj", "material": {"brass": "red"}}]})"),
             R"(objects[0].material: the model has no material "brass")");
   EXPECT_EQ(object(R"({"model": "corner.off", "parts": "both"})"),
-            R"(objects[0].parts: "both" is neither together nor apart)");
+            R"(objects[0].parts: "both" is not allowed; expected "together" or "apart")");
   EXPECT_EQ(object(R"({"model": "builtin:spheres"})"),
             R"(objects[0].model: has several curved objects, which cannot be one; say "parts": "apart")");
 }
@@ -68,7 +68,7 @@ TEST(SceneErrors, PosesAreNumbersThatPlaceSomething) {
             R"(objects[0].pose: "nan" in that file is not a number between -1e30 and 1e30)");
   EXPECT_THAT(error(R"("pose": "none.txt")"), HasSubstr("none.txt: cannot be found"));
   EXPECT_EQ(error(R"("pose": [1,0,0,0, 0,1,0,0, 0,0,1,0], "scale": 2)"),
-            "objects[0].pose: stands beside scale; one or the other says the place");
+            "objects[0].pose: is given beside scale; give only one of them");
   EXPECT_EQ(error(R"("pose_convention": "model-to-world")"), "objects[0].pose_convention: there is no pose");
   EXPECT_EQ(error(R"("pose": [1,0,0,0, 0,1,0,0, 0,0,1,0], "pose_convention": "opencv")"),
             "objects[0].pose_convention: must be model-to-world or world-to-model");

@@ -142,7 +142,7 @@ void lose_emissive_texture(Material& material, const std::string& who, std::vect
   material.emissive_texture = {};
   if (material.emissive == glm::vec3(0)) return;
   material.emissive = glm::vec3(0);
-  warnings.push_back(who + ": does not glow without its emissive texture");
+  warnings.push_back(who + ": the emissive texture is missing, so the material does not glow");
 }
 
 void lose_metallic_roughness_texture(Material& material, const std::string& who, std::vector<std::string>& warnings) {

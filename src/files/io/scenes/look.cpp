@@ -19,10 +19,10 @@ glm::vec4 color_of_hex(const JsonValue& value) {
     if (c >= '0' && c <= '9') return c - '0';
     if (c >= 'a' && c <= 'f') return c - 'a' + 10;
     if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-    value.fail(in_quotes(text) + " is not a colour; #rgb, #rrggbb and three numbers from 0 to 1 are");
+    value.fail(in_quotes(text) + " is not a colour; expected #rgb, #rrggbb or three numbers from 0 to 1");
   };
   if (!text.starts_with('#') || (text.size() != 4 && text.size() != 7))
-    value.fail(in_quotes(text) + " is not a colour; #rgb, #rrggbb and three numbers from 0 to 1 are");
+    value.fail(in_quotes(text) + " is not a colour; expected #rgb, #rrggbb or three numbers from 0 to 1");
   glm::vec4 srgb(1);
   for (std::size_t c = 0; c < 3; ++c) {
     const int byte = text.size() == 4 ? 17 * digit(1 + c) : 16 * digit(1 + 2 * c) + digit(2 + 2 * c);

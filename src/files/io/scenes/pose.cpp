@@ -123,7 +123,7 @@ glm::dmat4 read_rotation(const JsonValue& value) {
 glm::dmat4 read_pose(const JsonValue& object) {
   if (const std::optional<JsonValue> pose = object.find("pose")) {
     for (const char* const other : {"translation", "rotation", "scale"})
-      if (has(object, other)) pose->fail(std::string("stands beside ") + other + "; one or the other says the place");
+      if (has(object, other)) pose->fail(std::string("is given beside ") + other + "; give only one of them");
     return read_matrix(object, *pose);
   }
   if (const auto convention = object.find("pose_convention")) convention->fail("there is no pose");

@@ -70,7 +70,8 @@ bool read_has_parts(const JsonValue& object) {
   const std::optional<JsonValue> value = object.find("parts");
   if (!value) return false;
   const std::string text = value->to_string();
-  if (text != "together" && text != "apart") value->fail(in_quotes(text) + " is neither together nor apart");
+  if (text != "together" && text != "apart")
+    value->fail(in_quotes(text) + " is not allowed; expected \"together\" or \"apart\"");
   return text == "apart";
 }
 

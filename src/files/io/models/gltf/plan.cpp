@@ -37,7 +37,7 @@ class AttributeReader {
     const Accessor& accessor = data_.accessor(id);
     if (accessor.components < allowed.least_components || accessor.components > allowed.most_components)
       found->fail("has " + std::to_string(accessor.components) + " components");
-    if (accessor.rows != accessor.components) found->fail("is of matrices");
+    if (accessor.rows != accessor.components) found->fail("holds matrices, which are not allowed here");
     if (allowed.integers && accessor.component != Component::u8 && accessor.component != Component::u16)
       found->fail("is not of unsigned bytes or shorts");
     if (count_ && *count_ != accessor.count)

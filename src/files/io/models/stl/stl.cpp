@@ -169,7 +169,7 @@ StlEncoding stl_encoding(Bytes start, std::uint64_t file_size) {
 StlEncoding known_stl_encoding(Bytes start, std::uint64_t file_size, const ModelSource& source) {
   const StlEncoding encoding = stl_encoding(start, file_size);
   if (encoding != StlEncoding::neither) return encoding;
-  if (is_text(start)) source.fail("line 1", "text STL starts with \"solid\"");
+  if (is_text(start)) source.fail("line 1", "the file looks like a text STL, but does not start with \"solid\"");
   if (file_size < prelude_size)
     source.fail("byte " + std::to_string(file_size), "the file ends within the 84 bytes of a binary STL header");
   return StlEncoding::binary;  // broken; its reader reports the fault

@@ -275,7 +275,7 @@ class ModelPartReader : public XmlPart {
 
   void start_object(const TagReader& tags) {
     const auto [entry, is_new] = part_.objects.try_emplace(tags.index("id"));
-    if (!is_new) tags.fail("id", "is that of an earlier object, too");
+    if (!is_new) tags.fail("id", "is already used by an earlier object");
     if (part_.objects.size() > max_objects) source().fail_limit(place(), "too many objects");
     object_ = &entry->second;
     object_->line = line();
