@@ -205,8 +205,8 @@ struct ShadeInput {
   const VisiblePixels* pixels = nullptr;  ///< not for Shading::depth, nor for figures
   /// For Shadows::map of the key light: what is visible in key_light_view(). Null: shade() computes it.
   const Visible* seen_by_light = nullptr;
-  /// For Shadows::rays: the index of the surfaces. If it is null, or if there are see-through
-  /// materials, shade() makes its own.
+  /// For Shadows::rays: the index of the surfaces. If it is null, or if there are see-through materials,
+  /// shade() makes its own.
   const RayIndex* index = nullptr;
 
   /// The surface at every sample, or, of `pixels`, at the first sample of each pixel.

@@ -27,6 +27,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "base/parallel.h"
 #include "lines/creases/creases.h"
@@ -272,6 +273,16 @@ std::optional<std::vector<SidePair>> paired_sides(std::span<const Side> sides, c
                    [](const OwnedSide& a, const OwnedSide& b) { return a.side.opposite < b.side.opposite; });
   if (!left.empty() && !pair_up(left, pairs)) return std::nullopt;
   return pairs;
+}
+
+CornerTable corner_table(const WeldedMesh& mesh, const Execution& execution) {
+  if (mesh.triangles.size() > Corner::most_triangles)
+    throw Error(ErrorCode::limit_exceeded, "lines",
+                "more than " + std::to_string(Corner::most_triangles) + " triangles");
+  const auto list = [&](std::size_t t, const auto& add) {
+    for (std::uint32_t k = 0; k < 3; ++k) add((&mesh.triangles[t].x)[k], Corner(std::uint32_t(t), k));
+  };
+  return {mesh.positions.size(), mesh.triangles.size(), list, execution};
 }
 
 Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options,

@@ -6,8 +6,6 @@
 //                            last:  c d a b        is the corner whose `next` is its `last`: the triangle beyond
 //                                                  that edge. In a closed star every corner has one partner.
 
-#include <string>
-
 #include "lines/mesh/corner_table.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -110,16 +108,6 @@ namespace frontmost::lines_detail {
 FRONTMOST_KERNELS(Stars);
 
 StarsKernel stars_kernel(Isa isa) { return kernel_for(StarsKernels, isa); }
-
-CornerTable corner_table(const WeldedMesh& mesh, const Execution& execution) {
-  if (mesh.triangles.size() > Corner::most_triangles)
-    throw Error(ErrorCode::limit_exceeded, "lines",
-                "more than " + std::to_string(Corner::most_triangles) + " triangles");
-  const auto list = [&](std::size_t t, const auto& add) {
-    for (std::uint32_t k = 0; k < 3; ++k) add((&mesh.triangles[t].x)[k], Corner(std::uint32_t(t), k));
-  };
-  return {mesh.positions.size(), mesh.triangles.size(), list, execution};
-}
 
 }  // namespace frontmost::lines_detail
 #endif  // HWY_ONCE
