@@ -73,21 +73,13 @@ if(FRONTMOST_LLD)
   endif()
 endif()
 
-find_program(FRONTMOST_CCACHE ccache)
-mark_as_advanced(FRONTMOST_CCACHE)
-if(FRONTMOST_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${FRONTMOST_CCACHE})
-endif()
-
 # Headers take most of the time of a first build. So common headers are compiled once for each target, and the files of
-# a folder are compiled together. Neither is done with a compiler cache: checkouts could then share fewer compiled
-# files, and a change of one file would take longer.
-set(together ON)
-if(CMAKE_CXX_COMPILER_LAUNCHER)
+# a folder are compiled together. With a compiler cache, set OFF and CMAKE_CXX_COMPILER_LAUNCHER: a change of one file
+# then compiles that file alone.
+option(FRONTMOST_TOGETHER "Precompile common headers, and compile the files of a folder as one" ON)
+if(NOT FRONTMOST_TOGETHER)
   set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON)
-  set(together OFF)
 endif()
-option(FRONTMOST_TOGETHER "Compile the files of a folder as one" ${together})
 
 # frontmost_together(TARGET BYTES [BY_FOLDER]) : joins consecutive sources into units of about BYTES bytes; with
 # BY_FOLDER, sources of different folders are not joined. Kernels are compiled alone, because they include themselves

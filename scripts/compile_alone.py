@@ -26,7 +26,7 @@ def error_of(entry):
 
 
 def main():
-    options = ["-DFRONTMOST_TOGETHER=OFF", "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
+    options = ["-DFRONTMOST_TOGETHER=OFF", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
                "-DFRONTMOST_TESTS=ON", "-DFRONTMOST_BENCH=ON", "-DFRONTMOST_PYTHON=AUTO"]
     subprocess.run(["cmake", "--preset", "release", "-B", BUILD, *options], cwd=ROOT, check=True, capture_output=True)
     entries = json.loads((BUILD / "compile_commands.json").read_text())

@@ -10,6 +10,7 @@
 // threads.
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "base/parallel.h"
 #include "base/work_limit.h"
