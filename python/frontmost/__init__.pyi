@@ -71,7 +71,7 @@ class Object:
         """The number of its mesh in Scene.meshes."""
     @property
     def pose(self) -> NDArray[numpy.float64]:
-        """4x4: what takes the mesh's points as they were given, vertices + origin, to the world in the file's coordinates."""
+        """4x4 transform of the mesh's points, vertices + origin, to the world in the file's coordinates."""
     @property
     def category(self) -> str | None:
         """What kind of thing it is, where the scene says so."""
@@ -143,11 +143,11 @@ class Scene:
     def keep_faces(self, primitives: ArrayLike) -> Scene:
         """A scene of some triangles alone, such as those that are ever seen; names, places and materials stay.
 
-        primitives: (n,) numbers of triangles, ascending. Objects of which none is kept are gone. Mesh.face_ids tells which
+        primitives: (n,) numbers of triangles, ascending. Objects without kept triangles are removed. Mesh.face_ids tells which
         polygon of this scene's mesh each triangle came from.
         """
     def tessellate(self, view: View, pixels: float) -> Scene:
-        """A scene whose curved meshes (spheres, patches) are cut into triangles anew, none of which is farther than so many
+        """A scene with new triangles for its curved meshes (spheres, patches), none of which is farther than so many
         pixels of the view from its surface. Mesh.face_ids tells which sphere or patch each is of. Raises Error:
         bad_argument, limit_exceeded."""
     name: str
@@ -182,7 +182,7 @@ class Scene:
         """
     @property
     def hidden_by_file(self) -> list[str]:
-        """Names of what the file holds and hides (glTF's KHR_node_visibility): it is not drawn, and is none of objects."""
+        """Names of nodes that the file hides (glTF's KHR_node_visibility); they are not drawn, and are not among objects."""
     def find(self, name: str | int) -> int:
         """The number of an object. Raises ValueError where none, or several, are so called."""
     def set_categories(self, categories: Mapping[str, str | int | tuple[int, str]]) -> None:
@@ -704,110 +704,109 @@ class Fragments:
         """(n,) records: mask (a bit for each sub-sample), primitive, key, key_dx, key_dy, opacity."""
     @property
     def first(self) -> NDArray[numpy.uint64]:
-        """(height * width + 1,): those of pixel i, row by row, are rows[first[i]:first[i + 1]]."""
+        """(height * width + 1,): the fragments of pixel i, counted row by row, are rows[first[i]:first[i + 1]]."""
     @property
     def samples(self) -> NDArray[numpy.int32]:
-        """(sub-samples, 2): their places in 1/256 pixel from the pixel's top left corner."""
+        """(sub-samples, 2): positions in 1/256 pixel from the pixel's top left corner."""
     def at(self, x: int, y: int) -> NDArray[Any]:
-        """The rows of a pixel."""
+        """The fragments of a pixel: its part of rows."""
     def __len__(self) -> int: ...
 
 class PaintOrder:
-    """Polygons in the order of painting: where two overlap, the later one is before the other. Arrays are made anew each
-    time."""
+    """Polygons in the order of painting: where two overlap, the later one is in front. Every access makes a new array."""
     @property
     def polygons(self) -> NDArray[Any]:
-        """(n,) records: primitive, of which it is all or a convex piece; first_corner and corner_count, in corners."""
+        """(n,) records: primitive, of which the polygon is all or a convex piece; first_corner and corner_count, in corners."""
     @property
     def corners(self) -> NDArray[numpy.float64]:
-        """(m, 3): x and y in pixels of the view, and the planar depth; counter-clockwise as they are seen."""
+        """(m, 3): x and y in pixels of the view, and the planar depth; counter-clockwise on the screen."""
     @property
     def is_cut(self) -> NDArray[numpy.bool_]:
-        """(m,) whether the side that begins at a corner was cut, and is no edge of the triangle."""
+        """(m,) whether the side from this corner on is a cut, and no edge of the triangle."""
     @property
     def steps(self) -> dict[str, int]:
-        """What it took: how many pairs each of the tests decided, and how many exchanges, cycles and cuts there were."""
+        """The number of pairs that each test decided, and the numbers of exchanges, cycles and cuts."""
     def paint(self) -> Visible:
-        """What is seen when they are painted one over the other, at the samples of the z-buffer. Raises Error where objects
-        were moved since."""
+        """The visible polygons at the samples of the z-buffer, painted one over the other. Raises Error if objects were moved
+        since the order was made."""
     def visible_parts(self, *, threads: int = 0, progress: Progress = None) -> VisibleParts:
-        """What of each is seen, as convex polygons in the same order. All count as opaque."""
+        """The visible parts of the polygons, as convex polygons in the same order. All polygons count as opaque."""
     def __len__(self) -> int: ...
 
 class VisibleParts:
-    """What is seen of a PaintOrder: convex polygons within the picture, in the same order, which do not overlap."""
+    """The visible parts of a PaintOrder: convex polygons within the picture, in the same order, without overlaps."""
     @property
     def polygons(self) -> NDArray[Any]:
-        """As PaintOrder.polygons."""
+        """Records like those of PaintOrder.polygons."""
     @property
     def corners(self) -> NDArray[numpy.float64]:
-        """As PaintOrder.corners."""
+        """Corners like those of PaintOrder.corners."""
     @property
     def is_cut(self) -> NDArray[numpy.bool_]:
-        """As PaintOrder.is_cut."""
+        """Cut sides like those of PaintOrder.is_cut."""
     def __len__(self) -> int: ...
 
 class Section:
-    """What a plane leaves of a scene."""
+    """The half of a scene behind a cutting plane."""
     @property
     def scene(self) -> Scene:
-        """Objects with their numbers and names, placed in the world, and closed where they were: the cut is filled."""
+        """Objects with their numbers and names, in world space. Closed objects stay closed: the cut is filled."""
     @property
     def faces(self) -> NDArray[Any]:
-        """(n,) records of what was cut: object; material, of its filling alone; area, without holes; open_count, of lines
-        that do not close."""
+        """(n,) records of cut objects: object; material, which only the filling has; area, without holes; open_count, the number
+        of outlines that do not close."""
     @property
     def outlines(self) -> list[list[NDArray[numpy.float32]]]:
-        """For each of faces its closed lines, (k, 3) in the world, clockwise around holes. No copy; not writable."""
+        """For each row of faces its closed outlines, (k, 3) in world space, clockwise around holes. No copy; not writable."""
 
 class Occlusion:
-    """Finds out for many views what is certainly hidden, without drawing it: between the samples of every picture, too.
+    """Finds for many views the objects that are certainly hidden, also between the samples of every picture.
 
-    unit: what counts as an object: "instances", their "parts" that hang together, or "clusters" of up to 128 triangles.
-    What Surfaces.move() moves is followed at the next cull().
+    unit: the objects: "instances", their connected "parts", or "clusters" of up to 128 triangles. The next cull() follows
+    Surfaces.move().
     """
     def __init__(self, surfaces: Surfaces, *, unit: ObjectUnit = "instances", threads: int = 0,
                  progress: Progress = None) -> None: ...
     def cull(self, view: View, *, cell: int = 2, threads: int = 0, progress: Progress = None) -> NDArray[numpy.uint8]:
-        """(n,) of each object what is known of it: object_sights[...], 0 outside the view, 1 hidden, 2 may be seen.
+        """(n,) by object: object_sights[...], 0 outside the view, 1 hidden, 2 may be seen.
 
-        cell: sides of the cells of the screen that are found covered, 1 to 64 pixels; smaller ones find more.
+        cell: side of the screen cells that objects cover, 1 to 64 pixels; smaller cells find more hidden objects.
         """
     def is_hidden(self, boxes: ArrayLike) -> NDArray[numpy.bool_]:
-        """(n,) whether certainly nothing is seen of what lies within a box, in the view of the last cull(): of things that
-        are not in the scene. boxes: (n, 2, 3) low and high corners in the world. True before the first cull()."""
+        """(n,) whether everything within a box is certainly hidden in the view of the last cull(), for things that are not in
+        the scene. boxes: (n, 2, 3) low and high corners in world space. True before the first cull()."""
     @property
     def object(self) -> NDArray[numpy.uint32]:
-        """(n,) numbers of objects of the scene."""
+        """(n,) by object: number of its object in the scene."""
     @property
     def part(self) -> NDArray[numpy.uint32]:
-        """(n,) which part or cluster of that it is."""
+        """(n,) by object: number of the part or cluster within the object of the scene."""
     def triangles(self, number: int) -> NDArray[numpy.uint32]:
-        """Rows of Mesh.faces that make up one."""
+        """Rows of Mesh.faces that an object consists of."""
     @property
     def surfaces(self) -> Surfaces:
-        """Of which it is."""
+        """The surfaces that were given."""
     def __len__(self) -> int: ...
 
 class Agreement:
     """How far two answers agree."""
     @property
     def counts(self) -> dict[DifferenceKind, int]:
-        """Samples: "none" where both show the same; "edge", a triangle's edge passes within 1/128 pixel; "depth", surfaces
-        nearer to each other than can be told apart; "translucent", one looks through what the other shows; "unexplained",
-        one of them is wrong."""
+        """Numbers of samples by reason: "none", both answers are equal; "edge", a triangle's edge passes within 1/128 pixel;
+        "depth", two depths are closer than floats resolve; "translucent", one answer looks through a surface that the other
+        shows; "unexplained", one answer is wrong."""
     @property
     def differing(self) -> int:
-        """Samples at which they part, for whatever reason."""
+        """Samples at which the answers differ, for any reason."""
     @property
     def differences(self) -> NDArray[numpy.uint8]:
         """(samples, height, width): difference_kinds[...]. No copy; not writable."""
 
 class DepthSetup:
-    """All that the precision of a depth buffer depends on. Distances are planar and may be of any shape, which answers have.
+    """A depth buffer's planes and format, which decide its precision. Distances are planar arrays; answers have their shape.
 
-    reversed: depth 1 at the near plane, 0 at the far one. Raises Error bad_argument, also for distances that are not from
-    near to far.
+    reversed: depth 1 at the near plane, 0 at the far plane. Raises Error bad_argument, also for distances outside near to
+    far.
     """
     def __init__(self, near: float, far: float, *, format: DepthFormat = "d24", reversed: bool = False,
                  orthographic: bool = False) -> None: ...
@@ -819,7 +818,7 @@ class DepthSetup:
         """The distance of the far plane; may be infinite."""
     @property
     def format(self) -> DepthFormat:
-        """How depths are stored."""
+        """The format of stored depths."""
     @property
     def reversed(self) -> bool:
         """Whether the near plane has depth 1."""
@@ -827,258 +826,259 @@ class DepthSetup:
     def orthographic(self) -> bool:
         """Whether the projection is parallel."""
     def resolvable_gap(self, distance: ArrayLike) -> Any:
-        """The smallest gap behind a distance that the format tells apart; inf where it tells nothing apart."""
+        """The smallest gap behind a distance that the format resolves; inf if it resolves none."""
     def rounding_gap(self, distance: ArrayLike, reach: float | None = None) -> Any:
-        """What the floats of positions and transforms add to it. reach: how far corners are from the eye and the origin;
-        None: twice the distance."""
+        """The gap that floats of positions and transforms add. reach: greatest distance of vertices from the eye and the
+        origin; None: twice the distance."""
     def certain_gap(self, distance: ArrayLike, reach: float | None = None) -> Any:
-        """Both together: what every picture resolves at every pixel, of surfaces that face it."""
+        """The sum of resolvable_gap() and rounding_gap(): every picture resolves this gap at every pixel, between surfaces that
+        face the eye."""
     def share_of_values(self, distance: ArrayLike) -> Any:
-        """How much of the format's values lie between the near plane and a distance, 0 to 1."""
+        """The share of the format's values between the near plane and a distance, 0 to 1."""
     def near_for_gap(self, distance: float, gap: float) -> float | None:
-        """The smallest near distance that resolves a gap at a distance; 0: any does; None: none does."""
+        """The smallest near distance that resolves a gap at a distance; 0: any near distance does; None: none does."""
     def round_distances(self) -> NDArray[numpy.float64]:
-        """The planes, and 1, 2, 5, 10, 20, ... between them: for tables."""
+        """The distances of both planes, and 1, 2, 5, 10, 20, ... between them, for tables."""
 
 class ExactVisible:
-    """What is nearest at every sample, without rounding."""
+    """The nearest triangle of every sample, decided without rounding."""
     @property
     def view(self) -> View:
-        """Of which it is."""
+        """The view that was given."""
     @property
     def primitives(self) -> NDArray[numpy.uint32]:
-        """(samples, height, width): the lowest number of the nearest. No copy; not writable."""
+        """(samples, height, width): the nearest triangle, the lowest number of several. No copy; not writable."""
     @property
     def tied(self) -> NDArray[numpy.bool_]:
-        """(samples, height, width): where another triangle is exactly as near. No copy; not writable."""
+        """(samples, height, width): whether another triangle is exactly as near. No copy; not writable."""
     def find_depth_fights(self, answer: Visible, *, threads: int = 0, progress: Progress = None) -> DepthFights:
-        """Where an answer, such as DepthBuffer.visible(), shows what is not the nearest."""
+        """The samples at which an answer, such as DepthBuffer.visible(), does not show the nearest triangle."""
     def try_remedies(self, setup: DepthSetup, *, threads: int = 0,
                      progress: Progress = None) -> list[tuple[DepthSetup, int]]:
-        """Other depth buffers that have fewer wrong samples in this view, with how many, found by drawing: planes that fit,
-        24 bits, reversed floats; up to the first that has none."""
+        """Other depth buffers with fewer wrong samples in this view, and the number of these samples, found by drawing: fitted
+        planes, 24 bits, reversed floats; the list ends at the first without wrong samples."""
 
 class DepthFights:
-    """Where an answer shows a surface that is not the nearest."""
+    """Samples at which an answer shows a surface that is not the nearest."""
     @property
     def view(self) -> View:
-        """Of which they are."""
+        """The view that was given."""
     @property
     def covered(self) -> int:
-        """Samples at which there is something to see."""
+        """Samples that see a surface."""
     @property
     def wrong(self) -> int:
-        """Samples at which something farther, or nothing, is seen."""
+        """Samples at which the answer shows a farther surface, or none."""
     @property
     def tied(self) -> int:
         """Samples at which several surfaces are exactly nearest, so that no answer is wrong."""
     @property
     def pairs(self) -> NDArray[Any]:
         """(n,) records, most samples first: seen, nearer (numbers of objects; no_index: nothing), samples; farthest, the
-        most that what is seen lies behind the other."""
+        greatest distance of the seen object behind the nearer one."""
     @property
     def errors(self) -> NDArray[numpy.float32]:
-        """(samples, height, width): how far what is seen lies behind the nearest, as a share of the nearest's distance; 0
-        where the answer is right, inf where nothing is seen. No copy; not writable."""
+        """(samples, height, width): distance of the shown surface behind the nearest, as a share of the nearest's distance; 0
+        where the answer is right, inf where it shows nothing. No copy; not writable."""
     def image(self, *, threads: int = 0, progress: Progress = None) -> Bitmap:
-        """A map: violet (a millionth of the distance) over red to yellow (a tenth), light blue where nothing is seen, over
-        the model in grey."""
+        """A map over the model in grey: violet (an error of a millionth of the distance) through red to yellow (a tenth), light
+        blue where the answer shows nothing."""
 
 class FightAreas:
-    """Areas of the picture in which a depth buffer may show the wrong one of two faces."""
+    """Areas of the picture in which a depth buffer may show the wrong face of two."""
     @property
     def view(self) -> View:
-        """Of which they are."""
+        """The view that was given."""
     @property
     def setup(self) -> DepthSetup:
-        """The buffer."""
+        """The depth buffer that was given."""
     @property
     def faces(self) -> NDArray[Any]:
         """(n,) records: first and second, numbers of triangles; kind, fight_kinds[...]; area and visible_area in square
         pixels; distance, the planar depth of the nearest point."""
     @property
     def polygons(self) -> list[NDArray[numpy.float64]]:
-        """For each of faces where that is: (k, 2) corners in pixels, convex. No copy; not writable."""
+        """For each row of faces its area: (k, 2) corners in pixels, convex. No copy; not writable."""
     @property
     def objects(self) -> NDArray[Any]:
-        """(m,) records, the greatest visible area first: first and second, numbers of objects; kind; areas, how many; area and
-        visible_area of their union; distance; gap, the smallest that the format tells apart there."""
+        """(m,) records, the greatest visible area first: first and second, numbers of objects; kind; areas, their number; area and
+        visible_area of their union; distance; gap, the smallest that the format resolves there."""
     def find_offset(self, exact: ExactVisible, pair: int, *, threads: int = 0,
                     progress: Progress = None) -> tuple[int, float, float] | None:
-        """The least polygon offset that ends the fights of a row of objects: (object, factor, units), found by drawing; None
-        where none is enough. exact: of the same view."""
+        """The least polygon offset that ends the fights of a row of objects: (object, factor, units), found by drawing; None if no
+        offset does. exact: an ExactVisible of the same view."""
     def __len__(self) -> int: ...
 
 def write_coco(path: Path, seen: Visible | Iterable[Visible], *, names: Iterable[str] | None = None,
                polygons: bool = False, leave_out: Sequence[str] = [], canvas: float = 3.0, threads: int = 0,
                progress: Progress = None) -> list[str]:
-    """Writes annotations of COCO, as `frontmost report --coco` does, of one view, or of all that an iterable gives.
+    """Writes COCO annotations of one view, or of all views of an iterable, like `frontmost report --coco`.
 
-    A generator has one Visible in memory at a time. names: of the pictures, "file_name"; None: the scene's name, and the
-    view's number from 0. polygons: masks as polygons, not as run lengths. leave_out: names of objects, or of categories,
-    that get no annotation and hide others all the same. canvas: as account() has it. Returns the paths of the files.
+    A generator keeps one Visible in memory at a time. names: "file_name" of each picture; None: the scene's name and the
+    view's number from 0. polygons: masks as polygons, not as run lengths. leave_out: names of objects or categories without
+    annotations; they still hide other objects. canvas: see account(). Returns the paths of the files.
     Raises Error: file_unwritable, unsupported, bad_argument.
     """
 
 def write_bop(folder: Path, seen: Visible | Iterable[Visible], *, visible: Literal["exact", "bop19"] = "exact",
               leave_out: Sequence[str] = [], canvas: float = 3.0, threads: int = 0,
               progress: Progress = None) -> list[str]:
-    """Writes a scene of BOP, as `frontmost report --bop` does: poses, shares, masks and depths, an image for each view.
+    """Writes a BOP scene, like `frontmost report --bop`: poses, shares, masks and depths, an image for each view.
 
-    Its files are there when all views are done, or none is. visible: what counts as visible; leave_out, canvas and the
-    rest are those of write_coco().
+    All files appear when all views are done; after an error none does. visible: the samples that count as visible; the other
+    arguments are those of write_coco().
     """
 
 def write_masks(folder: Path, seen: Visible | Iterable[Visible], *, leave_out: Sequence[str] = [], threads: int = 0,
                 progress: Progress = None) -> list[str]:
-    """Writes two masks (PNG) of every object in the picture, as `frontmost report --masks` does.
+    """Writes two masks (PNG) of every object in the picture, like `frontmost report --masks`.
 
-    "000003_visible.png" and "000003_amodal.png" of object 3; of an iterable the view's number comes before that.
+    Object 3 has "000003_visible.png" and "000003_amodal.png"; for an iterable the view's number precedes these names.
     """
 
 class Accounting:
-    """How much of every object is seen: arrays with an element for each object. Samples are counted, exactly."""
+    """Exact counts of the samples of every object: arrays with an element for each object."""
     @property
     def alone(self) -> NDArray[numpy.uint64]:
-        """Samples that it covers on the canvas when nothing else is there."""
+        """Samples that the object alone covers on the canvas."""
     @property
     def in_frame(self) -> NDArray[numpy.uint64]:
-        """Those of them within the picture."""
+        """Samples of alone within the picture."""
     @property
     def visible(self) -> NDArray[numpy.uint64]:
-        """Those of them where nothing hides it."""
+        """Samples of in_frame at which the object is seen."""
     @property
     def alone_boxes(self) -> NDArray[numpy.int32]:
-        """(n, 4): x, y, width, height in pixels around what it covers alone; beyond the picture x and y may be negative."""
+        """(n, 4): x, y, width, height in pixels around the samples of alone; x and y are negative left of the picture and above."""
     @property
     def in_frame_boxes(self) -> NDArray[numpy.int32]:
-        """(n, 4): around what is in frame."""
+        """(n, 4): the box around the samples of in_frame."""
     @property
     def visible_boxes(self) -> NDArray[numpy.int32]:
-        """(n, 4): around what is visible."""
+        """(n, 4): the box around the samples of visible."""
     @property
     def visible_share(self) -> NDArray[numpy.float64]:
-        """Of what it covers alone. The three shares add up to 1, or are all 0 where it covers nothing."""
+        """Share of alone that is visible. The three shares add up to 1, or are 0 if the object covers no sample."""
     @property
     def hidden_share(self) -> NDArray[numpy.float64]:
-        """In frame, and hidden by others."""
+        """Share of alone that is in frame, and hidden by other objects."""
     @property
     def cut_share(self) -> NDArray[numpy.float64]:
-        """Beyond the frame."""
+        """Share of alone outside the frame."""
     @property
     def distance(self) -> NDArray[numpy.float32]:
-        """Planar distance of the nearest visible sample; inf where none is."""
+        """Planar distance of the nearest visible sample; inf if none is visible."""
     @property
     def is_cut_by_near(self) -> NDArray[numpy.bool_]:
-        """Whether it reaches nearer than the near plane."""
+        """Whether the object reaches across the near plane."""
     @property
     def background(self) -> int:
         """Samples that see nothing."""
     @property
     def hidden_by_front(self) -> NDArray[numpy.uint64]:
-        """(m, 3): object, hider, samples of the object at which the hider is seen in its place."""
+        """(m, 3): object, hider, number of in-frame samples of the object at which the hider is seen."""
     @property
     def hidden_by_any(self) -> NDArray[numpy.uint64]:
-        """(m, 3): object, hider, samples at which the hider is before it, seen or not. With all_hiders alone."""
+        """(m, 3): object, hider, number of samples at which the hider is nearer, seen or not. Needs all_hiders."""
     @property
     def hidden_only_by(self) -> NDArray[numpy.uint64]:
-        """(m, 3): object, hider, samples at which nothing else hides it. With all_hiders alone."""
+        """(m, 3): object, hider, number of samples at which only this hider is nearer. Needs all_hiders."""
     def __len__(self) -> int: ...
 
 class Explanation:
-    """Why an object is seen, or is not. Printed it is a sentence."""
+    """The reason why an object is seen or not. str() gives a sentence."""
     @property
     def object(self) -> int:
-        """Its number."""
+        """The number of the object."""
     @property
     def reason(self) -> Reason:
-        """One word."""
+        """The reason as one word."""
     @property
     def visible_share(self) -> float:
-        """As Accounting has it."""
+        """Accounting.visible_share of the object."""
     @property
     def hidden_share(self) -> float:
-        """As Accounting has it."""
+        """Accounting.hidden_share of the object."""
     @property
     def cut_share(self) -> float:
-        """As Accounting has it."""
+        """Accounting.cut_share of the object."""
     @property
     def hiders(self) -> list[tuple[int, float]]:
-        """Who hides it, and how much of what is in frame; the greatest share first."""
+        """Pairs of a hider and its share of the object's samples in frame; the greatest share first."""
     @property
     def remedy(self) -> str:
         """The change that would show the object; empty if there is none."""
     def remedied(self, view: View) -> View:
-        """The view, changed as the remedy says; as it is where that changes the scene."""
+        """The view with the remedy applied; unchanged if the remedy changes the scene."""
 
 class DepthBuffer:
-    """A depth buffer with OpenGL's state: triangles are drawn in the order of their numbers, depths kept as format has them.
+    """A depth buffer with OpenGL's state: triangles are drawn in the order of their numbers, depths are rounded to format.
 
-    Holds 12 bytes a sample, cleared to 1. For what is nearest Surfaces.zbuffer() is the quick way; this is for what
-    order, format or state make of it. Raises Error: bad_argument, limit_exceeded.
+    Takes 12 bytes a sample, cleared to 1. Surfaces.zbuffer() finds the nearest surfaces faster; use DepthBuffer for effects of
+    order, format or state. Raises Error: bad_argument, limit_exceeded.
     """
     def __init__(self, width: int, height: int, *, samples: int = 1, format: DepthFormat = "d24") -> None: ...
     def clear(self, depth: float = 1.0) -> None:
-        """Forgets what was drawn, and stores a depth everywhere."""
+        """Removes all drawn triangles, and stores a depth in every sample."""
     def draw(self, surfaces: Surfaces, view: View, *, func: DepthFunc = "less", mask: bool = True,
              range: tuple[float, float] = (0.0, 1.0), nearer_is_greater: bool = False,
              polygon_offset: tuple[float, float] = (0.0, 0.0), offset_clamp: float = 0.0, begin: int = 0,
              end: int = 4294967295, threads: int = 0, progress: Progress = None) -> None:
-        """One draw call, of the triangles from begin up to end; calls follow one another.
+        """One draw call for the triangles from begin up to end, on top of earlier calls.
 
         func: glDepthFunc. mask: glDepthMask. range: glDepthRange. nearer_is_greater: the near plane maps to the end of
         the range (reversed z): compare with "greater" and clear to 0. polygon_offset: factor and units of
-        glPolygonOffset; offset_clamp: glPolygonOffsetClamp. Raises Error where other surfaces were drawn since clear().
+        glPolygonOffset; offset_clamp: glPolygonOffsetClamp. Raises Error if other surfaces were drawn since clear().
         """
     @property
     def stored(self) -> NDArray[numpy.uint32]:
-        """(samples, height, width) bits as they are stored; a copy."""
+        """(samples, height, width): the stored bits; a copy."""
     @property
     def depths(self) -> NDArray[numpy.float32]:
-        """(samples, height, width): what glReadPixels gives."""
+        """(samples, height, width): stored depths from 0 to 1, as glReadPixels returns them."""
     def visible(self) -> Visible:
-        """The triangle of the last fragment that passed at every sample; a copy. Raises Error before anything is drawn. With
-        glass in the scene shade(see_through="never") shows it as it was drawn."""
+        """The triangle of the last fragment that passed at every sample; a copy. Raises Error before anything is drawn. If the
+        scene has glass, shade(see_through="never") shows the triangles as they were drawn."""
 
 class Drawing:
-    """Feature edges, cut into parts that are seen or hidden from end to end, which show themselves in notebooks. Arrays have
-    an element for each part, in the order of their edges; they are made anew each time."""
+    """Feature edges, divided into parts that are wholly seen or wholly hidden. Notebooks display the drawing. Arrays have an
+    element for each part, in the order of edges; every access makes a new array."""
     def sheet(self, *, hidden: Hidden = "none", style: Style = "figure") -> Sheet:
-        """The lines on a page as large as the view, at 96 pixels to an inch: for files, and for notebooks."""
+        """The lines on a page as large as the view, at 96 pixels to an inch, for files and notebooks."""
     @property
     def view(self) -> View:
-        """Of which it is."""
+        """The view that was given."""
     @property
     def segments(self) -> NDArray[numpy.float64]:
         """(n, 2, 2) ends in pixels of the view: x right, y down, the first pixel's centre at (0.5, 0.5)."""
     @property
     def edge(self) -> NDArray[numpy.uint32]:
-        """(n,) which of edges it is of."""
+        """(n,) by part: its row of edges."""
     @property
     def kind(self) -> NDArray[numpy.uint8]:
-        """(n,) why it is drawn: edge_kinds[kind]."""
+        """(n,) by part: the reason why it is drawn, edge_kinds[kind]."""
     @property
     def hidden_by(self) -> NDArray[numpy.uint32]:
-        """(n,) how many surfaces are in front of it; without counts_hidden 0 or 1."""
+        """(n,) by part: the number of surfaces in front of it; without counts_hidden 0 or 1."""
     @property
     def is_seen(self) -> NDArray[numpy.bool_]:
-        """(n,) whether nothing is."""
+        """(n,) by part: whether it is visible."""
     @property
     def is_outline(self) -> NDArray[numpy.bool_]:
-        """(n,) whether nothing is beside it. With outlines alone."""
+        """(n,) by part: whether one of its sides shows the background. Needs outlines."""
     @property
     def span(self) -> NDArray[numpy.float64]:
-        """(n, 2) where it begins and ends on its edge, 0 to 1."""
+        """(n, 2) by part: its begin and end on its edge, 0 to 1."""
     @property
     def edges(self) -> NDArray[numpy.float64]:
-        """(m, 2, 3) ends of edges in the world."""
+        """(m, 2, 3) ends of edges in world space."""
     @property
     def edge_primitives(self) -> NDArray[numpy.uint32]:
-        """(m, 2) two of its triangles; no_primitive where there is one."""
+        """(m, 2) by edge: two of its triangles; no_primitive for the second if there is only one."""
     def __len__(self) -> int: ...
 
 class Sheet:
-    """A page of lines, which shows itself in notebooks."""
+    """A page of lines. Notebooks display it."""
     def save(self, path: Path) -> None:
         """Writes .svg, .pdf, .dxf or .json, whole or not at all."""
     @property
@@ -1086,22 +1086,22 @@ class Sheet:
         """The page as SVG."""
     @property
     def scale(self) -> float | None:
-        """Paper to model; None in perspective."""
+        """Length on paper divided by length of the model; None in perspective."""
     @property
     def size(self) -> tuple[float, float]:
         """Width and height in millimetres."""
     @property
     def left_out(self) -> int:
-        """Diameters for which there was no room."""
+        """Number of diameters that were left out for lack of room."""
     @property
     def undrawn(self) -> int:
-        """Diameters of cylinders that are seen along their axes, but not drawn: hidden."""
+        """Number of diameters left out because the view along the cylinder's axis draws none of its lines."""
     @property
     def prisms(self) -> int:
-        """Diameters of cylinders of 7 to 17 sides, which count as polygons."""
+        """Number of cylinders of 7 to 17 sides, which count as prisms and have no diameter."""
 
 class Figure:
-    """A picture of polygons, to be filled one after the other, which shows itself in notebooks."""
+    """A picture of polygons, filled one after the other. Notebooks display it."""
     def save(self, path: Path) -> None:
         """Writes .svg or .pdf, whole or not at all."""
     @property
@@ -1109,8 +1109,8 @@ class Figure:
         """The figure as SVG."""
     @property
     def polygons(self) -> list[list[NDArray[numpy.float64]]]:
-        """For each shape its outlines, (k, 2) in pixels, filled by the nonzero rule. No copy; not writable."""
+        """By shape: its outlines, (k, 2) in pixels, filled by the nonzero rule. No copy; not writable."""
     @property
     def colors(self) -> NDArray[numpy.uint8]:
-        """(n, 4) of each shape."""
+        """(n, 4) by shape: RGBA of 8 bits."""
     def __len__(self) -> int: ...
