@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "frontmost/lines.h"
-#include "lines/mesh/welded_mesh.h"
+#include "lines/mesh/mesh.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kernels against their plain functions, bit for bit.
-#include "lines/hiding/shadow_kernel.h"
-
 #include <gtest/gtest.h>
 
+#include "lines/hiding/occluder.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "lines/crossings/crossings.h"
-#include "lines/mesh/corner_table.h"
+#include "lines/mesh/mesh.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 

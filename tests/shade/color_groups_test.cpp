@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Colours grouped by cells give the same result as colours one by one.
-#include "figures/coloring/color_groups.h"
-
 #include <gtest/gtest.h>
 
+#include "figures/coloring/pieces.h"
 #include "support/random_scene.h"
 
 namespace frontmost::shading {

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "io/drawings/sample_page.h"
-#include "sheets/frame/title_block.h"
+#include "sheets/paper.h"
 #include "support/lettering_shapes.h"
 
 namespace frontmost::test {

@@ -5,7 +5,7 @@
 
 #include "frontmost/sheets.h"
 #include "io/drawings/sample_page.h"
-#include "pages/arc.h"
+#include "pages/formats.h"
 
 namespace frontmost::test {
 namespace {

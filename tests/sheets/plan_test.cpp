@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "sheets/layout/layout.h"
+#include "sheets/paper.h"
 #include "support/seeds.h"
 
 namespace frontmost::test {

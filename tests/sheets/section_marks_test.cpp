@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "frontmost/sheets.h"
-#include "sheets/sections/sections.h"
+#include "sheets/planned_view.h"
 
 namespace frontmost::test {
 namespace {

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps from visible polygons in painting order to a figure: colours, merged neighbours, blend groups and
-// outlines. See draw_figure().
+// The steps from visible polygons in painting order to a figure. Each step can be tested, or left out, separately. All
+// keep the painting order of the shapes, unless their documentation says otherwise.
 //
 //    VisibleParts --color_order()--> one shape for each colour of each polygon
 //                 --merge_neighbours()--> fewer shapes: neighbours of one colour are merged
 //                 --gather_blend_groups()--> translucent neighbours in blend groups
 //                 --outlined()--> Figure: closed rings, with traps
-//
-// Each step takes a ColoredOrder and returns one, so each can be tested, or left out, separately. All keep the painting
-// order of the shapes, unless their documentation says otherwise.
 #pragma once
 
 #include <span>
@@ -65,6 +62,17 @@ struct ColoredOrder {
     ++shapes.back().polygon_count;
   }
 };
+
+/// Whether a triangle hides what is behind it. Before the holes of textures are cut out, a triangle with holes does
+/// not.
+[[nodiscard]] inline bool is_opaque(const Surfaces& surfaces, PrimitiveId id, bool holes_are_cut_out = false) {
+  const PrimitiveSource source = surfaces.source(id);
+  const Scene& scene = surfaces.scene();
+  const std::uint32_t material = scene.meshes[source.mesh].material_of(source.triangle);
+  if (material >= scene.materials.size()) return true;
+  const Material& m = scene.materials[material];
+  return !m.is_see_through() && (m.alpha == Material::Alpha::opaque || holes_are_cut_out);
+}
 
 /// Colours polygons as the picture of `input`, which is of the parts' view, with all that `scene` has prepared.
 /// Polygons of varying colour are cut in place, along texture coordinates or lines of equal light, into pieces as large

@@ -8,9 +8,12 @@
 // triangle hides what is behind.
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "figures/colored_order.h"
+#include "figures/side_net.h"
 #include "frontmost/sheets.h"
 #include "frontmost/zbuffer.h"
+#include "painter/traps/trap.h"
 #include "shade/picture_parts.h"
 #include "shade/prepared_scene.h"
 #include "view/answer.h"
@@ -18,23 +21,83 @@
 namespace frontmost {
 namespace {
 
+using namespace shading;
+using painter_detail::make_traps;
+using painter_detail::ScreenPolygon;
+using painter_detail::TrapList;
+using painter_detail::TrappedCorner;
+
+/// Polygons with a group number; a group looks the same everywhere. All polygons of a group hide, or none.
+std::vector<ScreenPolygon> polygons_in_groups(const ColoredOrder& colored, const Occluders& occluders) {
+  std::vector<ScreenPolygon> polygons;
+  polygons.reserve(colored.polygons.size());
+  std::vector<std::uint8_t> hide;  // by group
+  const PaintPolygon* before = nullptr;
+  glm::u8vec4 color_before(0);
+  for (const ColoredShape& shape : colored.shapes) {
+    bool is_first = true;
+    for (const PaintPolygon& polygon : colored.polygons_of(shape)) {
+      const bool is_same_part = before && before->id == polygon.id && color_before == shape.color;
+      if (is_first && !is_same_part) hide.push_back(1);
+      hide.back() = hide.back() && shape.color.a == 255 && occluders.contain(polygon.id);
+      polygons.push_back({colored.corners_of(polygon), std::uint32_t(hide.size() - 1)});
+      is_first = false;
+      before = &polygon;
+    }
+    color_before = shape.color;
+  }
+  for (ScreenPolygon& polygon : polygons) polygon.is_occluder = hide[polygon.group] != 0;
+  return polygons;
+}
+
+/// Consecutive shapes of one blend group.
+struct PaintedGroup {
+  std::size_t begin, end;  ///< range of ColoredOrder::polygons
+  bool has_traps;          ///< translucent, with several shapes
+};
+
+std::vector<PaintedGroup> groups_of(const ColoredOrder& colored) {
+  std::vector<PaintedGroup> groups;
+  const ColoredShape* first = nullptr;
+  for (const ColoredShape& shape : colored.shapes) {
+    const std::size_t end = shape.first_polygon + shape.polygon_count;
+    if (first && first->blend_group == shape.blend_group) {
+      groups.back() = {groups.back().begin, end, shape.color.a < 255};
+    } else {
+      groups.push_back({shape.first_polygon, end, false});
+      first = &shape;
+    }
+  }
+  return groups;
+}
+
+/// The traps of each polygon. Opaque polygons have traps under later ones, translucent ones under others of their blend
+/// group. Polygons of the same shape hide a trap, and so do parts of the same primitive with the same colour.
+TrapList find_traps(const ColoredOrder& colored, double width, const Occluders& occluders, const Execution& execution) {
+  std::vector<ScreenPolygon> polygons = polygons_in_groups(colored, occluders);
+  TrapList opaque = make_traps(polygons, colored.view, width, execution);
+  const std::vector<PaintedGroup> groups = groups_of(colored);
+  if (std::none_of(groups.begin(), groups.end(), [](const PaintedGroup& group) { return group.has_traps; }))
+    return opaque;
+  for (ScreenPolygon& polygon : polygons) polygon.is_occluder = true;
+  TrapList all;
+  for (const PaintedGroup& group : groups) {
+    const std::span<const ScreenPolygon> members(polygons.data() + group.begin, group.end - group.begin);
+    const TrapList own = group.has_traps ? make_traps(members, colored.view, width, execution) : TrapList();
+    for (std::size_t i = group.begin; i < group.end; ++i)
+      group.has_traps ? all.add_polygon(own, i - group.begin) : all.add_polygon(opaque, i);
+  }
+  return all;
+}
+
 /// Pixels that a polygon reaches under its neighbours, against hairlines in viewers that blend edges. Lines around
 /// polygons are no alternative: they widen everything, in poppler by much more than their width.
 constexpr double kTrap = 4;
 
-/// A triangle with holes is no occluder until the holes are cut out.
-enum class Holes : std::uint8_t { in_triangles, cut_out };
-
-Occluders occluders_of(const Surfaces& surfaces, const FigureOptions& options, Holes holes) {
+Occluders occluders_of(const Surfaces& surfaces, const FigureOptions& options, bool holes_are_cut_out) {
   if (options.shade.opacity < 1) return Occluders::none();
-  return Occluders::where([&surfaces, holes](PrimitiveId id) {
-    const Scene& scene = surfaces.scene();
-    const PrimitiveSource source = surfaces.source(id);
-    const std::uint32_t material = scene.meshes[source.mesh].material_of(source.triangle);
-    if (material == no_index) return true;
-    const Material& m = scene.materials[material];
-    return !m.is_see_through() && (m.alpha == Material::Alpha::opaque || holes == Holes::cut_out);
-  });
+  return Occluders::where(
+      [&surfaces, holes_are_cut_out](PrimitiveId id) { return is_opaque(surfaces, id, holes_are_cut_out); });
 }
 
 /// Near the eye polygons are millions of pixels wide, and all of these would be sampled.
@@ -54,7 +117,7 @@ VisibleParts all_parts(PaintOrder order, const Execution& execution) {
 VisibleParts parts_of(const Surfaces& surfaces, const View& view, const FigureOptions& options,
                       const Execution& execution) {
   if (!options.visible_only) return all_parts(painter(surfaces, view, {}, execution), execution);
-  const Occluders occluders = occluders_of(surfaces, options, Holes::in_triangles);
+  const Occluders occluders = occluders_of(surfaces, options, false);
   return visible_parts(painter(surfaces, view, {.occluders = occluders}, execution), occluders, execution);
 }
 
@@ -81,13 +144,51 @@ Figure figure_of(shading::PreparedScene& scene, const ShadeInput& input, const F
   ColoredOrder colored = color_order(scene, input, parts, options, execution);
   if (options.merges_neighbours) colored = merge_neighbours(colored, execution);
   colored = gather_blend_groups(std::move(colored), execution);
-  Figure figure = outlined(colored, kTrap, occluders_of(surfaces, options, Holes::cut_out), execution);
+  Figure figure = outlined(colored, kTrap, occluders_of(surfaces, options, true), execution);
   figure.title = surfaces.scene().name;
   figure.background = options.shade.background;
   return figure;
 }
 
 }  // namespace
+
+Figure outlined(const ColoredOrder& colored, double width, const Occluders& occluders, const Execution& execution) {
+  const IeeeScope ieee;
+  const TrapList traps = find_traps(colored, width, occluders, execution);
+  Figure figure;
+  figure.view = colored.view;
+  figure.shapes.reserve(colored.shapes.size());
+  figure.rings.reserve(colored.shapes.size());
+  figure.corners.reserve(colored.corners.size() * 2);  // about what traps add
+  const auto add_ring = [&](std::span<const TrappedCorner> outline) {
+    const std::size_t first = figure.corners.size();
+    write_outline(traps, outline, figure.corners);
+    figure.rings.push_back({first, std::uint32_t(figure.corners.size() - first)});
+    ++figure.shapes.back().ring_count;
+  };
+  SideNet net;
+  std::vector<TrappedCorner> corners;
+  const ColoredShape* before = nullptr;
+  for (const ColoredShape& shape : colored.shapes) {
+    check_cancelled(execution);
+    const bool is_in_last_group = before && shape.color.a < 255 && before->blend_group == shape.blend_group;
+    const std::uint32_t group = before ? figure.shapes.back().blend_group + !is_in_last_group : 0;
+    figure.shapes.push_back({shape.color, 0, figure.rings.size(), group});
+    before = &shape;
+    net.clear();
+    for (std::size_t i = shape.first_polygon; i < shape.first_polygon + shape.polygon_count; ++i) {
+      traps.set_corners(i, colored.corners_of(colored.polygons[i]), corners);
+      if (shape.polygon_count > 1) net.add(corners, std::uint32_t(i));
+    }
+    if (shape.polygon_count == 1) {
+      add_ring(corners);
+      continue;
+    }
+    net.weave();
+    net.for_each_ring(add_ring);
+  }
+  return figure;
+}
 
 Figure draw_figure(const Surfaces& surfaces, const ShadeInput& input, const FigureOptions& options,
                    const Execution& execution) {

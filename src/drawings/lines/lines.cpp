@@ -8,8 +8,7 @@
 //                              |                             |
 //                              +--> candidates --EdgeCutter--+--> parts, seen and hidden
 //
-// Edges are cut in parts of 64, in parallel, and the parts' lists are joined in order. So a drawing is the same for any
-// number of threads.
+// Edges are cut in parts of 64, in parallel, and the parts' lists are joined in order.
 #include "frontmost/lines.h"
 
 #include <algorithm>

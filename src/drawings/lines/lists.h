@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists that many threads make in parts, joined and sorted. Lists are joined in the order of the parts, so results do
-// not depend on which thread made which part. Sorting in parts gives the same result as sorting at once, but uses all
-// threads and can be stopped between two parts.
+// Lists that many threads make in parts, joined in the order of the parts and sorted. So results do not depend on which
+// thread made which part.
 #pragma once
 
 #include <algorithm>

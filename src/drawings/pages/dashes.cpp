@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns dashes into paths of their own.
-//
-// A path is measured from corner to corner. Between two corners the pattern is stretched so that it begins and ends
-// with a dash (ISO 128-2, 5.2), which then meets the next one around the corner.
+// Turns dashes into paths of their own. A path is measured from corner to corner. Between two corners the pattern is
+// stretched so that it begins and ends with a dash (ISO 128-2, 5.2), which then meets the next one around the corner.
 //
 //   corner                                     corner
 //     +-----  -----  -----  -----  -----  -------+        one span: a whole number of periods, and one more dash
@@ -13,7 +11,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "pages/arc.h"
+#include "pages/formats.h"
 
 namespace frontmost {
 namespace {
@@ -167,68 +165,48 @@ class Pattern {
   double period_ = 0;
 };
 
-/// Turns the dashes of a group into paths.
-class DashCutter {
- public:
-  /// `most` is the greatest number of dashes.
-  DashCutter(const PageGroup& group, std::size_t most, const Execution& execution)
-      : group_(group),
-        most_(double(most)),
-        execution_(execution),
-        pattern_(group.pen.dashes),
-        cut_{group.name, group.pen} {
-    cut_.pen.dashes.clear();
+/// The spans of a path that its pattern draws.
+std::vector<Span> drawn_of(const Ruler& ruler, const Pattern& pattern, bool is_closed) {
+  const std::vector<Span> spans = ruler.spans();
+  std::vector<Span> drawn;
+  for (const Span& span : spans) pattern.fill(span, drawn);
+  if (spans.empty()) pattern.fill_around(ruler.length(), drawn);
+  // The last dash of a closed path continues in the first.
+  if (is_closed && drawn.size() > 1 && drawn.back().end == drawn.front().begin + ruler.length()) {
+    drawn.back().end = drawn.front().end + ruler.length();
+    drawn.erase(drawn.begin());
   }
+  return drawn;
+}
 
-  PageGroup run() {
-    for (const PagePath& path : group_.paths) cut(path);
-    if (group_.bulges.empty()) cut_.bulges.clear();
-    return std::move(cut_);
-  }
-
- private:
-  void cut(const PagePath& path) {
+/// Turns the dashes of a group, `most` at most, into paths.
+PageGroup with_cut_dashes(const PageGroup& group, std::size_t most, const Execution& execution) {
+  const Pattern pattern(group.pen.dashes);
+  PageGroup cut{group.name, group.pen};
+  cut.pen.dashes.clear();
+  std::size_t steps = 0;
+  const auto poll = [&] {  // only sometimes: a check takes longer than a dash
+    if (++steps % 1024 == 0) check_cancelled(execution);
+  };
+  for (const PagePath& path : group.paths) {
     poll();
-    const Ruler ruler(group_, path);
+    const Ruler ruler(group, path);
     if (ruler.is_empty()) {  // a dot
-      cut_.paths.push_back({std::uint32_t(cut_.points.size()), 1, false});
-      cut_.points.push_back(group_.points[path.first]);
-      cut_.bulges.push_back(0);
-      return;
+      cut.paths.push_back({std::uint32_t(cut.points.size()), 1, false});
+      cut.points.push_back(group.points[path.first]);
+      cut.bulges.push_back(0);
+      continue;
     }
-    if (double(cut_.paths.size()) + pattern_.count_on(ruler.length()) > most_)
+    if (double(cut.paths.size()) + pattern.count_on(ruler.length()) > double(most))
       throw Error(ErrorCode::limit_exceeded, "dashes", "more than 20000000 of them");
-    for (const Span& span : drawn_of(ruler, path.is_closed)) {
+    for (const Span& span : drawn_of(ruler, pattern, path.is_closed)) {
       poll();
-      ruler.cut(span, cut_);
+      ruler.cut(span, cut);
     }
   }
-
-  [[nodiscard]] std::vector<Span> drawn_of(const Ruler& ruler, bool is_closed) const {
-    const std::vector<Span> spans = ruler.spans();
-    std::vector<Span> drawn;
-    for (const Span& span : spans) pattern_.fill(span, drawn);
-    if (spans.empty()) pattern_.fill_around(ruler.length(), drawn);
-    // The last dash of a closed path continues in the first.
-    if (is_closed && drawn.size() > 1 && drawn.back().end == drawn.front().begin + ruler.length()) {
-      drawn.back().end = drawn.front().end + ruler.length();
-      drawn.erase(drawn.begin());
-    }
-    return drawn;
-  }
-
-  /// Polls only sometimes: a check takes longer than a dash.
-  void poll() {
-    if (++steps_ % 1024 == 0) check_cancelled(execution_);
-  }
-
-  const PageGroup& group_;
-  const double most_;
-  const Execution& execution_;
-  const Pattern pattern_;
-  PageGroup cut_;
-  std::size_t steps_ = 0;
-};
+  if (group.bulges.empty()) cut.bulges.clear();
+  return cut;
+}
 
 }  // namespace
 
@@ -239,7 +217,7 @@ Page with_real_dashes(Page page, const Execution& execution) {
   for (PageLayer& layer : page.layers)
     for (PageGroup& group : layer.groups) {
       if (group.pen.dashes.empty() || !group.fills.empty()) continue;
-      group = DashCutter(group, most_dashes - std::min(dashes, most_dashes), execution).run();
+      group = with_cut_dashes(group, most_dashes - std::min(dashes, most_dashes), execution);
       dashes += group.paths.size();
     }
   return page;

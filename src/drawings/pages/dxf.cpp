@@ -5,13 +5,10 @@
 //   LINE
 //   8           the entity's layer
 //   2_VISIBLE
-//   10          its first x
-//   297.000
 //
 // Release 12 has neither groups nor line widths, so layers represent both: each group is a layer, which gives its line
-// type and colour. Layer names have at most 31 characters; the page's layer comes first, so that programs can select
-// all of it. The y axis of a page points down and that of DXF up, so places are flipped and arcs change their
-// direction.
+// type and colour. The page's layer comes first in the name, so that programs can select all of it. The y axis of a
+// page points down and that of DXF up, so places are flipped and arcs change their direction.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -19,9 +16,7 @@
 #include <numeric>
 #include <set>
 
-#include "pages/arc.h"
 #include "pages/formats.h"
-#include "pages/page_text.h"
 
 namespace frontmost::detail {
 namespace {
@@ -131,7 +126,7 @@ constexpr int by_layer = 256;
 class DxfWriter {
  public:
   DxfWriter(const Page& page, OutputFile& file, const Execution& execution)
-      : page_(page), layers_(page), sink_(file), out_(sink_), progress_(std::span(&page, 1), execution) {
+      : page_(page), layers_(page), out_(file), progress_(std::span(&page, 1), execution) {
     for (const PageLayer& layer : page.layers)
       for (const PageGroup& group : layer.groups) types_.try_emplace(type_name(group.pen), group.pen.dashes);
   }
@@ -316,7 +311,6 @@ class DxfWriter {
 
   const Page& page_;
   const Layers layers_;
-  FileSink sink_;
   PageText out_;
   WritingProgress progress_;
   std::map<std::string, std::vector<double>> types_{{"CONTINUOUS", {}}};  ///< line types: the dashes of each name

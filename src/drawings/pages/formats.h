@@ -1,16 +1,107 @@
 // SPDX-License-Identifier: Apache-2.0
-// The formats behind save(page), and their common parts.
+// The formats behind save(page), and their common parts: text, arcs and the appearance of paths.
 //
 // Page --validate()--> layers --> groups --> paths --paint_of()--> fill and line colours
 //
-// A writer is a class over one page that appends text to a PageText; no writer converts the page first. The appearance
-// of a path is computed in one place for all formats, so that all formats give the same picture.
+//              . - .          A writer is a class over one page that appends text to a PageText; no writer converts the
+//          .-'   |   '-.      page first. The bulge of a join is the height of its arc by half of the chord: the
+//          tangent
+//        from ---+--- to      of a quarter of the arc's angle. Formats need a radius and flags, a centre and angles, or
+//                             approximating curves instead.
 #pragma once
 
+#include <cmath>
+#include <functional>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
 #include "base/output_file.h"
+#include "base/parallel.h"
 #include "frontmost/sheets.h"
 
 namespace frontmost::detail {
+
+/// Angles in radians from +x towards +y; `turn` is negative in the opposite direction.
+struct Arc {
+  glm::dvec2 centre{0};
+  double radius = 0, begin = 0, turn = 0;
+};
+
+/// The arc from `from` to `to`. None for a straight join: without bulge, without length, or within a ten-thousandth of
+/// a millimetre of its chord.
+[[nodiscard]] std::optional<Arc> arc_between(const glm::dvec2& from, const glm::dvec2& to, double bulge);
+
+/// The join that begins at point `i` of a path: its ends, and its bulge.
+struct Join {
+  glm::dvec2 from, to;
+  double bulge;
+};
+[[nodiscard]] inline Join join_of(const PageGroup& group, const PagePath& path, std::uint32_t i) {
+  const std::uint32_t at = path.first + i, next = i + 1 < path.count ? at + 1 : path.first;
+  return {group.points[at], group.points[next], group.bulges.empty() ? 0 : group.bulges[at]};
+}
+[[nodiscard]] inline std::uint32_t join_count(const PagePath& path) {
+  return path.is_closed ? path.count : path.count - 1;
+}
+
+/// The circle on which a whole path lies, in one direction; none otherwise.
+[[nodiscard]] std::optional<Arc> whole_arc(const PageGroup& group, const PagePath& path);
+
+/// Coordinates are rounded to thousandths. Millimetres are doubles of at most 1e9, so the result fits.
+[[nodiscard]] inline std::int64_t thousandths(double value) { return std::llround(value * 1000); }
+[[nodiscard]] inline glm::i64vec2 thousandths(const glm::dvec2& p) { return {thousandths(p.x), thousandths(p.y)}; }
+
+/// A buffer in front of a file, or of another sink of bytes. Its own number formatting takes nine nanoseconds per
+/// number; to_chars takes eighty.
+class PageText {
+ public:
+  using Sink = std::function<void(std::string_view)>;
+  explicit PageText(Sink sink) : sink_(std::move(sink)), buffer_(capacity, '\0') {}
+  explicit PageText(OutputFile& file)
+      : PageText(
+            [&file](std::string_view bytes) { file.write(std::as_bytes(std::span(bytes.data(), bytes.size()))); }) {}
+
+  PageText& operator<<(std::string_view text);
+  PageText& operator<<(char character) {
+    if (used_ == capacity) pass_on();
+    buffer_[used_++] = character;
+    return *this;
+  }
+  /// Writes a decimal number without a fraction.
+  PageText& integer(std::int64_t value);
+  /// Writes value / 10^digits without trailing zeros. `digits` is 1 to 9.
+  PageText& fixed(std::int64_t value, int digits = 3);
+  /// Writes a number rounded to `digits`, with the zero before the point, which JSON and DXF need and other formats do
+  /// not.
+  PageText& decimal(double value, int digits = 3);
+  /// Number of bytes written so far.
+  [[nodiscard]] std::uint64_t size() const { return passed_on_ + used_; }
+  /// Must be called at the end.
+  void flush() { pass_on(); }
+
+ private:
+  static constexpr std::size_t capacity = std::size_t(1) << 16;
+  void pass_on();
+
+  Sink sink_;
+  std::string buffer_;
+  std::size_t used_ = 0;
+  std::uint64_t passed_on_ = 0;
+};
+
+/// Removes and returns the first character of UTF-8 text that is not empty. An invalid byte is removed alone, as
+/// U+FFFD.
+[[nodiscard]] char32_t take_character(std::string_view& text);
+
+/// A name for element content and attributes of XML 1.0; printable_text() replaces characters that XML forbids.
+[[nodiscard]] std::string xml_text(std::string_view name);
+/// A JSON string with quotes, encoded by utf8_text().
+[[nodiscard]] std::string json_text(std::string_view name);
+/// A PDF text string in UTF-16, cleaned by printable_text(), as hexadecimal digits in brackets.
+[[nodiscard]] std::string pdf_text(std::string_view name);
 
 /// Writers get valid pages, and do not commit the file.
 void save_svg(const Page& page, OutputFile& file, const Execution& execution);
@@ -22,16 +113,21 @@ void save_json(const Page& page, OutputFile& file, const Execution& execution);
 /// Reports the progress of writing, path by path.
 class WritingProgress {
  public:
-  WritingProgress(std::span<const Page> pages, const Execution& execution);
+  WritingProgress(std::span<const Page> pages, const Execution& execution) : execution_(execution) {
+    for (const Page& page : pages)
+      for (const PageLayer& layer : page.layers)
+        for (const PageGroup& group : layer.groups) count_ += group.paths.size();
+    report_progress(execution, "write", 0);
+  }
   /// Counts one path. \throws Error cancelled.
   void step() {
-    if (++done_ % paths_between == 0) tell();
+    if (++done_ % paths_between != 0) return;
+    check_cancelled(execution_);
+    report_progress(execution_, "write", double(done_) / double(count_));
   }
 
  private:
   static constexpr std::size_t paths_between = 4096;
-  void tell() const;
-
   const Execution& execution_;
   std::size_t done_ = 0, count_ = 0;
 };

@@ -5,7 +5,6 @@
 //
 // The file contains all data of a page under the names of the library's types, with as many digits as other formats.
 #include "pages/formats.h"
-#include "pages/page_text.h"
 
 namespace frontmost::detail {
 namespace {
@@ -25,8 +24,7 @@ void write_pen(PageText& out, const Pen& pen) {
     if (i > 0) out << ", ";
     out.decimal(pen.dashes[i]);
   }
-  out << "]";
-  out << "}";
+  out << "]}";
 }
 
 void write_path(PageText& out, const PageGroup& group, std::size_t i) {
@@ -60,8 +58,7 @@ void write_path(PageText& out, const PageGroup& group, std::size_t i) {
 }  // namespace
 
 void save_json(const Page& page, OutputFile& file, const Execution& execution) {
-  FileSink sink(file);
-  PageText out(sink);
+  PageText out(file);
   WritingProgress progress(std::span(&page, 1), execution);
   out << "{\"unit\": \"mm\", \"width\": ";
   out.decimal(page.width) << ", \"height\": ";

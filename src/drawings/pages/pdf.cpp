@@ -1,30 +1,75 @@
 // SPDX-License-Identifier: Apache-2.0
 // PDF 1.5, or 1.6 if a page needs its own unit. Each page is one compressed stream of drawing operators, with layers as
-// optional content, and groups with an opacity as forms that are transparency groups. There is no date and no file
-// identifier, so a page always gives the same bytes.
+// optional content, and groups with an opacity as forms that are transparency groups.
 //
 //   content of a page      /OC /L0 BDC                layer 0 begins
 //                            0.5 w [] 0 d             a group: its pen
 //                            10 20 m 30 40 l S        a path: move, line, stroke
 //                            q /F128 gs /G0 Do Q      a group with an opacity: form 0, composited as a whole
-//                          EMC
 //
-// Objects are written immediately, and their offsets are recorded for the table at the end. So memory does not grow
-// with the page, except for a few offsets.
+// Objects are written immediately, and their offsets are recorded for the table at the end. There is no date and no
+// file identifier, so a page always gives the same bytes.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <new>
 
-#include "pages/arc.h"
 #include "pages/formats.h"
-#include "pages/page_text.h"
-#include "pages/pdf_stream.h"
+
+#ifdef FRONTMOST_DEFLATE
+#include <zlib.h>
+#endif
 
 namespace frontmost::detail {
 namespace {
 
 constexpr std::size_t points_per_stroke = 4096;  // viewers hold whole paths in memory
 constexpr double points_per_millimetre = 72 / 25.4;
+
+#ifdef FRONTMOST_DEFLATE
+constexpr std::string_view stream_filter = "/Filter /FlateDecode ";
+
+/// A stream of operators, compressed by zlib.
+class PdfStream {
+ public:
+  explicit PdfStream(PageText& out) : out_(out), packed_(std::size_t(1) << 16, '\0') {
+    constexpr int level = 4;  // 350,000 polygons: 0.6 s and 11.7 MB; level 6 takes 2.1 s for 11.1 MB
+    if (::deflateInit(&stream_, level) != Z_OK) throw std::bad_alloc();
+  }
+  ~PdfStream() { ::deflateEnd(&stream_); }
+  PdfStream(const PdfStream&) = delete;
+  PdfStream& operator=(const PdfStream&) = delete;
+
+  void write(std::string_view bytes) { run(bytes, Z_NO_FLUSH); }
+  /// Ends the stream; nothing may be written after it.
+  void finish() { run({}, Z_FINISH); }
+
+ private:
+  void run(std::string_view bytes, int flush) {
+    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));  // zlib does not write there
+    stream_.avail_in = uInt(bytes.size());
+    do {
+      stream_.next_out = reinterpret_cast<Bytef*>(packed_.data());
+      stream_.avail_out = uInt(packed_.size());
+      ::deflate(&stream_, flush);
+      out_ << std::string_view(packed_.data(), packed_.size() - stream_.avail_out);
+    } while (stream_.avail_out == 0);
+  }
+
+  PageText& out_;
+  std::string packed_;
+  z_stream stream_{};
+};
+#else
+constexpr std::string_view stream_filter;
+
+/// Builds without zlib do not compress streams.
+struct PdfStream {
+  PageText& out;
+  void write(std::string_view bytes) { out << bytes; }
+  void finish() {}
+};
+#endif
 
 /// Writes the operators that draw all layers.
 class PdfContent {
@@ -59,12 +104,15 @@ class PdfContent {
   }
 
   using Opacities = std::array<bool, 256>;
-  [[nodiscard]] const Opacities& fill_opacities() const { return fill_opacities_; }
-  [[nodiscard]] const Opacities& line_opacities() const { return line_opacities_; }
+  /// The opacities that a stream uses.
+  struct States {
+    Opacities fills{}, lines{};
+  };
+  [[nodiscard]] const States& states() const { return states_; }
 
  private:
   void write_form(const PageGroup& group, std::size_t number) {
-    fill_opacities_[group.opacity] = true;
+    states_.fills[group.opacity] = true;
     out_ << "q /F";
     out_.integer(group.opacity) << " gs /G";
     out_.integer(std::int64_t(number)) << " Do Q\n";
@@ -101,8 +149,8 @@ class PdfContent {
 
   /// Writes only the colours that change.
   void set(const PathPaint& paint) {
-    if (paint.fill) set(*paint.fill, fill_, "rg\n", "/F", fill_opacities_);
-    if (paint.line) set(*paint.line, line_, "RG\n", "/S", line_opacities_);
+    if (paint.fill) set(*paint.fill, fill_, "rg\n", "/F", states_.fills);
+    if (paint.line) set(*paint.line, line_, "RG\n", "/S", states_.lines);
   }
 
   void set(const PageColor& color, PageColor& now, const char* command, const char* state, Opacities& used) {
@@ -165,7 +213,7 @@ class PdfContent {
   const double scale_;
   WritingProgress& progress_;
   PageColor fill_, line_;  ///< black and opaque at the begin of a page or a form
-  Opacities fill_opacities_{}, line_opacities_{};
+  States states_;
 };
 
 /// A page of a file, with the numbers of its objects.
@@ -187,7 +235,7 @@ struct PdfPage {
 class PdfWriter {
  public:
   PdfWriter(std::span<const Page> pages, OutputFile& file, const Execution& execution)
-      : sink_(file), out_(sink_), progress_(pages, execution) {
+      : out_(file), progress_(pages, execution) {
     for (const Page& page : pages) number(page);
   }
 
@@ -200,17 +248,15 @@ class PdfWriter {
       write_page(page, write_stream(page, page.length, [](PdfContent& content) { content.write(); }));
       for (const PdfPage::Form& form : page.forms) write_form(page, form);
     }
-    write_layers();
+    for (const Layer& layer : layers_)
+      begin(layer.object) << "<< /Type /OCG /Name " << pdf_text(*layer.name) << " >>\nendobj\n";
     write_end();
     out_.flush();
   }
 
  private:
   enum Object : std::size_t { none, catalog, page_tree, first_page, info = first_page + 3, first_free };
-  /// The opacities that a stream uses.
-  struct States {
-    PdfContent::Opacities fills, lines;
-  };
+  using States = PdfContent::States;
   /// A layer that viewers switch on and off; layers of one name on several pages are one.
   struct Layer {
     const std::string* name;
@@ -252,10 +298,10 @@ class PdfWriter {
   template <class Write>
   States write_stream(const PdfPage& page, std::size_t length_object, const Write& write) {
     out_ << "/Length ";
-    out_.integer(std::int64_t(length_object)) << " 0 R " << pdf_stream_filter << ">>\nstream\n";
+    out_.integer(std::int64_t(length_object)) << " 0 R " << stream_filter << ">>\nstream\n";
     const std::uint64_t start = out_.size();
-    PdfStream stream(out_);
-    PageText operators(stream);
+    PdfStream stream{out_};
+    PageText operators([&stream](std::string_view bytes) { stream.write(bytes); });
     PdfContent content(*page.page, operators, page.scale, progress_);
     write(content);
     operators.flush();
@@ -264,7 +310,7 @@ class PdfWriter {
     out_ << "\nendstream\nendobj\n";
     begin(length_object);
     out_.integer(std::int64_t(end - start)) << "\nendobj\n";
-    return {content.fill_opacities(), content.line_opacities()};
+    return content.states();
   }
 
   /// Resources are written before it is known which of them a form uses, so all opacities of its group are listed.
@@ -278,7 +324,7 @@ class PdfWriter {
         high = glm::max(high, p);
       }
     }
-    States states{};
+    States states;
     for (std::size_t i = 0; i < group.paths.size(); ++i) {
       const PathPaint paint = paint_of(group, i);
       if (paint.fill) states.fills[paint.fill->opacity] = true;
@@ -317,8 +363,8 @@ class PdfWriter {
   void write_page(const PdfPage& page, const States& states) {
     begin(page.object) << "<< /Type /Page /Parent 2 0 R /Contents ";
     reference(page.contents) << "/MediaBox [0 0 ";
-    out_.fixed(std::int64_t(page.page->width * page.scale * 1e6), 6) << ' ';  // rounded down, because rasterizers round
-                                                                              // up
+    // Rounded down, because rasterizers round up.
+    out_.fixed(std::int64_t(page.page->width * page.scale * 1e6), 6) << ' ';
     out_.fixed(std::int64_t(page.page->height * page.scale * 1e6), 6) << "]";
     if (page.unit > 1) {
       out_ << " /UserUnit ";
@@ -344,11 +390,6 @@ class PdfWriter {
     out_ << ">> >> >>\nendobj\n";
   }
 
-  void write_layers() {
-    for (const Layer& layer : layers_)
-      begin(layer.object) << "<< /Type /OCG /Name " << pdf_text(*layer.name) << " >>\nendobj\n";
-  }
-
   void write_end() {
     begin(page_tree) << "<< /Type /Pages /Kids [ ";
     for (const PdfPage& page : pages_) reference(page.object);
@@ -370,7 +411,6 @@ class PdfWriter {
     out_.integer(std::int64_t(table)) << "\n%%EOF\n";
   }
 
-  FileSink sink_;
   PageText out_;
   WritingProgress progress_;
   std::vector<PdfPage> pages_;

@@ -3,14 +3,10 @@
 //
 //   <g inkscape:groupmode="layer">        a layer
 //     <g stroke="#000000" ...>            a group: common properties of its paths
-//       <path d="M10 20l5 0 0 5z"/>       a path: a place, and steps from there
+//       <path d="M10 20l5 0 0 5z"/>       a path: a place, and steps from there, which take half the bytes of places
 //
-// Paths use steps from point to point (lower case commands), which take half the bytes of places. Steps are differences
-// of rounded places, so errors do not add up. A command that repeats the last one is left out, and so is a blank before
-// a minus sign.
-#include "pages/arc.h"
+// Steps are differences of rounded places, so errors do not add up.
 #include "pages/formats.h"
-#include "pages/page_text.h"
 
 namespace frontmost::detail {
 namespace {
@@ -21,7 +17,7 @@ constexpr std::size_t dots_per_element = 4096;
 class SvgWriter {
  public:
   SvgWriter(const Page& page, OutputFile& file, const Execution& execution)
-      : page_(page), sink_(file), out_(sink_), progress_(std::span(&page, 1), execution) {}
+      : page_(page), out_(file), progress_(std::span(&page, 1), execution) {}
 
   void write() {
     out_ << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
@@ -63,7 +59,14 @@ class SvgWriter {
     if (has_lines && !group.pen.dashes.empty()) write_dashes(group.pen.dashes);
     if (group.fills.empty()) out_ << " fill=\"none\"";
     out_ << ">\n";
-    if (has_lines || !group.fills.empty()) write_paths(group);
+    if (group.fills.empty()) {
+      if (has_lines) write_lines(group);
+    } else {
+      for (std::size_t i = 0; i < group.paths.size(); ++i) {
+        progress_.step();
+        if (!group.paths[i].is_part) write_filled(group, i);
+      }
+    }
     out_ << "</g>\n";
   }
 
@@ -74,14 +77,6 @@ class SvgWriter {
       millimetres(dashes[i]);
     }
     out_ << '"';
-  }
-
-  void write_paths(const PageGroup& group) {
-    if (group.fills.empty()) return write_lines(group);
-    for (std::size_t i = 0; i < group.paths.size(); ++i) {
-      progress_.step();
-      if (!group.paths[i].is_part) write_filled(group, i);
-    }
   }
 
   /// Each line is an element, so that editors can remove or change it alone.
@@ -186,7 +181,6 @@ class SvgWriter {
   }
 
   const Page& page_;
-  FileSink sink_;
   PageText out_;
   WritingProgress progress_;
   char command_ = 0;

@@ -1,29 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// The centre lines of a view. Pieces on one straight line are joined where they meet or where a drafter would not lift
-// the pen. So concentric circles share a cross, and a stepped bore has one axis.
-//
 //           |                 A circle seen along its axis has a cross; a cylinder seen from the side has its axis.
 //        .--+--.              Both are a little longer than the round itself. All are pieces of straight lines,
 //     --(---+---)--           sorted by direction, by the line's distance from the corner of the picture, and along
 //        '--+--'              the line.
 //           |
-//
-// A piece is joined to the one before on the same line if a drafter would draw across the gap. Axes are joined before
-// they are lengthened, so that gaps are those between the bores themselves.
-#include "rounds/centre_lines.h"
-
+// A piece is joined to the one before on the same line if a drafter would draw across the gap. So concentric circles
+// share a cross, and a stepped bore has one axis. Axes are joined before they are lengthened.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <tuple>
 
 #include "frontmost/lines.h"
+#include "rounds/found_rounds.h"
 
 namespace frontmost {
 namespace {
 
-constexpr double kSquare = 2e-3;         // sine of the greatest angle at which an axis counts as along the view, or
-                                         // across it
+constexpr double kSquare = 2e-3;         // sine of the greatest angle to the view, or to its plane, of an axis
 constexpr double kSameDirection = 2e-4;  // radians
 constexpr double kLeastDrawn = 0.2;      // share of a round's own length that must be drawn
 constexpr double kLeastSize = 1.0 / 6;   // radius of the smallest circle, as a share of the overshoot

@@ -7,18 +7,129 @@
 //    smooth neighbours ------------------------------> walls: cylinders that begin at circles, then the others
 //    other regions that close around an axis --------> surfaces of revolution
 //
-// Meshes have polygons in place of circles. A polygon counts as a circle if its steps are even, its corners lie on one
-// circle to the precision of the file, and its sides are alike.
+// A polygon of a mesh counts as a circle if its steps are even, its corners lie on one circle to the precision of the
+// file, and its sides are alike.
 #pragma once
 
+#include <cmath>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
 #include <vector>
 
-#include "rounds/round_fit.h"
-#include "rounds/smooth_mesh.h"
+#include "frontmost/lines.h"
+#include "geometry/edge_neighbours.h"
+#include "lines/mesh/mesh.h"
 
 namespace frontmost::lines_detail {
 
-// Circles among the sharp edges of a mesh.
+struct Circle3 {
+  glm::dvec3 centre, axis;  ///< unit axis; seen from its tip, the circle runs anticlockwise
+  double radius;
+
+  /// The angle from one point to the next around the axis, in (-pi, pi].
+  [[nodiscard]] double turn_between(const glm::dvec3& a, const glm::dvec3& b) const {
+    const glm::dvec3 u = a - centre, v = b - centre;
+    return std::atan2(glm::dot(axis, glm::cross(u, v)), glm::dot(u, v) - glm::dot(u, axis) * glm::dot(v, axis));
+  }
+  /// The approximate distance of a point: the greater of its distances from the plane and from the radius.
+  [[nodiscard]] double distance(const glm::dvec3& point) const {
+    const glm::dvec3 u = point - centre;
+    const double height = glm::dot(u, axis);
+    return std::max(std::abs(height), std::abs(glm::length(u - height * axis) - radius));
+  }
+};
+
+[[nodiscard]] inline std::optional<Circle3> circle_through(const glm::dvec3& a, const glm::dvec3& b,
+                                                           const glm::dvec3& c) {
+  const glm::dvec3 u = b - a, v = c - a, normal = glm::cross(u, v);
+  const double square = glm::dot(normal, normal);
+  if (!(square > 0) || !std::isfinite(square)) return std::nullopt;
+  const glm::dvec3 to_centre = glm::cross(glm::dot(u, u) * v - glm::dot(v, v) * u, normal) / (2 * square);
+  const double radius = glm::length(to_centre);
+  if (!std::isfinite(radius)) return std::nullopt;
+  return Circle3{a + to_centre, normal / std::sqrt(square), radius};
+}
+
+/// The distance between the middle of a chord and its circle.
+[[nodiscard]] inline double sagitta(double radius, double step) { return radius * (1 - std::cos(step / 2)); }
+
+/// A cylinder without ends.
+struct Tube {
+  glm::dvec3 point, axis;  ///< `point` is on the axis; the axis has unit length
+  double radius;
+
+  /// The vector from the axis to the point, at a right angle.
+  [[nodiscard]] glm::dvec3 outwards(const glm::dvec3& at) const {
+    const glm::dvec3 u = at - point;
+    return u - glm::dot(u, axis) * axis;
+  }
+  [[nodiscard]] double distance(const glm::dvec3& at) const { return std::abs(glm::length(outwards(at)) - radius); }
+};
+
+/// Two unit vectors across a third.
+struct Across {
+  glm::dvec3 u, v;
+  explicit Across(const glm::dvec3& axis);
+};
+
+/// The tube about this axis that fits the points by least squares of squared radii (I. Kasa's fit of circles). None if
+/// the points lie on a line.
+[[nodiscard]] std::optional<Tube> tube_through(std::span<const glm::dvec3> points, const glm::dvec3& axis);
+
+/// The direction that is closest to perpendicular to all vectors.
+[[nodiscard]] glm::dvec3 common_perpendicular(std::span<const glm::dvec3> vectors);
+
+/// 20.01 degrees: a larger turn between two neighbours is an edge, and between two sides of a polygon a corner. The
+/// same limit as for arcs of strokes.
+inline constexpr double kWidestStep = 0.34924038;
+inline constexpr double kWidestCosine = 0.93963;
+
+struct SmoothMesh {
+  WeldedMesh mesh;
+  Buffer<glm::dvec3> normals;  ///< of unit length; zero where rounding leaves no direction
+  EdgeNeighbours neighbours;
+  double noise = 0;  ///< by how much corners may be off their places: what six digits leave open
+
+  [[nodiscard]] glm::dvec3 corner(std::uint32_t triangle, int k) const {
+    return mesh.positions[mesh.triangles[triangle][k]];
+  }
+  /// The only other triangle at a side, if it is wound alike; otherwise no_index.
+  [[nodiscard]] std::uint32_t across(std::uint32_t triangle, int side) const {
+    return neighbours.across(triangle, std::size_t(side));
+  }
+  [[nodiscard]] bool is_smooth(std::uint32_t triangle, int side) const {
+    const std::uint32_t other = across(triangle, side);
+    return other != no_index && glm::dot(normals[triangle], normals[other]) >= kWidestCosine;
+  }
+};
+
+/// O(triangles log triangles at a vertex). \throws Error limit_exceeded as EdgeNeighbours does.
+[[nodiscard]] SmoothMesh smooth_mesh(const Surfaces& surfaces, const Execution& execution);
+
+/// An edge and its triangles; `right` may be no_index.
+struct SharpEdge {
+  std::uint32_t from, to, left, right;
+};
+
+struct SharpChain {
+  std::vector<std::uint32_t> vertices;  ///< a closed chain has its first vertex once
+  std::vector<std::uint32_t> edges;     ///< edge i goes from vertex i to the next
+  bool is_closed = false;
+};
+
+struct SharpChains {
+  std::vector<SharpEdge> edges;
+  std::vector<SharpChain> chains;
+};
+
+inline constexpr std::size_t kFewestSides = 4;  ///< the fewest of an arc
+
+/// Each edge is in one chain, except edges of chains that are shorter than an arc. Where several edges meet, the
+/// straightest pairs continue each other, unless the cosine of the turn is below `least_cosine`. O(edges log edges at a
+/// vertex).
+[[nodiscard]] SharpChains sharp_chains(const SmoothMesh& mesh, const Execution& execution,
+                                       double least_cosine = kWidestCosine);
 
 /// A circle, or several arcs of it.
 struct FoundCircle {
@@ -38,8 +149,7 @@ struct FoundCircle {
 /// The circles of a mesh; arcs of one circle are united. Near-linear in the number of sharp edges.
 [[nodiscard]] std::vector<FoundCircle> find_circles(const SmoothMesh& mesh, const Execution& execution);
 
-// Cylinders among the smooth surfaces of a mesh.
-
+/// A cylinder among the smooth surfaces of a mesh.
 struct FoundWall {
   glm::dvec3 from, to, axis;  ///< the ends of its axis; unit direction
   double radius, turn;        ///< `turn`: the covered angle in radians, at most 2 pi
@@ -52,27 +162,14 @@ struct FoundWall {
 [[nodiscard]] std::vector<FoundWall> find_walls(const SmoothMesh& mesh, const std::vector<FoundCircle>& circles,
                                                 const Execution& execution);
 
-// Smooth surfaces of revolution that are no cylinders: tori, domes, spheres, cones, the bodies of bottles.
-
-struct FoundRevolved {
-  glm::dvec3 from, to, axis;             ///< its ends along the axis; unit direction
-  double radius;                         ///< the largest radius
-  std::vector<std::uint32_t> triangles;  ///< ascending
-};
-
-/// Surfaces of revolution that are closed around the axis and have their vertices in rings about it, as programs make
-/// them. Each is a whole smooth region. O(triangles log triangles).
-[[nodiscard]] std::vector<FoundRevolved> find_revolved(const SmoothMesh& mesh, const Execution& execution);
-
-// Cylinders with too few sides to be round.
-
-struct FoundPrism {
-  Circle3 rim;           ///< one end: the circle through its corners
-  glm::dvec3 other_end;  ///< the middle of the other end
-};
-
-/// Cylinders of 7 to 17 sides with a sharp rim at either end. O(sharp edges log sharp edges), and at most 4096
-/// comparisons for each rim.
-[[nodiscard]] std::vector<FoundPrism> find_prisms(const SmoothMesh& mesh, const Execution& execution);
-
 }  // namespace frontmost::lines_detail
+
+namespace frontmost {
+
+/// The drawn length of each round in pixels: visible lines, and hidden ones if `with_hidden`.
+[[nodiscard]] std::vector<double> drawn_lengths(const Rounds& rounds, const Drawing& drawing, bool with_hidden);
+
+/// The place of a world point in a parallel view, in pixels.
+[[nodiscard]] glm::dvec2 on_screen(const View& view, const glm::dvec3& point);
+
+}  // namespace frontmost

@@ -1,8 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The public result: rounds that cover most of their circumference, each with the ids of its triangles. Less than 160
-// degrees of a circle is a fillet or a corner and gets no diameter.
+// Surfaces of revolution and prisms, and the public list of all rounds.
+//
+// Rings with corners at equal angles have equal moments in all directions across their axis. So the axis passes through
+// the mean of the corners, in the direction whose second moment differs from two equal ones. Regions that pass this
+// test are checked ring by ring.
+//
+// A prism has two rims about one axis, each with its corners on a circle. Rims are sorted by the point of their axis
+// nearest to the origin, along a direction that is parallel to no usual row of holes. So the other rim is among the
+// next.
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "base/parallel.h"
 #include "frontmost/lines.h"
@@ -12,6 +21,236 @@ namespace frontmost {
 namespace {
 
 using namespace lines_detail;
+
+struct FoundRevolved {
+  glm::dvec3 from, to, axis;             ///< its ends along the axis; unit direction
+  double radius;                         ///< the largest radius
+  std::vector<std::uint32_t> triangles;  ///< ascending
+};
+
+constexpr std::size_t kFewestCorners = 19;  // a ring and a tip
+constexpr double kEqualMoments = 1e-5;      // of the largest
+constexpr double kSameRing = 8;             // in units of noise: the greatest distance within a ring
+constexpr double kSmallestRevolved = 400;   // in units of noise
+
+/// A vertex relative to an axis.
+struct Polar {
+  double height, radius, angle;
+};
+
+/// The triangles that are connected with `first` by smooth edges, ascending; empty if `first` is taken. Takes them.
+std::vector<std::uint32_t> region_from(std::uint32_t first, const SmoothMesh& mesh, std::vector<bool>& is_taken) {
+  std::vector<std::uint32_t> region;
+  if (is_taken[first]) return region;
+  is_taken[first] = true;
+  region.push_back(first);
+  for (std::size_t i = 0; i < region.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      if (!mesh.is_smooth(region[i], k)) continue;
+      const std::uint32_t next = mesh.across(region[i], k);
+      if (is_taken[next]) continue;
+      is_taken[next] = true;
+      region.push_back(next);
+    }
+  std::sort(region.begin(), region.end());
+  return region;
+}
+
+/// The direction whose second moment differs from two equal ones; none if all are equal or all differ.
+std::optional<glm::dvec3> odd_direction(const glm::dmat3& moments) {
+  // With the equal moments m: moments = m * 1 + (odd - m) * outerProduct(axis, axis). The traces of this and of its
+  // square give a quadratic equation for m; either root may be right.
+  const double trace = moments[0][0] + moments[1][1] + moments[2][2], mean = trace / 3;
+  glm::dmat3 deviator = moments;
+  for (int k = 0; k < 3; ++k) deviator[k][k] -= mean;
+  double squares = 0;
+  for (int i = 0; i < 3; ++i) squares += glm::dot(deviator[i], deviator[i]);
+  const double size = std::sqrt(squares / 6);  // a third of |odd - m|
+  if (!(size > kEqualMoments * trace)) return std::nullopt;
+  for (const double sign : {1.0, -1.0}) {
+    glm::dmat3 rest = deviator * sign;
+    for (int k = 0; k < 3; ++k) rest[k][k] += size;  // leaves 3 * size * outerProduct(axis, axis)
+    int longest = 0;
+    for (const int k : {1, 2})
+      if (rest[k][k] > rest[longest][longest]) longest = k;
+    const glm::dvec3 axis = glm::normalize(rest[longest]);
+    const glm::dmat3 wanted = 3 * size * glm::outerProduct(axis, axis);
+    double off = 0;
+    for (int i = 0; i < 3; ++i) off += glm::dot(rest[i] - wanted[i], rest[i] - wanted[i]);
+    if (std::sqrt(off) <= kEqualMoments * trace) return axis;
+  }
+  return std::nullopt;
+}
+
+class RevolvedFinder {
+ public:
+  explicit RevolvedFinder(const SmoothMesh& mesh)
+      : mesh_(mesh), slack_(kSameRing * mesh.noise), region_of_(mesh.mesh.positions.size(), no_index) {}
+
+  [[nodiscard]] std::optional<FoundRevolved> find(std::vector<std::uint32_t> region) {
+    const std::vector<glm::dvec3> corners = corners_of(region);
+    if (corners.size() < kFewestCorners) return std::nullopt;
+    glm::dvec3 middle(0);
+    for (const glm::dvec3& p : corners) middle += p;
+    middle /= double(corners.size());
+    glm::dmat3 moments(0);
+    for (const glm::dvec3& p : corners) moments += glm::outerProduct(p - middle, p - middle);
+    const auto axis = odd_direction(moments);
+    if (!axis) return std::nullopt;
+    std::vector<Polar> polar = seen_from({middle, *axis, 0}, corners);
+    const auto by_radius = [](const Polar& a, const Polar& b) { return a.radius < b.radius; };
+    const auto by_height = [](const Polar& a, const Polar& b) { return a.height < b.height; };
+    const auto [thinnest, widest] = std::minmax_element(polar.begin(), polar.end(), by_radius);
+    const auto [lowest, highest] = std::minmax_element(polar.begin(), polar.end(), by_height);
+    const double radius = widest->radius, low = lowest->height, high = highest->height;
+    // Discs need no axis, walls are cylinders, and whole spheres are round about any axis.
+    if (high - low <= slack_ || radius - thinnest->radius <= slack_ || is_sphere(middle, corners)) return std::nullopt;
+    if (radius < kSmallestRevolved * mesh_.noise || !is_in_rings(polar)) return std::nullopt;
+    return FoundRevolved{middle + low * *axis, middle + high * *axis, *axis, radius, std::move(region)};
+  }
+
+ private:
+  /// The vertices of the region, each once.
+  [[nodiscard]] std::vector<glm::dvec3> corners_of(const std::vector<std::uint32_t>& region) {
+    std::vector<glm::dvec3> corners;
+    for (const std::uint32_t t : region)
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t vertex = mesh_.mesh.triangles[t][k];
+        // A region is identified by its first triangle.
+        if (region_of_[vertex] == region.front()) continue;
+        region_of_[vertex] = region.front();
+        corners.push_back(mesh_.mesh.positions[vertex]);
+      }
+    return corners;
+  }
+
+  [[nodiscard]] bool is_sphere(const glm::dvec3& middle, const std::vector<glm::dvec3>& corners) const {
+    const double radius = glm::distance(middle, corners[0]);
+    return std::all_of(corners.begin(), corners.end(),
+                       [&](const glm::dvec3& p) { return std::abs(glm::distance(middle, p) - radius) <= slack_; });
+  }
+
+  [[nodiscard]] static std::vector<Polar> seen_from(const Tube& tube, const std::vector<glm::dvec3>& corners) {
+    const Across across(tube.axis);
+    std::vector<Polar> polar;
+    for (const glm::dvec3& p : corners) {
+      const glm::dvec3 out = tube.outwards(p);
+      polar.push_back({glm::dot(p - tube.point, tube.axis), glm::length(out),
+                       std::atan2(glm::dot(out, across.v), glm::dot(out, across.u))});
+    }
+    return polar;
+  }
+
+  /// Calls use(begin, end) for each run of vertices whose sorted values are within a ring's tolerance of each other.
+  template <class Value, class Use>
+  [[nodiscard]] bool all_runs(std::span<Polar> polar, const Value& value, const Use& use) const {
+    std::sort(polar.begin(), polar.end(), [&](const Polar& a, const Polar& b) { return value(a) < value(b); });
+    for (std::size_t begin = 0, end = 0; begin < polar.size(); begin = end) {
+      for (end = begin + 1; end < polar.size() && value(polar[end]) - value(polar[end - 1]) <= slack_;) ++end;
+      if (value(polar[end - 1]) - value(polar[begin]) > slack_ || !use(polar.subspan(begin, end - begin))) return false;
+    }
+    return true;
+  }
+
+  /// Whether every vertex lies on the axis, or in a ring that is closed around it.
+  [[nodiscard]] bool is_in_rings(std::vector<Polar>& polar) const {
+    const auto is_ring = [&](std::span<Polar> ring) {
+      if (ring.front().radius <= slack_) return true;
+      std::sort(ring.begin(), ring.end(), [](const Polar& a, const Polar& b) { return a.angle < b.angle; });
+      double gap = ring.front().angle + 2 * std::numbers::pi - ring.back().angle;
+      for (std::size_t i = 1; i < ring.size(); ++i) gap = std::max(gap, ring[i].angle - ring[i - 1].angle);
+      return gap <= kWidestStep;
+    };
+    return all_runs(
+        std::span(polar), [](const Polar& p) { return p.height; },
+        [&](std::span<Polar> level) {
+          return all_runs(
+              level, [](const Polar& p) { return p.radius; }, is_ring);
+        });
+  }
+
+  const SmoothMesh& mesh_;
+  const double slack_;
+  std::vector<std::uint32_t> region_of_;  ///< by vertex: the last region that it was in
+};
+
+std::vector<FoundRevolved> find_revolved(const SmoothMesh& mesh, const Execution& execution) {
+  std::vector<FoundRevolved> found;
+  std::vector<bool> is_taken(mesh.mesh.triangles.size());
+  RevolvedFinder finder(mesh);
+  for (std::uint32_t t = 0; t < mesh.mesh.triangles.size(); ++t) {
+    if (t % 4096 == 0) check_cancelled(execution);
+    std::vector<std::uint32_t> region = region_from(t, mesh, is_taken);
+    if (region.empty()) continue;
+    if (auto revolved = finder.find(std::move(region))) found.push_back(std::move(*revolved));
+  }
+  return found;
+}
+
+constexpr std::size_t kFewestPrismSides = 7, kMostPrismSides = 17;
+constexpr double kWidestPrismTurn = 0.91;  // radians, a little more than the turn between two of seven sides
+constexpr double kSamePrism = 1e-3;        // of the radius
+constexpr std::size_t kMostLookedAt = 4096;
+
+struct PrismRim {
+  Circle3 circle;
+  double key, slack;  ///< `key`: the axis' nearest point to the origin, along one direction; `slack`: its uncertainty
+  bool is_used = false;
+};
+
+/// The circle through all corners of a chain, if the chain goes around it once.
+std::optional<Circle3> circle_of(const SmoothMesh& mesh, const SharpChain& chain) {
+  const std::size_t sides = chain.edges.size();
+  if (!chain.is_closed || sides < kFewestPrismSides || sides > kMostPrismSides) return std::nullopt;
+  const auto corner = [&](std::size_t i) { return mesh.mesh.positions[chain.vertices[i % sides]]; };
+  const auto circle = circle_through(corner(0), corner(sides / 3), corner(2 * sides / 3));
+  if (!circle) return std::nullopt;
+  const double slack = std::max(mesh.noise, kSamePrism * circle->radius);
+  double turn = 0;
+  for (std::size_t i = 0; i < sides; ++i) {
+    const double by = circle->turn_between(corner(i), corner(i + 1));
+    if (!(circle->distance(corner(i)) <= slack && by > 0 && by <= kWidestPrismTurn)) return std::nullopt;
+    turn += by;
+  }
+  return turn < 2 * std::numbers::pi + 1e-3 ? circle : std::nullopt;
+}
+
+bool are_ends_of_one(const PrismRim& a, const PrismRim& b) {
+  const double radius = a.circle.radius, slack = kSamePrism * radius;
+  const glm::dvec3 way = b.circle.centre - a.circle.centre;
+  const double along = glm::dot(way, a.circle.axis);
+  return !b.is_used && std::abs(b.circle.radius - radius) <= slack && std::abs(along) > slack &&
+         glm::length(way - along * a.circle.axis) <= 4 * slack &&
+         glm::length(glm::cross(a.circle.axis, b.circle.axis)) <= kSamePrism;
+}
+
+/// The prisms of a mesh, with a sharp rim at either end. O(sharp edges log sharp edges), and at most 4096 comparisons
+/// for each rim.
+std::vector<Round> find_prisms(const SmoothMesh& mesh, const Execution& execution) {
+  const SharpChains all = sharp_chains(mesh, execution, std::cos(kWidestPrismTurn));
+  std::vector<PrismRim> rims;
+  for (const SharpChain& chain : all.chains)
+    if (const auto circle = circle_of(mesh, chain)) {
+      const double along = glm::dot(circle->centre, circle->axis), turned = 4 * mesh.noise / circle->radius;
+      const glm::dvec3 foot = circle->centre - along * circle->axis;
+      rims.push_back({*circle, glm::dot(foot, glm::dvec3(0.7236, 0.5257, 0.4472)),
+                      4 * kSamePrism * circle->radius + turned * std::abs(along)});
+    }
+  std::stable_sort(rims.begin(), rims.end(), [](const PrismRim& a, const PrismRim& b) { return a.key < b.key; });
+  std::vector<Round> found;
+  for (std::size_t i = 0; i < rims.size(); ++i) {
+    PrismRim& rim = rims[i];
+    for (std::size_t k = i + 1; !rim.is_used && k < rims.size() && rims[k].key <= rim.key + 2 * rim.slack; ++k) {
+      if (k - i > kMostLookedAt) break;
+      if (!are_ends_of_one(rim, rims[k])) continue;
+      rim.is_used = rims[k].is_used = true;
+      const Circle3& circle = rim.circle;
+      found.push_back({RoundKind::cylinder, circle.centre, rims[k].circle.centre, circle.axis, circle.radius,
+                       2 * std::numbers::pi});
+    }
+  }
+  return found;
+}
 
 constexpr double kLeastTurn = 160 * std::numbers::pi / 180;
 
@@ -49,11 +288,7 @@ Rounds find_rounds(const Surfaces& surfaces, const Execution& execution) {
   for (const FoundRevolved& found : find_revolved(mesh, execution))
     append({RoundKind::revolved, found.from, found.to, found.axis, found.radius, 2 * std::numbers::pi}, found.triangles,
            mesh.mesh, all);
-  for (const FoundPrism& found : find_prisms(mesh, execution)) {
-    const Circle3& rim = found.rim;
-    all.prisms.push_back(
-        {RoundKind::cylinder, rim.centre, found.other_end, rim.axis, rim.radius, 2 * std::numbers::pi});
-  }
+  all.prisms = find_prisms(mesh, execution);
   return all;
 }
 

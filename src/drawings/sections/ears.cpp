@@ -2,17 +2,14 @@
 // Holes are joined to the outer line by a bridge, a side that is there twice. Then ears are cut off until three corners
 // are left; an ear is a corner whose neighbours see each other (G. Meisters. Polygons Have Ears. 1975).
 //
-//      outer line with a hole                after the bridge           an ear at b: a, b, c turn left, and no other
-//     +-----------------+                   +-----------------+         corner lies in the triangle that they make
-//     |      +---+      |                   |------+---+      |
-//     |      |   |      |        ->         |      |   |      |              b
-//     |      +---+      |                   |      +---+      |             / .
-//     +-----------------+                   +-----------------+            a   c
+//     +-----------------+                   +-----------------+         an ear at b: a, b, c turn left, and no other
+//     |      +---+      |        ->         |------+---+      |         corner lies in the triangle that they make
+//     |      +---+      |                   |      +---+      |
+//     +-----------------+                   +-----------------+
 //
-// All turns are exact signs, so no ear overlaps another. Only reflex corners, at which the polygon turns right, may lie
-// in an ear; they are found in a grid. Where outlines cross there may be no ear: then flat corners are cut, then any
-// corner that turns left, then any corner. So each side of an outline belongs to one triangle, and the cut object is
-// closed even there. Triangles at right turns overlap others.
+// All turns are exact signs, so no ear overlaps another. Only reflex corners may lie in an ear; they are found in a
+// grid. Where outlines cross there may be no ear: then flat corners are cut, then any corner that turns left, then any
+// corner.
 #include <algorithm>
 #include <cmath>
 
@@ -25,11 +22,6 @@ namespace {
 
 constexpr std::size_t corners_per_poll = 1 << 10;
 constexpr int most_cells = 1 << 10;  // along an axis
-
-/// A remaining corner of the polygon.
-struct Link {
-  std::uint32_t last, next;
-};
 
 /// Corners in rings. The first ring is the outer line, to which the holes are joined.
 class Rings {
@@ -88,7 +80,10 @@ class Rings {
   }
 
   std::vector<glm::vec2> places_;
-  std::vector<Link> links_;
+  struct Link {
+    std::uint32_t last, next;
+  };
+  std::vector<Link> links_;  ///< the neighbours of each remaining corner
   std::vector<std::uint32_t> firsts_;
 };
 

@@ -1,23 +1,214 @@
 // SPDX-License-Identifier: Apache-2.0
-//        +-----------+          Lines are nested, and each line has a winding number on its left and on its right.
-//        |  +-----+  |          It bounds a region if one side is filled and the other is not: as the outer line
-//        |  | (o) |  |          of a region, or as a hole in the smallest region around it.
-//        |  +-----+  |
-//        +-----------+
+// Segments are joined at places that are equal to the bit. Where several continue at a place, the leftmost is taken, so
+// that outlines touch but never cross:
 //
-// Areas are summed about a point of the line. An area within the rounding error of that sum counts as 0, unless the
-// line crosses itself, like an hourglass: then it is filled all the same.
+//        \ | /          a walk from below takes the left one; another walk that comes by, or begins there,
+//         \|/           takes the others
+//          o
+//
+// A line that does not close is joined to another line, or to itself, where their ends are near. Closed lines are
+// nested, each with a winding number on either side. A line bounds a region if one side is filled and the other is not:
+// as the outer line of a region, or as a hole in the smallest region around it.
 #include "sections/regions.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/orientation.h"
 #include "base/parallel.h"
+#include "geometry/buckets.h"
 
 namespace frontmost::lines_detail {
 namespace {
+
+constexpr double joined_gap = 1e-5;  // of the size of the section
+constexpr std::size_t steps_per_poll = 1 << 14;
+
+/// A segment between two places, by their numbers.
+struct Step {
+  std::uint32_t from, to;
+};
+
+/// Segments as steps without duplicates. Pairs in opposite directions cancel out.
+std::vector<Step> steps_of(const std::vector<CutSegment>& segments, std::vector<glm::vec2>& places) {
+  for (const CutSegment& segment : segments) {
+    places.push_back(segment.from);
+    places.push_back(segment.to);
+  }
+  std::sort(places.begin(), places.end(), is_left_of);
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  const auto number = [&](const glm::vec2& p) {
+    return std::uint32_t(std::lower_bound(places.begin(), places.end(), p, is_left_of) - places.begin());
+  };
+  struct Way {
+    std::uint32_t low, high;
+    int forwards;
+  };
+  std::vector<Way> ways;
+  for (const CutSegment& segment : segments) {
+    const std::uint32_t from = number(segment.from), to = number(segment.to);
+    if (from != to) ways.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
+  }
+  std::sort(ways.begin(), ways.end(),
+            [](const Way& a, const Way& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
+  std::vector<Step> steps;
+  for (std::size_t i = 0; i < ways.size();) {
+    const Way& way = ways[i];
+    int sum = 0;
+    for (; i < ways.size() && ways[i].low == way.low && ways[i].high == way.high; ++i) sum += ways[i].forwards;
+    if (sum > 0) steps.push_back({way.low, way.high});
+    if (sum < 0) steps.push_back({way.high, way.low});
+  }
+  return steps;
+}
+
+/// The steps at each place, by an end of them.
+Buckets<std::uint32_t> steps_at(const std::vector<Step>& steps, std::size_t places, std::uint32_t Step::*end,
+                                const Execution& execution) {
+  const auto list = [&](std::size_t i, const auto& add) { add(steps[i].*end, std::uint32_t(i)); };
+  return {places, steps.size(), list, execution};
+}
+
+/// Walks along steps until none is left.
+class Walker {
+ public:
+  Walker(const std::vector<glm::vec2>& places, const std::vector<Step>& steps, const Execution& execution)
+      : places_(places),
+        steps_(steps),
+        execution_(execution),
+        out_(steps_at(steps, places.size(), &Step::from, execution)),
+        in_(steps_at(steps, places.size(), &Step::to, execution)),
+        is_used_(steps.size()),
+        at_(places.size(), no_index) {}
+
+  void run() {
+    // Open lines begin at places with more steps out than in.
+    for (std::uint32_t i = 0; i < steps_.size(); ++i)
+      if (out_[steps_[i].from].size() > in_[steps_[i].from].size()) walk(i);
+    for (std::uint32_t i = 0; i < steps_.size(); ++i) walk(i);
+  }
+
+  std::vector<SectionOutline> closed, open;
+  bool is_wound_alike = true;
+
+ private:
+  void walk(std::uint32_t first) {
+    if (is_used_[first]) return;
+    path_ = {steps_[first].from};
+    at_[path_[0]] = 0;
+    for (std::uint32_t to = take(first, false); to != no_index; to = next()) {
+      if (at_[to] == no_index) {
+        at_[to] = std::uint32_t(path_.size());
+        path_.push_back(to);
+        continue;
+      }
+      take_loop(at_[to]);
+    }
+    if (path_.size() > 1) open.push_back(points_from(0));
+    for (const std::uint32_t place : path_) at_[place] = no_index;
+  }
+
+  /// Takes the loop of a path whose end has met its own place number `begin`.
+  void take_loop(std::size_t begin) {
+    if (path_.size() - begin > 2) closed.push_back(points_from(begin));
+    for (std::size_t i = begin + 1; i < path_.size(); ++i) at_[path_[i]] = no_index;
+    path_.resize(begin + 1);
+  }
+
+  [[nodiscard]] SectionOutline points_from(std::size_t begin) const {
+    SectionOutline points;
+    for (std::size_t i = begin; i < path_.size(); ++i) points.push_back(places_[path_[i]]);
+    return points;
+  }
+
+  std::uint32_t take(std::uint32_t step, bool is_turned) {
+    if (++taken_ % steps_per_poll == 0) check_cancelled(execution_);
+    is_used_[step] = 1;
+    if (is_turned) is_wound_alike = false;
+    return is_turned ? steps_[step].from : steps_[step].to;
+  }
+
+  /// \returns the place to which the leftmost step from the path's end leads; no_index if there is none.
+  std::uint32_t next() {
+    const std::uint32_t end = path_.back();
+    std::uint32_t best = no_index;
+    for (const std::uint32_t step : out_[end])
+      if (!is_used_[step] && (best == no_index || is_before(steps_[step].to, steps_[best].to))) best = step;
+    if (best != no_index) return take(best, false);
+    for (const std::uint32_t step : in_[end])
+      if (!is_used_[step]) return take(step, true);
+    return no_index;
+  }
+
+  /// Whether place a comes before place b, clockwise around the path's end from the direction the path came from.
+  [[nodiscard]] bool is_before(std::uint32_t a, std::uint32_t b) const {
+    if (path_.size() < 2) return false;
+    const glm::vec2 &from = places_[path_[path_.size() - 2]], &end = places_[path_.back()];
+    const int side_a = orientation(from, end, places_[a]), side_b = orientation(from, end, places_[b]);
+    if (side_a != side_b) return side_a > side_b;
+    return orientation(end, places_[b], places_[a]) > 0;
+  }
+
+  const std::vector<glm::vec2>& places_;
+  const std::vector<Step>& steps_;
+  const Execution& execution_;
+  const Buckets<std::uint32_t> out_, in_;
+  std::vector<std::uint8_t> is_used_;
+  std::vector<std::uint32_t> path_, at_;  ///< at_: by place, its number in the path
+  std::size_t taken_ = 0;
+};
+
+/// For each line, the line that begins nearest to its end, within `gap`. No line succeeds two others.
+std::vector<std::uint32_t> successors(const std::vector<SectionOutline>& lines, double gap) {
+  std::vector<std::uint32_t> order(lines.size()), next(lines.size(), no_index);
+  std::iota(order.begin(), order.end(), 0u);
+  const auto start_x = [&](std::uint32_t i) { return lines[i].front().x; };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return start_x(a) < start_x(b); });
+  std::vector<std::uint8_t> is_taken(lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const glm::dvec2 end = lines[i].back();
+    double nearest = gap;
+    const auto begin = std::lower_bound(order.begin(), order.end(), end.x - gap,
+                                        [&](std::uint32_t k, double x) { return start_x(k) < x; });
+    for (auto k = begin; k != order.end() && start_x(*k) <= end.x + gap; ++k) {
+      const double off = glm::distance(glm::dvec2(lines[*k].front()), end);
+      if (is_taken[*k] || !(off < nearest)) continue;
+      nearest = off;
+      next[i] = *k;
+    }
+    if (next[i] != no_index) is_taken[next[i]] = 1;
+  }
+  return next;
+}
+
+/// Joins lines across small gaps. \returns the closed ones; `open_count` counts the others.
+std::vector<SectionOutline> close_gaps(const std::vector<SectionOutline>& lines, double gap, std::size_t& open_count) {
+  const std::vector<std::uint32_t> next = successors(lines, gap);
+  std::vector<std::uint8_t> is_done(lines.size()), has_before(lines.size());
+  for (const std::uint32_t k : next)
+    if (k != no_index) has_before[k] = 1;
+  const auto follow = [&](std::uint32_t k, SectionOutline& line) {
+    for (; k != no_index && !is_done[k]; k = next[k]) {
+      is_done[k] = 1;
+      line.insert(line.end(), lines[k].begin(), lines[k].end());
+    }
+  };
+  SectionOutline line;
+  for (std::uint32_t i = 0; i < lines.size(); ++i) {
+    if (has_before[i]) continue;
+    ++open_count;
+    follow(i, line);
+  }
+  std::vector<SectionOutline> closed;
+  for (std::uint32_t i = 0; i < lines.size(); ++i) {
+    line.clear();
+    follow(i, line);
+    if (line.size() > 2) closed.push_back(line);
+  }
+  return closed;
+}
 
 constexpr double area_rounding = 1e-12;  // of the sum of absolute terms
 constexpr double crossed_area = 1e-6;    // likewise, for lines that turn as much one way as the other
@@ -99,6 +290,23 @@ int boundary_of(const std::vector<Ring>& rings, const std::vector<std::uint32_t>
 }
 
 }  // namespace
+
+Outlines find_outlines(const std::vector<CutSegment>& segments, const Execution& execution) {
+  std::vector<glm::vec2> places;
+  const std::vector<Step> steps = steps_of(segments, places);
+  Walker walker(places, steps, execution);
+  walker.run();
+  Outlines all{std::move(walker.closed), 0, walker.is_wound_alike};
+  if (walker.open.empty()) return all;
+  glm::dvec2 low(places[0]), high = low;
+  for (const glm::vec2& place : places) {
+    low = glm::min(low, glm::dvec2(place));
+    high = glm::max(high, glm::dvec2(place));
+  }
+  for (SectionOutline& line : close_gaps(walker.open, joined_gap * glm::distance(low, high), all.open_count))
+    all.closed.push_back(std::move(line));
+  return all;
+}
 
 std::vector<Region> regions_of(Outlines outlines, const Execution& execution) {
   std::vector<Ring> rings;

@@ -1,26 +1,353 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the options of a sheet to its page: views, their places, their lines, and annotations.
+// From the options of a sheet to its page:
 //
-//    options --> views are drawn --> cells --> plan: paper, scale, places
-//                                                 --> strokes, hatching, dimensions, frame --> Page
+//    camera --> surfaces (tessellated again if curved, cut for a section) --> lines --> cells
+//           --> plan: paper, scale, places --> strokes, hatching, dimensions, frame --> Page
 //
 // Lines are found before the scale is known, because the drawn lines determine how much room a view takes. Everything
-// measured in millimetres of paper comes after the plan: dashes, hatching, numbers.
+// measured in millimetres of paper comes after the plan: tolerances of strokes, dashes, hatching, numbers. Details that
+// are too short or too dense for a pen are left out then, not when a file is written.
 #include <algorithm>
+#include <cmath>
 
 #include "base/parallel.h"
+#include "frontmost/view.h"
+#include "rounds/found_rounds.h"
 #include "sheets/dimensions/dimensions.h"
-#include "sheets/frame/title_block.h"
+#include "sheets/paper.h"
 #include "sheets/planned_view.h"
-#include "sheets/sections/sections.h"
+#include "view/tessellate/level.h"
 
 namespace frontmost {
 namespace {
 
 using namespace detail;
 
-constexpr double gap_between_views = 15;  // millimetres
-constexpr double page_rim = 5;            // millimetres in which printers do not print
+constexpr double gap_between_views = 15;     // millimetres
+constexpr double page_rim = 5;               // millimetres in which printers do not print
+constexpr double centre_overshoot = 3;       // millimetres of centre lines beyond their rounds
+constexpr double inch = 25.4;                // millimetres
+constexpr glm::ivec2 fine_grid{3840, 2160};  // the shape of render()'s default pictures, for the same camera
+constexpr double fine_error = 0.2;           // in pixels of that grid: about 0.01 mm on a sheet of A4
+constexpr double coarsest_error = 10;
+constexpr double most_fine_triangles = 2e6;  // seconds to draw
+
+bool has_named_views(const SheetOptions& options) { return !options.views.empty() || !options.sections.empty(); }
+
+/// Whether a view looks at the model at an angle and shows nothing in true length.
+bool is_at_an_angle(NamedView direction) {
+  return direction == NamedView::iso || direction == NamedView::three_quarter;
+}
+
+[[noreturn]] void refuse_option(const std::string& field, const std::string& reason) {
+  throw Error(ErrorCode::bad_argument, field, reason);
+}
+
+void check_range(const char* field, std::optional<double> value, double least, double most) {
+  // Written so that NaN fails.
+  if (value && !(*value >= least && *value <= most))
+    refuse_option(field, "must be from " + number_text(least) + " to " + number_text(most));
+}
+
+std::string quoted(NamedView view) { return std::string("'").append(view_name(view)).append("'"); }
+
+void check_each_once(const char* field, const std::vector<NamedView>& views) {
+  for (std::size_t i = 0; i < views.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      if (views[i] == views[k]) refuse_option(field, quoted(views[i]) + " is there twice");
+      if (is_at_an_angle(views[i]) && is_at_an_angle(views[k]))
+        refuse_option(field, quoted(views[k]) + " and " + quoted(views[i]) + " have one place");
+    }
+}
+
+void check_named_views(const SheetOptions& o) {
+  check_each_once("views", o.views);
+  if (!o.hidden_views) return;
+  check_each_once("hidden_views", *o.hidden_views);
+  if (o.hidden == HiddenLines::none) refuse_option("hidden_views", "needs hidden lines, dashed or thin");
+  for (const NamedView view : *o.hidden_views)
+    if (std::find(o.views.begin(), o.views.end(), view) == o.views.end())
+      refuse_option("hidden_views", std::string(view_name(view)) + " is not among the views");
+}
+
+void check_section_views(const SheetOptions& o) {
+  if (o.sections.empty()) return;
+  if (o.sections.size() > section_letters.size())
+    refuse_option("sections", std::to_string(section_letters.size()) + " are the most");
+  for (std::size_t i = 0; i < o.sections.size(); ++i) {
+    const SectionView& section = o.sections[i];
+    if (is_at_an_angle(section.direction))
+      refuse_option("sections", quoted(section.direction) + " looks along no axis");
+    if (section.at && !std::isfinite(*section.at)) refuse_option("sections", "a plane must be at a finite place");
+    for (std::size_t k = 0; k < i; ++k)
+      if (section.direction == o.sections[k].direction && section.at == o.sections[k].at)
+        refuse_option("sections", quoted(section.direction) + " is there twice at one place");
+  }
+  if (o.style == DrawingStyle::figure) refuse_option("sections", "figures have none");
+  if (o.hatch || o.stipple) refuse_option("sections", "hatching says what is cut; leave out hatch and stipple");
+}
+
+void check_paper(const SheetOptions& o) {
+  if (!o.page) return;
+  if (!o.page->fits_drawing) {
+    check_range("page", o.page->size.x, 1, 1e5);
+    check_range("page", o.page->size.y, 1, 1e5);
+  } else if (o.title_block) {
+    refuse_option("page", "a frame needs a page of its own size, and not one that fits the drawing");
+  } else if (!o.scale) {
+    refuse_option("page", "one that fits the drawing needs a scale");
+  }
+}
+
+/// Refuses options that a drawing of a given view in this projection cannot have.
+void validate_for_view(const SheetOptions& o, const Projection& projection) {
+  if (has_named_views(o)) refuse_option("views", "the view is given; draw_sheet() draws named ones");
+  if (o.hidden_views) refuse_option("hidden_views", "the view is given; needs named ones");
+  if (projection.orthographic) return;
+  if (o.scale || o.standard_scale.value_or(false)) refuse_option("scale", "in perspective nothing has a scale");
+  if (o.centre_lines.value_or(false)) refuse_option("centre_lines", "perspective has none");
+}
+
+/// Millimetres per unit of length of the model.
+double millimetres_per_unit(const SheetOptions& options, const Scene& scene) {
+  return options.millimetres_per_unit.value_or(1000 * scene.source.metres_per_unit.value_or(0.001));
+}
+
+/// Whether the sheet states its dimensions in inches.
+bool is_in_inches(const SheetOptions& options, const Scene& scene) {
+  return options.in_inches.value_or(std::abs(millimetres_per_unit(options, scene) - inch) < 1e-9);
+}
+
+/// The pens of the style, scaled to the given width.
+LinePens pens_of(const SheetOptions& options) {
+  LinePens pens = options.style == DrawingStyle::figure ? figure_pens() : technical_pens();
+  if (options.hidden == HiddenLines::thin) pens.hidden = thin_pen();
+  if (!options.pen) return pens;
+  const double factor = *options.pen / pens.seen.width;
+  for (Pen* const pen :
+       {&pens.outline, &pens.seen, &pens.crease, &pens.hidden, &pens.hatching, &pens.stippling, &pens.centre}) {
+    pen->width *= factor;
+    for (double& dash : pen->dashes) dash *= factor;  // standards count dashes in widths
+  }
+  return pens;
+}
+
+bool wants_centre_lines(const SheetOptions& options) {
+  return options.centre_lines.value_or(has_named_views(options) && options.style == DrawingStyle::technical);
+}
+
+/// The finest error that paper shows, or a coarser one if the eye is too near for that. None if even the coarsest error
+/// takes too many triangles: then the model's own triangles look better.
+std::optional<double> tessellation_error(const SheetOptions& options, const Scene& scene, const View& view) {
+  if (options.tessellation_error) return options.tessellation_error;
+  for (double error = fine_error; error <= coarsest_error; error *= 2)
+    if (tessellated_count(scene, view, error) <= most_fine_triangles) return error;
+  return std::nullopt;
+}
+
+/// The triangles of `surfaces`, tessellated again for the view if they are curved.
+std::shared_ptr<const Surfaces> surfaces_for(const Surfaces& surfaces, const View& view, const SheetOptions& options,
+                                             const Execution& execution) {
+  std::optional<double> error;
+  if (has_curved(surfaces.scene())) error = tessellation_error(options, surfaces.scene(), view);
+  if (!error) return {std::shared_ptr<void>(), &surfaces};
+  return surfaces_of(std::make_shared<const Scene>(tessellate(surfaces.scene(), view, *error)), execution);
+}
+
+/// By default, views at an angle show no hidden lines, since these would obscure the shape.
+bool shows_hidden(const SheetOptions& options, NamedView direction) {
+  if (options.hidden == HiddenLines::none) return false;
+  if (!options.hidden_views) return !is_at_an_angle(direction);
+  return std::find(options.hidden_views->begin(), options.hidden_views->end(), direction) !=
+         options.hidden_views->end();
+}
+
+PlannedView draw_planned(std::shared_ptr<const Surfaces> surfaces, const View& view, const SheetOptions& options,
+                         const Execution& execution) {
+  PlannedView result;
+  result.surfaces = std::move(surfaces);
+  LineOptions wanted;
+  wanted.crease_angle = options.crease_angle;
+  wanted.outlines = options.style == DrawingStyle::figure;
+  result.drawing = draw_lines(*result.surfaces, view, wanted, execution);
+  return result;
+}
+
+/// The near and far planes of the options in place of those that enclose the model.
+ClipDistances planes_of(const ClipDistances& fitted, NamedView direction, const SheetOptions& options) {
+  const ClipDistances planes{options.near.value_or(fitted.near), options.far.value_or(fitted.far)};
+  if (!(planes.near < planes.far) && !(options.near && options.far))
+    refuse_option(options.near ? "near" : "far", "leaves nothing of the " + std::string(view_name(direction)) +
+                                                     " view, in which the model lies from " +
+                                                     number_text(fitted.near, 3) + " to " + number_text(fitted.far, 3));
+  return planes;
+}
+
+double millimetres_per_pixel(const View& view, const SheetOptions& options, const Scene& scene) {
+  const Projection& p = view.projection;
+  return p.orthographic ? (p.right - p.left) / view.width * millimetres_per_unit(options, scene) : 1;
+}
+
+PlannedView draw_named(const Surfaces& surfaces, NamedView direction, const SectionView* section,
+                       const SheetOptions& options, const Execution& execution) {
+  View view = frame(surfaces, fine_grid.x, fine_grid.y,
+                    {.direction = direction, .orthographic = true, .objects = FramedObjects::all});
+  view.projection.clip = planes_of(view.projection.clip, direction, options);
+  std::shared_ptr<const Surfaces> shown = surfaces_for(surfaces, view, options, execution);
+  const CutScene cut = section ? cut_for(*section, *shown, view, execution) : CutScene{shown, nullptr, {}};
+  PlannedView result = draw_planned(cut.surfaces, view, options, execution);
+  result.direction = direction;
+  result.section = cut.section;
+  result.plane = cut.plane;
+  result.shows_hidden = !section && shows_hidden(options, direction);
+  result.millimetres_per_pixel = millimetres_per_pixel(view, options, surfaces.scene());
+  return result;
+}
+
+/// Draws the views of the options, then the sections, each with its lines but without a place.
+std::vector<PlannedView> draw_named_views(const Surfaces& surfaces, const SheetOptions& options,
+                                          const Execution& execution) {
+  std::vector<PlannedView> views;
+  for (const NamedView direction : options.views) {
+    PlannedView& view = views.emplace_back(draw_named(surfaces, direction, nullptr, options, execution));
+    view.name = view.placed.name = view_name(direction);
+  }
+  for (std::size_t i = 0; i < options.sections.size(); ++i) {
+    const SectionView& section = options.sections[i];
+    PlannedView& view = views.emplace_back(draw_named(surfaces, section.direction, &section, options, execution));
+    view.letter = section_letters[i];
+    view.name = view.placed.name = view.letter + "-" + view.letter;
+  }
+  return views;
+}
+
+PlannedView draw_given_view(const Surfaces& surfaces, const View& view, const SheetOptions& options,
+                            const Execution& execution) {
+  PlannedView result = draw_planned(surfaces_for(surfaces, view, options, execution), view, options, execution);
+  result.shows_hidden = options.hidden != HiddenLines::none;
+  result.millimetres_per_pixel = millimetres_per_pixel(view, options, surfaces.scene());
+  return result;
+}
+
+/// Finds the rounds of the views that need them, once for views of the same surfaces.
+void find_rounds_of(std::vector<PlannedView>& views, const SheetOptions& options, const Execution& execution) {
+  // Dimensions need rounds, too.
+  if (!options.dimensions && !wants_centre_lines(options)) return;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    // Named views at an angle show nothing along its axis.
+    if (views[i].direction && is_at_an_angle(*views[i].direction)) continue;
+    for (std::size_t k = 0; k < i && !views[i].rounds; ++k)
+      if (views[k].surfaces == views[i].surfaces) views[i].rounds = views[k].rounds;
+    if (!views[i].rounds) views[i].rounds = std::make_shared<const Rounds>(find_rounds(*views[i].surfaces, execution));
+  }
+}
+
+/// The middle of the model, where views in line have their anchors.
+glm::dvec3 middle_of(const Box& box) {
+  const glm::dvec3 low(box.low), high(box.high);
+  return box.is_empty() ? glm::dvec3(0) : low + (high - low) * 0.5;
+}
+
+/// The cells of the views, and the pixel of each view at its cell's anchor.
+struct Cells {
+  std::vector<ViewCell> cells;
+  std::vector<glm::dvec2> anchors;
+};
+
+Cells cells_of(const std::vector<PlannedView>& views, const Surfaces& surfaces, const SheetOptions& options) {
+  Cells all;
+  for (const PlannedView& view : views) {
+    const View& camera = view.drawing.view;
+    DrawingBounds box = bounds_of(view.drawing, view.shows_hidden);
+    if (options.keeps_picture || box.is_empty()) box = {glm::dvec2(0), glm::dvec2(camera.width, camera.height)};
+    ViewCell& cell = all.cells.emplace_back();
+    glm::dvec2 anchor = (box.low + box.high) * 0.5;
+    if (view.direction) {
+      const glm::ivec2 place = cell_of(*view.direction, options.projection);
+      cell.column = place.x;
+      cell.row = place.y;
+      if (!is_at_an_angle(*view.direction)) anchor = on_screen(camera, middle_of(surfaces.bounds()));
+    }
+    cell.low = (box.low - anchor) * view.millimetres_per_pixel;
+    cell.high = (box.high - anchor) * view.millimetres_per_pixel;
+    if (view.rounds && !view.rounds->rounds.empty()) cell.room_before = cell.room_behind = glm::dvec2(centre_overshoot);
+    all.anchors.push_back(anchor);
+  }
+  return all;
+}
+
+constexpr double usual_crease = std::numbers::pi / 6;  // of intersections
+constexpr double plotted_stroke = 0.5;                 // millimetres: the shortest stroke worth a pen's movement
+constexpr double paper_tolerance = 0.01;               // millimetres: for arcs, and for lines that count as one
+constexpr double stroke_tolerance = 0.0005;            // millimetres: half of the rounding unit of coordinates
+constexpr double shortest_hatch = 0.2;                 // millimetres: shorter hatch lines are dots of the pen
+
+StrokeOptions stroke_options(const PlannedView& view, const SheetOptions& options) {
+  const double millimetres = view.placed.millimetres_per_pixel;
+  StrokeOptions strokes;
+  strokes.with_hidden = view.shows_hidden;
+  strokes.grazing_angle = std::min(options.crease_angle.value_or(usual_crease), std::numbers::pi / 2);
+  strokes.by_kind = strokes.by_outline = options.style == DrawingStyle::figure;
+  strokes.by_instance = !options.plot;
+  strokes.nearest_first = options.plot;
+  strokes.apart = std::clamp(paper_tolerance / millimetres, 0.002, 1.0);
+  strokes.tolerance = std::clamp(stroke_tolerance / millimetres, 1e-4, 1.0);
+  strokes.shortest = std::min(options.shortest_stroke.value_or(options.plot ? plotted_stroke : 0) / millimetres, 1e4);
+  strokes.arc_tolerance = std::min(paper_tolerance / millimetres, 100.0);
+  return strokes;
+}
+
+ToneOptions tone_options(const SheetOptions& options, const View& view) {
+  ToneOptions tone;
+  if (options.light) tone.to_light = glm::dmat3(view.world_from_eye) * *options.light;  // eye space looks down -z
+  tone.casts_shadows = options.casts_shadows;
+  if (options.crease_angle) tone.crease_angle = *options.crease_angle;
+  return tone;
+}
+
+/// Checks a spacing in millimetres of paper against a limit that comes from pixels.
+void check_spacing(const char* field, double spacing, double least) {
+  if (spacing >= least) return;
+  throw Error(ErrorCode::limit_exceeded, std::string(field),
+              number_text(spacing) + " mm would be too many for so large a drawing; take " +
+                  number_text(std::ceil(least * 100) / 100, 3) + " or more, or a smaller page or scale");
+}
+
+StippleOptions stipple_options(const SheetOptions& options, const View& view, double millimetres) {
+  constexpr double most_dots = 2e7;  // the limit of stipple()
+  const double least = std::max(1.0, std::sqrt(double(view.width) * view.height / most_dots));
+  check_spacing("stipple", *options.stipple, least * millimetres);
+  return {*options.stipple / millimetres, tone_options(options, view), !options.plot, options.plot};
+}
+
+HatchOptions hatch_options(const SheetOptions& options, const View& view, double millimetres) {
+  check_spacing("hatch", *options.hatch, millimetres);
+  HatchOptions hatching;
+  hatching.sets = hatch_sets(*options.hatch / millimetres, options.hatch_angle);
+  hatching.tone = tone_options(options, view);
+  hatching.shortest = std::min(shortest_hatch / millimetres, 1000.0);
+  hatching.by_instance = !options.plot;
+  hatching.nearest_first = options.plot;
+  return hatching;
+}
+
+/// Adds hatching and dots if requested. \throws Error limit_exceeded if the view has too few pixels for them.
+void place_tones(PlannedView& view, const SheetOptions& options, const Execution& execution) {
+  const View& camera = view.drawing.view;
+  const double millimetres = view.placed.millimetres_per_pixel;
+  if (options.hatch)
+    view.placed.hatching = hatch(*view.surfaces, camera, hatch_options(options, camera, millimetres), execution);
+  if (options.stipple)
+    view.placed.stippling = stipple(*view.surfaces, camera, stipple_options(options, camera, millimetres), execution);
+}
+
+void place_centre_lines(PlannedView& view, const SheetOptions& options) {
+  if (!view.rounds || !wants_centre_lines(options)) return;
+  CentreLineOptions centre;
+  centre.with_hidden = view.shows_hidden;
+  centre.overshoot = std::min(centre_overshoot / view.placed.millimetres_per_pixel, 1e6);
+  view.placed.centre_lines = centre_lines_of(*view.rounds, view.drawing, view.placed.strokes, centre);
+}
 
 std::vector<DimensionedView> dimensioned_views(const std::vector<PlannedView>& views) {
   std::vector<DimensionedView> all;
@@ -63,16 +390,6 @@ SheetPlan place_views(std::vector<PlannedView>& views, const Surfaces& surfaces,
   return plan;
 }
 
-void draw_in_places(std::vector<PlannedView>& views, const SheetOptions& options, const Execution& execution) {
-  for (PlannedView& view : views) place_strokes(view, options, execution);
-  report_progress(execution, "tones", 0);
-  hatch_sections(views, options, execution);
-  for (PlannedView& view : views) {
-    place_tones(view, options, execution);
-    place_centre_lines(view, options);
-  }
-}
-
 /// Adds dimensions to the page, clear of its rim or of its later frame and title block, and of `marks`.
 void add_dimensions(Sheet& sheet, const std::vector<PlannedView>& views, const std::vector<PageBox>& marks,
                     const Scene& scene, const SheetOptions& options) {
@@ -112,7 +429,14 @@ Sheet finish(std::vector<PlannedView> views, const Surfaces& surfaces, const She
   find_rounds_of(views, options, execution);
   report_progress(execution, "layout", 0);
   const SheetPlan plan = place_views(views, surfaces, options);
-  draw_in_places(views, options, execution);
+  for (PlannedView& view : views)
+    view.placed.strokes = chain_strokes(*view.surfaces, view.drawing, stroke_options(view, options), execution);
+  report_progress(execution, "tones", 0);
+  hatch_sections(views, options, execution);
+  for (PlannedView& view : views) {
+    place_tones(view, options, execution);
+    place_centre_lines(view, options);
+  }
   report_progress(execution, "page", 0);
   const LinePens pens = pens_of(options);
   std::vector<SheetView> placed;
@@ -130,6 +454,28 @@ Sheet finish(std::vector<PlannedView> views, const Surfaces& surfaces, const She
 }
 
 }  // namespace
+
+std::string_view view_name(NamedView view) {
+  constexpr std::string_view names[] = {"front", "back", "left", "right", "top", "bottom", "iso", "three-quarter"};
+  return names[int(view)];
+}
+
+void validate(const SheetOptions& o) {
+  check_range("pen", o.pen, 0.01, 10);
+  check_range("crease_angle", o.crease_angle, 0, std::numbers::pi);
+  check_range("shortest_stroke", o.shortest_stroke, 0, 10);
+  check_range("margin", o.margin, 0, 1000);
+  check_range("scale", o.scale, 1e-12, 1e12);
+  check_range("millimetres_per_unit", o.millimetres_per_unit, 1e-12, 1e12);
+  check_range("hatch", o.hatch, 0.2, 50);
+  check_range("hatch_angle", o.hatch_angle, -100, 100);
+  check_range("stipple", o.stipple, 0.2, 10);
+  check_range("tessellation_error", o.tessellation_error, 1e-3, 1e3);
+  check_named_views(o);
+  check_paper(o);
+  if (o.dimensions && o.views.empty()) refuse_option("dimensions", "need views");
+  check_section_views(o);
+}
 
 Sheet draw_sheet(const Surfaces& surfaces, const SheetOptions& options, const Execution& execution) {
   validate(options);

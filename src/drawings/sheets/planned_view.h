@@ -1,39 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// The views of a sheet, from their cameras to their places on the page, and the meaning of the sheet's options for
-// them.
+// The views of a sheet, from their cameras to their places on the page, and their sections (ISO 128-3).
 //
-//    draw_named_views --> drawing, in pixels of its own picture
-//    cells_of, plan   --> placed: the view's origin on the page and its millimetres per pixel
-//    place_...        --> strokes, tones and centre lines of `placed`
-//
-// A view is filled in that order; each step needs the results of the one before.
+//    views of a sheet         +------+   A|   |A   cutting lines in the first view that sees the plane edge-on
+//                             |      |    |---|
+//                             +------+
+//                               A-A                the section, under the name of its line
 #pragma once
 
+#include <span>
+#include <string>
+#include <vector>
+
 #include "frontmost/lines.h"
-#include "sheets/layout/layout.h"
+#include "sheets/paper.h"
 
 namespace frontmost::detail {
-
-/// How far centre lines extend beyond their rounds, in millimetres.
-inline constexpr double centre_overshoot = 3;
-
-[[nodiscard]] inline bool has_named_views(const SheetOptions& options) {
-  return !options.views.empty() || !options.sections.empty();
-}
-[[nodiscard]] inline bool wants_centre_lines(const SheetOptions& options) {
-  return options.centre_lines.value_or(has_named_views(options) && options.style == DrawingStyle::technical);
-}
-/// Millimetres per unit of length of the model.
-[[nodiscard]] double millimetres_per_unit(const SheetOptions& options, const Scene& scene);
-inline constexpr double inch = 25.4;  ///< millimetres
-/// Whether the sheet states its dimensions in inches.
-[[nodiscard]] bool is_in_inches(const SheetOptions& options, const Scene& scene);
-/// The pens of the style, scaled to the given width.
-[[nodiscard]] LinePens pens_of(const SheetOptions& options);
-/// \throws Error bad_argument: "field: reason".
-[[noreturn]] void refuse_option(const std::string& field, const std::string& reason);
-/// \throws Error bad_argument for options that a drawing of a given view in this projection cannot have.
-void validate_for_view(const SheetOptions& options, const Projection& projection);
 
 struct PlannedView : DrawnView {
   std::optional<NamedView> direction;    ///< empty if the view was given
@@ -45,35 +26,63 @@ struct PlannedView : DrawnView {
   glm::dvec2 taken{0};
 };
 
-/// Whether a view looks at the model at an angle and shows nothing in true length.
-[[nodiscard]] inline bool is_at_an_angle(NamedView direction) {
-  return direction == NamedView::iso || direction == NamedView::three_quarter;
-}
+inline constexpr std::string_view section_letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";  // letters that do not look like digits
 
-/// Draws the views of the options, then the sections, each with its lines but without a place.
-/// \throws Error as draw_sheet() does.
-[[nodiscard]] std::vector<PlannedView> draw_named_views(const Surfaces& surfaces, const SheetOptions& options,
-                                                        const Execution& execution);
-/// Draws a given view, likewise.
-[[nodiscard]] PlannedView draw_given_view(const Surfaces& surfaces, const View& view, const SheetOptions& options,
-                                          const Execution& execution);
+/// Surfaces that own a reference to their scene.
+[[nodiscard]] std::shared_ptr<const Surfaces> surfaces_of(std::shared_ptr<const Scene> scene,
+                                                          const Execution& execution);
 
-/// Finds the rounds of the views that need them, once for views of the same surfaces.
-void find_rounds_of(std::vector<PlannedView>& views, const SheetOptions& options, const Execution& execution);
-
-/// The cells of the views, and the pixel of each view at its cell's anchor.
-struct Cells {
-  std::vector<ViewCell> cells;
-  std::vector<glm::dvec2> anchors;
+/// The part of a scene behind a plane.
+struct CutScene {
+  std::shared_ptr<const Surfaces> surfaces;
+  std::shared_ptr<const Section> section;
+  CuttingPlane plane;
 };
-[[nodiscard]] Cells cells_of(const std::vector<PlannedView>& views, const Surfaces& surfaces,
-                             const SheetOptions& options);
+/// Cuts `surfaces` for a view of them. \throws Error bad_argument if the plane misses them.
+[[nodiscard]] CutScene cut_for(const SectionView& wanted, const Surfaces& surfaces, const View& camera,
+                               const Execution& execution);
 
-// Steps for a view whose place on the page is final.
-void place_strokes(PlannedView& view, const SheetOptions& options, const Execution& execution);
-/// Adds hatching and dots if requested. \throws Error limit_exceeded if the view has too few pixels for them.
-void place_tones(PlannedView& view, const SheetOptions& options, const Execution& execution);
-/// Adds centre lines. Precondition: the strokes are there.
-void place_centre_lines(PlannedView& view, const SheetOptions& options);
+/// Sets the cells of sections: those of the views with the same direction if free, else a column of their own.
+void place_sections(std::vector<ViewCell>& cells, const std::vector<PlannedView>& views);
+/// Reserves room in the cells for cutting lines and names, and records it in the views.
+void keep_section_room(std::vector<ViewCell>& cells, std::vector<PlannedView>& views);
+
+/// Hatches the cut faces of views whose places on the sheet are final.
+void hatch_sections(std::vector<PlannedView>& views, const SheetOptions& options, const Execution& execution);
+
+/// The line of an edge-on cutting plane on the page.
+struct CuttingLine {
+  glm::dvec2 from{0}, to{0};  ///< ends of the part that it cuts
+  glm::dvec2 looking{0};      ///< the section's view direction, across the line; unit length
+  std::string letter;         ///< "A"
+};
+
+/// The name of a view.
+struct ViewName {
+  glm::dvec2 at{0};  ///< the middle of its lower edge
+  std::string text;  ///< "A-A"
+};
+
+struct SectionMarkOptions {
+  Pen thin{0.25, {}, {6, 1, 0.1, 1}};  ///< pen of the lines; their ends are twice as wide
+  double text_height = 5;              ///< millimetres, as in TextStyle
+};
+
+/// Millimetres that a cutting line takes beyond its ends (`cutting_line_room`), and beside them on the side from which
+/// the section is viewed (`section_arrow_room`).
+inline constexpr double cutting_line_room = 12, section_arrow_room = 15;
+
+struct SectionMarks {
+  PageLayer layer{"9 sections"};  ///< unnamed groups of lines, of ends with arrows, and of letters
+  std::vector<PageBox> boxes;     ///< boxes of arrows and letters
+};
+
+/// Draws cutting lines in long dashes and dots, with thick ends 3 to 9 mm beyond the cut part, an arrow at each end and
+/// its letter behind it; and the names of views. All are pen strokes, also for plotters.
+[[nodiscard]] SectionMarks draw_section_marks(std::span<const CuttingLine> lines, std::span<const ViewName> names,
+                                              const SectionMarkOptions& options = {});
+
+/// The cutting lines and names of all sections; empty if there are none.
+[[nodiscard]] SectionMarks section_marks_of(const std::vector<PlannedView>& views, const Pen& thin);
 
 }  // namespace frontmost::detail

@@ -6,8 +6,8 @@
 //    dashes on a line     |=====  ==  =====  ==  =====|      it begins and ends with a whole long dash; long dashes are
 //                                                            stretched to fit the length
 #include <cmath>
+#include <compare>
 #include <map>
-#include <tuple>
 
 #include "frontmost/sheets.h"
 
@@ -84,9 +84,7 @@ class SheetLayers {
     std::uint32_t view, instance;
     bool is_apart;
 
-    friend bool operator<(const GroupKey& a, const GroupKey& b) {
-      return std::tie(a.layer, a.view, a.instance, a.is_apart) < std::tie(b.layer, b.view, b.instance, b.is_apart);
-    }
+    friend auto operator<=>(const GroupKey&, const GroupKey&) = default;
   };
   PageGroup& group(const GroupKey& key, const SheetView& view, const Pen& pen) {
     std::vector<PageGroup>& groups = layers_[key.layer].groups;

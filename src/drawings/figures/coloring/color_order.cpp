@@ -1,20 +1,426 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polygons are coloured in parts of 256. One thread colours a part into a list of its own, and the lists are joined in
-// order. A batch of the shader never holds samples of two parts, so colours do not depend on threads.
+// The colours of a figure's polygons: each polygon is cut into pieces of one colour.
 //
-// A smooth normal only pays if a triangle is visible on at least three square pixels. The visible areas of each
-// triangle are summed before anything is coloured, because a triangle may be visible in many parts.
+//    polygon --start--> sampled --judge--> of one colour --------------------> kept
+//                          ^                    | not
+//                          |                 best_cut --> two halves ---> waiting
+//                          +------------------------------------------------+
+//
+// Waiting pieces are taken first, the last one first, so that few wait at a time. Samples of many pieces are shaded
+// together. A tree of cuts keeps the order of the halves, so the order of writing does not depend on that of shading.
+#include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <optional>
 
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "base/srgb.h"
 #include "figures/colored_order.h"
-#include "figures/coloring/polygon_colors.h"
+#include "figures/coloring/pieces.h"
+#include "shade/colorists.h"
+#include "shade/fragment_shader.h"
+#include "shade/picture_parts.h"
+#include "shade/prepared_scene.h"
+#include "surfaces/cluster_set.h"
+#include "view/screen_cutout.h"
 
 namespace frontmost {
 namespace {
 
 using namespace shading;
+
+/// A point has one sample, at its own place.
+constexpr glm::ivec2 kAtPoint[] = {{0, 0}};
+
+/// The scene's triangles, with smooth normals of the large ones.
+const TriangleStore& smoothed(PreparedScene& scene, const BitSet& large, const Execution& execution) {
+  scene.triangles.smooth(large, execution);
+  return scene.triangles;
+}
+
+/// The lighting of lit figures; empty for others.
+Lighting lighting_of(PreparedScene& scene, const ShadeInput& input, const ShadeOptions& options,
+                     const Execution& execution) {
+  check_light(options.light);
+  if (options.light.shows_environment)
+    throw Error(ErrorCode::unsupported, "figure", "an environment cannot be shown as background");
+  if (options.shading != Shading::lit) return {};
+  return lighting_for(input.first().view, scene.surfaces.scene().up, options.light,
+                      scene.environment(options.light, execution));
+}
+
+Lit lit_at_points(PreparedScene& scene, const ShadeInput& input, const ShadeOptions& options, const Lighting& lighting,
+                  const Execution& execution) {
+  Lit lit = lit_by(lighting, {input, options, kAtPoint}, scene, execution);
+  lit.occlusion = scene.find_occlusion(input, options, execution);
+  scene.shadows.ask_at_points();
+  return lit;
+}
+
+/// The triangles of a figure.
+struct FigureTriangles {
+  BitSet seen;   ///< all triangles of the figure
+  BitSet large;  ///< triangles that need a smooth normal if the model has none
+};
+
+/// Safe for several threads at once; each has its own FragmentShader.
+class PointShader {
+ public:
+  /// Borrows all but the options; prepares whatever the scene lacks. \throws Error as check_opacity() does.
+  PointShader(PreparedScene& scene, const ShadeInput& input, const FigureTriangles& triangles,
+              const ShadeOptions& options, const Execution& execution)
+      : source_(smoothed(scene, triangles.large, execution), input.first().view, &triangles.large),
+        lighting_(lighting_of(scene, input, options, execution)),
+        opacity_(shows_materials(options.shading) ? options.opacity : 1.0f) {
+    check_opacity(options);
+    check_ambient_occlusion(options);
+    scene.make_materials_ready(triangles.seen, execution);
+    switch (options.shading) {
+      case Shading::lit: colorist_ = lit_at_points(scene, input, options, lighting_, execution); break;
+      case Shading::flat: colorist_ = Flat{scene.materials, execution.isa}; break;
+      case Shading::normals: colorist_ = Normals{scene.materials, execution.isa}; break;
+      case Shading::ids: colorist_ = Ids{}; break;
+      case Shading::uv: colorist_ = Texcoords{}; break;
+      case Shading::depth: {
+        const DepthRange range = depth_range(input.first(), execution);
+        colorist_ = Depths{glm::vec3(input.first().view.forward()), range.nearest, range.farthest};
+        break;
+      }
+    }
+  }
+
+  [[nodiscard]] const TriangleSource& source() const { return source_; }
+  [[nodiscard]] const FragmentShader::Colorist& colorist() const { return colorist_; }
+  [[nodiscard]] float opacity() const { return opacity_; }
+
+ private:
+  const TriangleSource source_;
+  const Lighting lighting_;
+  FragmentShader::Colorist colorist_;
+  const float opacity_;
+};
+
+/// In pixels: the least width of a cut piece, and the distance from a cut below which no samples are taken. Textures
+/// and shadows are filtered over about this distance, so colours this close to a cut belong to neither side.
+constexpr double kLeastWidth = 0.25, kBesideCut = 0.35;
+/// The share of the tolerance for differences within a piece, where pieces are grouped; the rest is for differences
+/// between pieces of a group.
+constexpr double kWithin = 2.0 / 3;
+/// The factor of the tolerance for pieces narrower than a pixel: they are hardly visible, and there are many beside
+/// textures.
+constexpr double kOfSlivers = 8;
+/// Samples that are shaded together: some batches of the shader, and few enough to stay in the cache.
+constexpr std::size_t kSamplesAtOnce = 2048;
+
+bool is_hole(const glm::vec4& color) { return color.w < 0; }
+
+glm::u8vec4 rounded(const glm::vec4& color) {
+  const auto part = [](float value) { return std::uint8_t(std::clamp(value + 0.5f, 0.0f, 255.0f)); };
+  return {part(color.x), part(color.y), part(color.z), part(color.w)};
+}
+
+/// \throws Error limit_exceeded.
+[[noreturn]] void refuse_more_than(std::size_t most) {
+  throw Error(ErrorCode::limit_exceeded, "figure", "more than " + std::to_string(most) + " polygons and pieces");
+}
+
+/// Samples many pieces before it judges them, so that the shader has whole batches. Not for several threads at once.
+class PolygonColors {
+ public:
+  /// Borrows all but the view.
+  PolygonColors(const Surfaces& surfaces, const View& view, const PointShader& shader, const FigureOptions& options,
+                const Execution& execution)
+      : surfaces_(surfaces), shading_(shader), options_(options), execution_(execution), rays_(view) {
+    shader_.begin(shader.source(), shader.colorist(), execution.isa);
+  }
+
+  /// Appends some of these parts in pieces, without holes and clear pieces. The result depends only on these polygons.
+  /// Precondition: each has at least three corners. \throws Error cancelled, and as refuse_more_than() does.
+  void color(const VisibleParts& parts, std::span<const PaintPolygon> polygons, ColoredOrder& into) {
+    begin(polygons);
+    while (started_ < polygons_.size() || !waiting_.empty()) {
+      check_cancelled(execution_);
+      if (kept_.size() + waiting_.size() > options_.most_polygons) refuse_more_than(options_.most_polygons);
+      take_pieces(parts);
+      shade_samples();
+      for (Piece& piece : looked_at_) divide(piece);
+    }
+    for (const Polygon& polygon : polygons_) emit(polygon, into);
+  }
+
+ private:
+  /// A piece that is still to be judged.
+  struct Piece {
+    std::vector<glm::dvec2> corners;
+    std::vector<ColorSample> samples;  ///< includes samples of the piece from which it was cut
+    std::size_t known_samples = 0;
+    bool is_sliver = false;        ///< all of it lies beside cuts
+    std::uint32_t polygon = 0;     ///< index of its polygon
+    std::uint32_t node = 0;        ///< node in the tree of cuts
+    std::uint32_t cut = no_index;  ///< the last cut that made it
+  };
+  /// A cut, linked to the one before it: a piece lies on one side of all of its cuts.
+  struct Cut {
+    ScreenLine line;
+    std::uint32_t before = no_index;
+  };
+  /// A cut piece or a kept one. The order of the tree is the painting order.
+  struct Node {
+    std::uint32_t below = no_index, above = no_index;  ///< nodes
+    std::uint32_t kept = no_index;
+  };
+  struct Kept {
+    glm::vec4 color;
+    std::vector<glm::dvec2> corners;
+    std::uint32_t group = 0;  ///< of pieces of nearly one colour
+  };
+  struct Polygon {
+    PaintPolygon outline;
+    bool is_grouped = false;  ///< pieces of one colour become one shape
+    std::uint32_t node = 0;
+    std::optional<ScreenCutout> holes{};
+    std::optional<std::vector<TexcoordLines>> texture_lines{};  ///< made when first needed
+  };
+  void begin(std::span<const PaintPolygon> polygons) {
+    // A triangle is set up about its first sample, which must be on one of these polygons.
+    shader_.clear();
+    polygons_.clear();
+    nodes_.clear();
+    cuts_.clear();
+    kept_.clear();
+    started_ = 0;
+    const Cutouts* const cutouts = placed_scene(surfaces_).cutouts.get();
+    for (const PaintPolygon& outline : polygons) {
+      Polygon& polygon = polygons_.emplace_back(Polygon{outline});
+      if (cutouts && cutouts->has(outline.id)) polygon.holes.emplace((*cutouts)[outline.id], rays_);
+      polygon.is_grouped = options_.merges_neighbours || shading_.opacity() < 1 || !is_opaque(surfaces_, outline.id);
+    }
+  }
+
+  void start(const VisibleParts& parts, std::uint32_t number) {
+    Polygon& polygon = polygons_[number];
+    polygon.node = std::uint32_t(nodes_.size());
+    nodes_.emplace_back();
+    const PaintCorner* const first = parts.corners.data() + polygon.outline.first_corner;
+    Piece& piece = looked_at_.emplace_back();
+    piece.corners.reserve(polygon.outline.corner_count);
+    for (std::size_t i = 0; i < polygon.outline.corner_count; ++i) piece.corners.push_back(glm::dvec2(first[i].at));
+    piece.polygon = number;
+    piece.node = polygon.node;
+  }
+
+  /// Takes pieces with samples for some batches; first the ones that were cut last.
+  void take_pieces(const VisibleParts& parts) {
+    looked_at_.clear();
+    std::size_t samples = 0;
+    while (samples < kSamplesAtOnce && (started_ < polygons_.size() || !waiting_.empty())) {
+      if (waiting_.empty()) {
+        start(parts, std::uint32_t(started_++));
+      } else {
+        looked_at_.push_back(std::move(waiting_.back()));
+        waiting_.pop_back();
+      }
+      Piece& piece = looked_at_.back();
+      place_samples(piece);
+      samples += piece.samples.size() - piece.known_samples;
+    }
+  }
+
+  /// Whole polygons are also sampled at their corners; corners of other pieces are known or lie beside a cut. Known
+  /// samples count, so a piece gets fewer new ones than its size suggests, often none.
+  void place_samples(Piece& piece) {
+    const PieceSize size(piece.corners);
+    const auto add = [&](const glm::dvec2& at) {
+      if (!is_beside_a_cut(piece, at)) piece.samples.push_back({at, {}});
+    };
+    if (options_.tolerance < 255 && !size.is_small()) {
+      const auto known = double(piece.samples.size());
+      piece.samples.reserve(piece.corners.size() + std::size_t(std::max(size.sample_count(), known)) + 1);
+      if (piece.cut == no_index) for_each_corner_place(piece.corners, size.middle, add);
+      for_each_place(piece.corners, size.area, std::max(size.sample_count() - known, 0.0), add);
+      piece.is_sliver = piece.samples.empty();
+      if (piece.is_sliver)
+        for_each_place_along(piece.corners, size, [&](const glm::dvec2& at) { piece.samples.push_back({at, {}}); });
+    }
+    if (piece.samples.empty()) piece.samples.push_back({size.middle, {}});
+  }
+
+  void shade_samples() {
+    asked_.clear();
+    const auto hand_out = [&] {
+      shader_.hand_out([&](const FragmentShader::Shaded& shaded) {
+        const glm::vec3& light = shaded.light;
+        // Paper shows nothing brighter than white: brighter reflections hide what is behind instead.
+        const float brightest = std::max(1.0f, std::max(light.x, std::max(light.y, light.z)));
+        const glm::vec3 shown = light / brightest;
+        const float opacity = std::clamp(shaded.alpha * brightest * shading_.opacity(), 0.0f, 1.0f);
+        asked_[shaded.number]->color = {float(srgb8_of_linear(shown.x)), float(srgb8_of_linear(shown.y)),
+                                        float(srgb8_of_linear(shown.z)), opacity * 255.0f};
+      });
+    };
+    for (Piece& piece : looked_at_) {
+      const Polygon& polygon = polygons_[piece.polygon];
+      for (; piece.known_samples < piece.samples.size(); ++piece.known_samples) {
+        ColorSample& sample = piece.samples[piece.known_samples];
+        const glm::dvec2 unit = glm::floor(sample.at * 256.0);
+        if (polygon.holes && polygon.holes->is_hole(std::int32_t(unit.x), std::int32_t(unit.y))) {
+          sample.color = hole_color;
+          continue;
+        }
+        if (shader_.is_full()) hand_out();
+        shader_.add(polygon.outline.id, std::uint32_t(asked_.size()), glm::vec2(sample.at), 1, 1.0f);
+        asked_.push_back(&sample);
+      }
+    }
+    hand_out();
+  }
+
+  void divide(Piece& piece) {
+    const auto [is_one_color, color] = judge(piece);
+    if (!is_one_color) {
+      if (const std::optional<ScreenLine> line =
+              best_cut({piece.corners, piece.samples, kLeastWidth, 2 * double(within(piece))}, texture_lines(piece)))
+        return cut(piece, *line);
+    }
+    if (is_hole(color) || color.w < 0.5f) return;
+    nodes_[piece.node].kept = std::uint32_t(kept_.size());
+    kept_.push_back({color, std::move(piece.corners)});
+  }
+
+  /// The greatest difference, in steps, between a sample and the colour of its piece.
+  [[nodiscard]] float within(const Piece& piece) const {
+    return float(options_.tolerance * (polygons_[piece.polygon].is_grouped ? kWithin : 1) *
+                 (piece.is_sliver ? kOfSlivers : 1));
+  }
+
+  [[nodiscard]] bool is_beside_a_cut(const Piece& piece, const glm::dvec2& at) const {
+    for (std::uint32_t i = piece.cut; i != no_index; i = cuts_[i].before)
+      if (std::abs(cuts_[i].line.distance(at)) < kBesideCut) return true;
+    return false;
+  }
+
+  /// Whether a piece has one colour, and the colour. The majority of the samples decides between surface and hole. The
+  /// colour is the mean of the surface samples, if all are near enough to it: the middle between extremes would tint a
+  /// wide field for the sake of its edge.
+  [[nodiscard]] std::pair<bool, glm::vec4> judge(const Piece& piece) const {
+    std::size_t holes = 0;
+    for (const ColorSample& sample : piece.samples) holes += is_hole(sample.color);
+    const bool is_open = 2 * holes > piece.samples.size();
+    if (is_open) return {holes == piece.samples.size(), hole_color};
+    glm::vec4 sum(0), least(255), greatest(0);
+    for (const ColorSample& sample : piece.samples) {
+      if (is_hole(sample.color)) continue;
+      sum += sample.color;
+      least = glm::min(least, sample.color);
+      greatest = glm::max(greatest, sample.color);
+    }
+    const float within = this->within(piece);
+    const glm::vec4 mean = sum / float(piece.samples.size() - holes);
+    const bool is_near = std::max(difference(greatest, mean), difference(mean, least)) <= within;
+    return {holes == 0 && is_near, mean};
+  }
+
+  /// Cuts a piece along a line and puts both halves into the waiting list.
+  void cut(Piece& piece, const ScreenLine& line) {
+    const auto number = std::uint32_t(cuts_.size()), node = std::uint32_t(nodes_.size());
+    cuts_.push_back({line, piece.cut});
+    nodes_[piece.node] = {node, node + 1, no_index};
+    nodes_.resize(nodes_.size() + 2);
+    Piece below, above;
+    for (Piece* const side : {&below, &above}) {
+      side->polygon = piece.polygon;
+      side->node = node + (side == &above);
+      side->cut = number;
+    }
+    CutOutline corners = cut_outline(piece.corners, line);
+    below.corners = std::move(corners.below);
+    above.corners = std::move(corners.above);
+    for (const ColorSample& sample : piece.samples) {
+      const double distance = line.distance(sample.at);
+      if (std::abs(distance) >= kBesideCut) (distance > 0 ? above : below).samples.push_back(sample);
+    }
+    for (Piece* const side : {&above, &below}) {
+      side->known_samples = side->samples.size();
+      waiting_.push_back(std::move(*side));
+    }
+  }
+
+  /// Lines along the coordinates of the base colour's texture, which the picture mostly shows.
+  [[nodiscard]] std::span<const TexcoordLines> texture_lines(const Piece& piece) {
+    Polygon& polygon = polygons_[piece.polygon];
+    if (polygon.texture_lines) return *polygon.texture_lines;
+    std::vector<TexcoordLines>& lines = polygon.texture_lines.emplace();
+    std::vector<TriangleSetup> setups(1);
+    const NewTriangle triangle{polygon.outline.id, 0, glm::vec2(piece.samples.front().at)};
+    shading_.source().set_up({&triangle, 1}, setups);
+    const TriangleSetup& setup = setups[0];
+    const Scene& scene = surfaces_.scene();
+    if (setup.material >= scene.materials.size()) return lines;
+    const TextureUse& use = scene.materials[setup.material].base_color_texture;
+    if (!use.is_set() || !setup.has_texcoord[use.set]) return lines;
+    const Texture& texture = scene.textures[use.texture];
+    const TexcoordTransform transform(use);
+    std::array<double, 3> u, v;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const glm::vec2 place = transform.place(setup.texcoord[use.set][k]);
+      u[k] = double(place.x) * texture.width;
+      v[k] = double(place.y) * texture.height;
+    }
+    lines.emplace_back(setup, u);
+    lines.emplace_back(setup, v);
+    return lines;
+  }
+
+  /// Lists the kept pieces in painting order: below a cut before above it.
+  void list_kept(const Polygon& polygon) {
+    listed_.clear();
+    path_.assign(1, polygon.node);
+    while (!path_.empty()) {
+      const Node node = nodes_[path_.back()];
+      path_.pop_back();
+      if (node.kept != no_index) listed_.push_back(&kept_[node.kept]);
+      if (node.below != no_index) path_.insert(path_.end(), {node.above, node.below});
+    }
+  }
+
+  void emit(const Polygon& polygon, ColoredOrder& into) {
+    list_kept(polygon);
+    for (std::uint32_t i = 0; i < listed_.size(); ++i) listed_[i]->group = i;
+    if (polygon.is_grouped) group_kept();
+    for (std::size_t i = 0; i < listed_.size(); ++i) {
+      const Kept& piece = *listed_[i];
+      if (i == 0 || listed_[i - 1]->group != piece.group) into.begin_shape(rounded(piece.color));
+      into.add_polygon(polygon.outline.id, piece.corners);
+    }
+  }
+
+  /// Replaces nearly equal colours by the first of them, so that pieces can be merged.
+  void group_kept() {
+    ColorGroups groups(options_.tolerance * (1 - kWithin));
+    for (Kept* const piece : listed_) piece->group = groups.find_or_add(piece->color);
+    for (Kept* const piece : listed_) piece->color = groups.colors()[piece->group];
+    std::stable_sort(listed_.begin(), listed_.end(), [](const Kept* a, const Kept* b) { return a->group < b->group; });
+  }
+
+  const Surfaces& surfaces_;
+  const PointShader& shading_;
+  const FigureOptions& options_;
+  const Execution& execution_;
+  const ScreenRays rays_;
+  FragmentShader shader_;
+
+  std::vector<Polygon> polygons_;
+  std::size_t started_ = 0;       ///< polygons
+  std::vector<Piece> waiting_;    ///< a stack: the next piece is last
+  std::vector<Piece> looked_at_;  ///< the pieces of the current round
+  std::vector<ColorSample*> asked_;
+  std::vector<Node> nodes_;
+  std::vector<Cut> cuts_;
+  std::vector<Kept> kept_;
+  std::vector<Kept*> listed_;
+  std::vector<std::uint32_t> path_;
+};
 
 constexpr std::size_t kPolygonsPerPart = 256;
 /// Visible area in square pixels; on smaller triangles a smooth normal hardly differs from a flat one.

@@ -1,31 +1,418 @@
 // SPDX-License-Identifier: Apache-2.0
-// Folds are judged one by one, by the surfaces beside them (fold.cpp), and then together, in a graph of edges that
-// share vertices:
+// Each fold is judged by the surfaces beside it, in the plane across its edge. Then folds that share vertices are
+// judged together.
 //
-//    judged      strong ---- weak ---- weak      smooth      follow_strong: weak folds that continue strong ones
-//    followed    strong --- strong --- strong                thin: the faintest of a triangle's three creases goes
-//    cut_short_ends: lines of one or two edges that end in the air go, unless they are long
+//     left normal   right normal        The angle between both normals is how far the surface turns at the fold.
+//             \      /                  Beyond each triangle the surface turns on by some angle, which is found by
+//       _______\____/                   walking around the triangle's tip. Half of that angle is subtracted for each
+//      /        edge \                  side: the rest is the jump, 0 on a cylinder however few sides it has.
 //
-// Grades only change from weak to strong, and from strong to smooth, so every pass comes to an end.
-#include "lines/creases/creases.h"
-
+// Angles are computed from tangents of half angles, and by sums of arctangents, without functions of the C library.
+// Every machine rounds these operations alike, so drawings are the same on all machines.
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
 #include <limits>
 #include <span>
 
 #include "base/parallel.h"
 #include "geometry/buckets.h"
+#include "lines/mesh/feature_edges.h"
+#include "lines/mesh/mesh.h"
 
 namespace frontmost::lines_detail {
 namespace {
+
+constexpr double kWidestCorner = 0.9659;  // the cosine of 15 degrees, by which slivers' corners miss a straight angle
+constexpr double kOnePlane = 0.996;       // the cosine of 5 degrees
+constexpr std::size_t kTrianglesPerPart = 4096;
+constexpr std::size_t kMostSlivers = 8;  // more in one plane are no sliver together
+
+/// A triangle seen from a neighbour: reversed where the two are wound against each other.
+struct TurnedTriangle {
+  std::uint32_t number = no_index;
+  bool is_turned = false;
+
+  [[nodiscard]] bool is_there() const { return number != no_index; }
+};
+
+/// Whether the triangle's winding runs from vertex a to vertex b, and not from b to a.
+bool runs(const glm::uvec3& triangle, std::uint32_t a, std::uint32_t b) {
+  return (triangle.x == a && triangle.y == b) || (triangle.y == a && triangle.z == b) ||
+         (triangle.z == a && triangle.x == b);
+}
+/// The triangles around a vertex, for walking around it.
+class Fan {
+ public:
+  static constexpr std::size_t most = 32;  ///< triangles; a vertex with more has an empty fan
+
+  struct Side {
+    TurnedTriangle triangle;
+    std::uint32_t rim;  ///< the vertex at the other end of this side
+    std::size_t entry;  ///< the triangle's index in the fan
+  };
+
+  /// The side from the fan's vertex to `rim`, of a triangle in the fan.
+  [[nodiscard]] Side side(const TurnedTriangle& triangle, std::uint32_t rim) const {
+    std::size_t entry = 0;
+    while (entry < count_ && entries_[entry].triangle != triangle.number) ++entry;
+    return {triangle, rim, entry};
+  }
+
+  /// The triangle beyond a side, with its other side at the vertex. Copies of a triangle count once. Returns none where
+  /// several different triangles lie beyond.
+  [[nodiscard]] Side beyond(const Side& side) const {
+    if (side.entry >= count_) return {{}, no_index, count_};
+    std::uint32_t beside = 0;  // bit i: entry i has the rim
+    for (std::size_t i = 0; i < count_; ++i)
+      beside |= std::uint32_t(entries_[i].next == side.rim || entries_[i].last == side.rim) << i;
+    beside &= ~(1u << side.entry);
+    const bool is_one = (beside & (beside - 1)) == 0 && beside != 0;
+    const Side found = is_one ? to(std::size_t(std::countr_zero(beside)), side) : beyond_copies(side, beside);
+    const Entry& own = entries_[side.entry];
+    return found.rim == (own.next == side.rim ? own.last : own.next) ? Side{{}, no_index, count_} : found;
+  }
+
+ private:
+  friend class Neighbours;
+  struct Entry {
+    std::uint32_t triangle, next, last;
+  };
+
+  /// Crosses to an entry that has the rim of `from`, and gives that entry's other side.
+  [[nodiscard]] Side to(std::size_t entry, const Side& from) const {
+    const Entry& own = entries_[from.entry];
+    const Entry& other = entries_[entry];
+    const bool is_alike = (other.next == from.rim) != (own.next == from.rim);
+    const std::uint32_t rim = other.next == from.rim ? other.last : other.next;
+    return {{other.triangle, from.triangle.is_turned == is_alike}, rim, entry};
+  }
+
+  [[nodiscard]] Side beyond_copies(const Side& side, std::uint32_t beside) const {
+    const Entry& own = entries_[side.entry];
+    const std::uint32_t own_rim = own.next == side.rim ? own.last : own.next;
+    Side found{{}, no_index, count_};
+    for (; beside != 0; beside &= beside - 1) {
+      const Side other = to(std::size_t(std::countr_zero(beside)), side);
+      if (other.rim == own_rim || other.rim == found.rim) continue;
+      if (found.triangle.is_there()) return {{}, no_index, count_};
+      found = other;
+    }
+    return found;
+  }
+
+  std::array<Entry, most> entries_;
+  std::size_t count_ = 0;
+};
+
+class Neighbours {
+ public:
+  /// O(triangles).
+  Neighbours(const SeenMesh& seen, const CornerTable& table, const Execution& execution)
+      : seen_(seen), table_(table), is_sliver_(seen.mesh.triangles.size()) {
+    parallel_for(execution, is_sliver_.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) is_sliver_[i] = find_sliver(std::uint32_t(i));
+    });
+  }
+
+  [[nodiscard]] const glm::uvec3& corners(std::uint32_t triangle) const { return seen_.mesh.triangles[triangle]; }
+  [[nodiscard]] glm::dvec3 place(std::uint32_t vertex) const { return seen_.mesh.positions[vertex]; }
+
+  /// The triangle beyond the side from vertex a to vertex b. Copies of a triangle count once. Returns none where
+  /// several different triangles lie beyond. O(triangles at a).
+  [[nodiscard]] TurnedTriangle beyond(const TurnedTriangle& triangle, std::uint32_t a, std::uint32_t b) const {
+    const WeldedMesh& mesh = seen_.mesh;
+    const std::uint32_t own = third_of(corners(triangle.number), a, b);
+    std::uint32_t found = no_index, opposite = no_index;
+    for (const Corner& corner : table_[a]) {
+      const std::uint32_t next = corner.next(mesh), last = corner.last(mesh);
+      if (next != b && last != b) continue;
+      const std::uint32_t third = next == b ? last : next;
+      if (third == own || third == opposite) continue;
+      if (found != no_index) return {};
+      found = corner.triangle();
+      opposite = third;
+    }
+    if (found == no_index) return {};
+    const bool is_alike = runs(corners(triangle.number), a, b) != runs(corners(found), a, b);
+    return {found, triangle.is_turned == is_alike};
+  }
+
+  /// O(triangles at the vertex).
+  [[nodiscard]] Fan fan(std::uint32_t vertex) const {
+    Fan fan;
+    const std::span<const Corner> corners = table_[vertex];
+    if (corners.size() > Fan::most) return fan;
+    for (const Corner& corner : corners)
+      fan.entries_[fan.count_++] = {corner.triangle(), corner.next(seen_.mesh), corner.last(seen_.mesh)};
+    return fan;
+  }
+
+  /// The triangle's own normal, of unit length or zero.
+  [[nodiscard]] glm::dvec3 normal(const TurnedTriangle& triangle) const {
+    const glm::vec3& kept = seen_.triangles[triangle.number].normal;
+    const glm::dvec3 normal = kept == glm::vec3(0) ? rounded_normal(triangle.number) : glm::dvec3(kept);
+    return triangle.is_turned ? -normal : normal;
+  }
+  /// Whether the corners lie almost on a line, one between the others. On a curved surface such a triangle may have any
+  /// normal: on a chord of a cylinder's rim it lies in the rim's plane.
+  [[nodiscard]] bool is_sliver(std::uint32_t triangle) const { return is_sliver_[triangle] != 0; }
+
+  /// The normal of the surface that the triangle is cut from. A sliver that is not part of something wider takes the
+  /// normal of one of its neighbours: the one nearest to its own.
+  [[nodiscard]] glm::dvec3 surface_normal(const TurnedTriangle& triangle) const {
+    const glm::dvec3 own = normal(triangle);
+    if (!is_sliver(triangle.number)) return own;
+    std::array<TurnedTriangle, kMostSlivers> piece;  // the slivers of one plane
+    piece[0] = triangle;
+    std::size_t count = 1;
+    const auto has = [&](std::uint32_t number) {
+      return std::any_of(piece.begin(), piece.begin() + std::ptrdiff_t(count),
+                         [&](const TurnedTriangle& sliver) { return sliver.number == number; });
+    };
+    glm::dvec3 nearest = own;
+    double cosine = -2;
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::uvec3& t = corners(piece[i].number);
+      for (int k = 0; k < 3; ++k) {
+        const TurnedTriangle other = beyond(piece[i], t[k], t[k == 2 ? 0 : k + 1]);
+        if (!other.is_there() || has(other.number)) continue;
+        const bool is_thin = is_sliver(other.number);
+        const glm::dvec3 its = normal(other);
+        const double along = glm::dot(its, own);
+        if (along > kOnePlane) {
+          if (!is_thin || count == piece.size()) return own;
+          piece[count++] = other;
+        } else if (!is_thin && along > cosine) {
+          cosine = along;
+          nearest = its;
+        }
+      }
+    }
+    return nearest;
+  }
+
+ private:
+  [[nodiscard]] bool find_sliver(std::uint32_t triangle) const {
+    const glm::uvec3& t = corners(triangle);
+    const glm::dvec3 a = place(t.x), b = place(t.y), c = place(t.z), sides[3] = {b - a, c - b, a - c};
+    for (int k = 0; k < 3; ++k) {
+      const glm::dvec3 &u = sides[k], &v = sides[k == 2 ? 0 : k + 1];
+      const double dot = glm::dot(u, v);
+      // A triangle has at most one corner wider than a right angle.
+      if (dot > 0) return dot * dot > kWidestCorner * kWidestCorner * glm::dot(u, u) * glm::dot(v, v);
+    }
+    return false;
+  }
+
+  [[nodiscard]] glm::dvec3 rounded_normal(std::uint32_t triangle) const {
+    const glm::dvec3 normal = normal_of(seen_.mesh, triangle);
+    const double length = glm::length(normal);
+    return length > 0 ? normal / length : glm::dvec3(0);
+  }
+
+  const SeenMesh& seen_;
+  const CornerTable& table_;
+  Buffer<std::uint8_t> is_sliver_;  ///< by triangle
+};
+
+enum class FoldGrade : std::uint8_t {
+  smooth,
+  weak,    ///< a crease where one goes on along it
+  strong,  ///< a crease
+  sharp,   ///< a crease whatever is beside it
+};
+
+struct JudgedFold {
+  FoldGrade grade = FoldGrade::smooth;
+  double jump = 0;  ///< radians: by how much the surfaces on both sides differ at the edge
+};
+
+constexpr double kDegree = 0.017453292519943295;
+constexpr double kStrong = 18 * kDegree, kWeak = 9 * kDegree;
+/// The limit beside surfaces that turn evenly, and by less than kEven times the jump.
+constexpr double kStrongBesideEven = 12 * kDegree, kEven = 0.5;
+constexpr double kOneWay = 0.25;  // the most that a side turns the other way, as a share, to count as turning one way
+/// A side that turns back by more is not rough: it has a crease of its own.
+constexpr double kRoughest = 10 * kDegree;
+/// The cosine of 34 degrees: a regular polygon of ten sides keeps its corners, and one of eleven is round.
+constexpr double kSharpCosine = 0.82903757255504162;
+constexpr double kAhead = 0.05;      // the least sine of the angle to the edge: sides of rims run along it
+constexpr double kOtherSide = 0.37;  // the cosine of 68 degrees
+constexpr double kFar = 3;           // times the width of the triangle on the other side
+constexpr int kMostTriangles = 16;   // the most that are visited around a corner
+
+/// The tangent of half the angle with this sine and cosine, times any length. Grows with the angle, from -pi to pi.
+double half_tangent(double sine, double cosine) {
+  const double sum = std::sqrt(sine * sine + cosine * cosine) + cosine;
+  return sum > 0 ? sine / sum : 0;
+}
+
+/// The angle for the tangent of its half, which is not less than 0. Correct to 1e-7 up to 90 degrees.
+double angle_of(double half) {
+  const double t = half / (1 + std::sqrt(1 + half * half)), square = t * t;
+  double sum = 0;
+  for (int n = 15; n > 0; n -= 2) sum = 1.0 / n - square * sum;
+  return 4 * t * sum;
+}
+
+/// The angle between two vectors; pi / 2 for all that are wider.
+double angle_between(const glm::dvec3& n, const glm::dvec3& m) {
+  const double cosine = glm::dot(n, m);
+  return angle_of(cosine > 0 ? half_tangent(glm::length(glm::cross(n, m)), cosine) : 1);
+}
+
+/// The plane across an edge. A surface normal in that plane is a complex number. Its argument is the angle from the
+/// left side's normal, around the edge.
+class CrossSection {
+ public:
+  CrossSection(const glm::dvec3& along, const glm::dvec3& left)
+      : along_(along), up_(left - along * glm::dot(left, along)), side_(glm::cross(along, up_)) {}
+
+  [[nodiscard]] glm::dvec2 direction(const glm::dvec3& normal) const {
+    return {glm::dot(normal, up_), glm::dot(normal, side_)};
+  }
+  [[nodiscard]] const glm::dvec3& along() const { return along_; }
+
+ private:
+  glm::dvec3 along_, up_, side_;
+};
+
+/// half_tangent() of the angle from one direction to another.
+double turn_between(const glm::dvec2& from, const glm::dvec2& to) {
+  return half_tangent(from.x * to.y - from.y * to.x, glm::dot(from, to));
+}
+
+/// How far the surface on one side of a fold turns beyond its triangle: in the sense of the fold (`on`), and against it
+/// (`back`). Tangents of half the angles, not less than 0.
+struct Turn {
+  double on = 0, back = 0;
+
+  [[nodiscard]] double most() const { return std::max(on, back); }
+  /// True for a cylinder or a plane; a rough surface turns both ways.
+  [[nodiscard]] bool is_one_way() const { return std::min(on, back) <= kOneWay * most(); }
+  [[nodiscard]] bool is_beyond(double half) const { return half > on || -half > back; }
+  void add(double half) {
+    on = std::max(on, half);
+    back = std::max(back, -half);
+  }
+};
+
+/// The fold's angle, less what the sides take off.
+class Jump {
+ public:
+  explicit Jump(double half) : half_(half), angle_(angle_of(half)) {}
+
+  /// Subtracts half the turn of a side, weighted by `share`, 0 to 1.
+  void take_off(const Turn& turn, double share) {
+    angle_ -= 0.5 * share * angle_of(std::min(turn.on, half_));
+    rough_ = std::max(rough_, share * std::min(angle_of(turn.back), kRoughest));
+    most_ = std::max(most_, angle_of(turn.most()));
+    is_even_ = is_even_ && turn.is_one_way();
+  }
+  [[nodiscard]] double angle() const { return is_clear() ? angle_ : angle_ - rough_; }
+  /// Never rises as more is taken off.
+  [[nodiscard]] FoldGrade grade() const {
+    if (is_clear() || angle() >= kStrong) return FoldGrade::strong;
+    return angle() < kWeak ? FoldGrade::smooth : FoldGrade::weak;
+  }
+
+ private:
+  [[nodiscard]] bool is_clear() const { return is_even_ && angle_ >= kStrongBesideEven && most_ <= kEven * angle_; }
+
+  double half_, angle_, rough_ = 0, most_ = 0;
+  bool is_even_ = true;
+};
+
+/// One side of a fold: its triangle, whose vertex `tip` is not on the edge.
+struct FoldSide {
+  TurnedTriangle triangle;
+  std::uint32_t tip;
+  glm::dvec3 normal, ahead;  ///< `ahead`: along the surface and away from the edge
+  glm::dvec2 direction;      ///< of the normal, in the cross-section
+  double width;
+};
+
+/// `sense` is 1 where larger angles turn in the sense of the fold, and -1 else. Only surface ahead of the tip counts.
+Turn turn_beyond(const Neighbours& near, const FoldSide& side, const CrossSection& section, double sense) {
+  const auto is_ahead = [&](std::uint32_t rim) {
+    const glm::dvec3 step = near.place(rim) - near.place(side.tip);
+    const double by = glm::dot(step, side.ahead);
+    return by > 0 && by * by > kAhead * kAhead * glm::dot(step, step);
+  };
+  Turn turn;
+  const Fan fan = near.fan(side.tip);
+  const glm::uvec3& t = near.corners(side.triangle.number);
+  for (int k = 0; k < 3; ++k) {
+    if (t[k] == side.tip) continue;
+    // Walks around the tip, as long as nothing is sharp.
+    Fan::Side at = fan.side(side.triangle, t[k]);
+    glm::dvec3 last = side.normal;
+    bool was_ahead = is_ahead(at.rim);
+    for (int i = 0; i < kMostTriangles; ++i) {
+      at = fan.beyond(at);
+      if (!at.triangle.is_there()) break;
+      if (at.triangle.number == side.triangle.number) return turn;  // once around
+      const bool goes_ahead = is_ahead(at.rim), ahead = goes_ahead || was_ahead;
+      was_ahead = goes_ahead;
+      const glm::dvec3 normal = near.normal(at.triangle);
+      if (glm::dot(normal, last) < kSharpCosine) {
+        if (near.is_sliver(at.triangle.number)) continue;
+        break;
+      }
+      last = normal;
+      // Beyond a cone's tip lies the other side of the cone.
+      if (!ahead || glm::dot(normal, side.normal) < kOtherSide) continue;
+      const double half = sense * turn_between(side.direction, section.direction(normal));
+      if (turn.is_beyond(half) && !near.is_sliver(at.triangle.number)) turn.add(half);
+    }
+  }
+  return turn;
+}
+
+/// The jump is the angle between the normals of both sides, less half of the next angle on each side, by which that
+/// side goes on to curve. So a cylinder jumps by 0, however few sides it has; a chamfer or a cone's rim by its whole
+/// angle; the edge between a plane and a fillet by half. Two rules adjust the grade. Where a side turns back, it is
+/// rough, and the fold has to be deeper by as much. Where each side turns one way only, and by at most half as much,
+/// fainter folds count. Triangles that are far in comparison with the width of the other side's triangle count little.
+/// `edge` has two triangles. O(triangles at its corners).
+JudgedFold judge_fold(const Neighbours& near, const FeatureEdge& edge) {
+  const bool is_alike =
+      runs(near.corners(edge.left), edge.from, edge.to) != runs(near.corners(edge.right), edge.from, edge.to);
+  const TurnedTriangle triangles[2] = {{edge.left, false}, {edge.right, !is_alike}};
+  const glm::dvec3 normals[2] = {near.surface_normal(triangles[0]), near.surface_normal(triangles[1])};
+  const double cosine = glm::dot(normals[0], normals[1]);
+  if (cosine < kSharpCosine) return {FoldGrade::sharp, angle_between(normals[0], normals[1])};
+  if (cosine > kLeastFoldCosine) return {};
+
+  const glm::dvec3 begin = near.place(edge.from);
+  const CrossSection section(glm::normalize(near.place(edge.to) - begin), normals[0]);
+  FoldSide sides[2];
+  for (int i = 0; i < 2; ++i) {
+    const std::uint32_t tip = third_of(near.corners(triangles[i].number), edge.from, edge.to);
+    const glm::dvec3 to_tip = near.place(tip) - begin;
+    const glm::dvec3 across = to_tip - section.along() * glm::dot(to_tip, section.along());
+    const double width = glm::length(across);
+    sides[i] = {triangles[i], tip, normals[i], across / width, section.direction(normals[i]), width};
+  }
+  const double fold = turn_between(sides[0].direction, sides[1].direction), half = std::abs(fold);
+  const double sense = fold < 0 ? -1 : 1;
+  Jump jump(half);
+  for (int i = 0; i < 2; ++i) {
+    const double share = std::min(1.0, kFar * sides[1 - i].width / sides[i].width);
+    jump.take_off(turn_beyond(near, sides[i], section, i == 0 ? -sense : sense), share);
+    if (jump.grade() == FoldGrade::smooth) return {};
+  }
+  return {jump.grade(), jump.angle()};
+}
 
 constexpr std::size_t kEdgesPerPart = 256;
 constexpr double kGoesOn = 0.5;          // the least cosine of the angle between a crease and its continuation
 constexpr double kBend = 0.25;           // the least cosine between two edges that count as one line
 constexpr double kFaintest = 0.75;       // a fainter crease goes: share of the greatest jump of a triangle's creases
 constexpr std::size_t kFewestEdges = 3;  // the edges of a line that may end in the air
-constexpr double kLong = 0.05;           // the length of a line that may end in the air, as a share of the mesh's
-                                         // diagonal
+constexpr double kLong = 0.05;           // share of the mesh's diagonal: a longer line may end in the air
 
 bool is_fold(const FeatureEdge& edge) { return edge.kind == EdgeKind::crease || edge.kind == EdgeKind::silhouette; }
 
@@ -45,11 +432,83 @@ std::vector<JudgedFold> judge_folds(const SeenMesh& seen, const CornerTable& tab
 class CreaseGraph {
  public:
   CreaseGraph(const WeldedMesh& mesh, const std::vector<FeatureEdge>& edges, std::vector<JudgedFold> folds,
-              const Execution& execution);
+              const Execution& execution)
+      : mesh_(mesh), edges_(edges), execution_(execution), folds_(std::move(folds)) {
+    const auto list = [&](std::size_t i, const auto& add) {
+      if (folds_[i].grade == FoldGrade::smooth) return;
+      add(edges_[i].from, std::uint32_t(i));
+      add(edges_[i].to, std::uint32_t(i));
+    };
+    edges_at_ = Buckets<std::uint32_t>(mesh.positions.size(), edges_.size(), list, execution);
+  }
 
-  void follow_strong();
-  void thin();
-  void cut_short_ends();
+  /// Makes weak folds strong that continue strong ones.
+  void follow_strong() {
+    std::vector<std::uint32_t> open;
+    for (std::size_t i = 0; i < edges_.size(); ++i)
+      if (is_drawn(i) && is_fold(edges_[i])) open.push_back(std::uint32_t(i));
+    while (!open.empty()) {
+      const std::uint32_t edge = open.back();
+      open.pop_back();
+      for (const std::uint32_t vertex : {edges_[edge].from, edges_[edge].to})
+        for (const std::uint32_t next : at(vertex)) {
+          if (folds_[next].grade != FoldGrade::weak || bend(edge, next, vertex) < kGoesOn) continue;
+          folds_[next].grade = FoldGrade::strong;
+          open.push_back(next);
+        }
+    }
+  }
+
+  /// Removes the faintest crease of triangles with three. A crease that zigzags across a row of triangles gives them
+  /// three.
+  void thin() {
+    const auto for_each_side = [&](const auto& visit) {
+      for (std::size_t i = 0; i < edges_.size(); ++i)
+        if (is_drawn(i) && is_fold(edges_[i]))
+          for (const std::uint32_t triangle : {edges_[i].left, edges_[i].right}) visit(triangle, std::uint32_t(i));
+    };
+    Buffer<std::uint8_t> creases(mesh_.triangles.size(), 0);
+    for_each_side([&](std::uint32_t triangle, std::uint32_t) { ++creases[triangle]; });
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;  // triangle, edge
+    for_each_side([&](std::uint32_t triangle, std::uint32_t edge) {
+      if (creases[triangle] == 3) sides.emplace_back(triangle, edge);
+    });
+    std::sort(sides.begin(), sides.end());
+    std::vector<std::uint32_t> faint;
+    const auto less = [&](const auto& a, const auto& b) { return folds_[a.second].jump < folds_[b.second].jump; };
+    for (std::size_t i = 0; i + 2 < sides.size(); i += 3) {
+      const auto [least, most] = std::minmax_element(&sides[i], &sides[i] + 3, less);
+      const JudgedFold& fold = folds_[least->second];
+      if (fold.grade == FoldGrade::strong && fold.jump < kFaintest * folds_[most->second].jump)
+        faint.push_back(least->second);
+    }
+    for (const std::uint32_t edge : faint) folds_[edge].grade = FoldGrade::smooth;
+  }
+
+  void cut_short_ends() {
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+    std::vector<std::uint32_t> tips;
+    for (std::uint32_t v = 0; v < mesh_.positions.size(); ++v) {
+      low = glm::min(low, mesh_.positions[v]);
+      high = glm::max(high, mesh_.positions[v]);
+      if (drawn_at(v) == 1) tips.push_back(v);
+    }
+    const double least = kLong * glm::distance(low, high);
+    for (std::size_t i = 0; i < tips.size(); ++i) {
+      if (i % kEdgesPerPart == 0) check_cancelled(execution_);
+      if (drawn_at(tips[i]) != 1) continue;
+      const std::vector<std::uint32_t> line = line_from(tips[i]);
+      double length = 0;
+      for (const std::uint32_t edge : line)
+        length += glm::distance(mesh_.positions[edges_[edge].from], mesh_.positions[edges_[edge].to]);
+      if (line.empty() || line.size() >= kFewestEdges || length > least) continue;
+      for (const std::uint32_t edge : line) folds_[edge].grade = FoldGrade::smooth;
+      // An edge that met the removed line may end in the air now.
+      for (const std::uint32_t vertex : {edges_[line.back()].from, edges_[line.back()].to})
+        if (drawn_at(vertex) == 1) tips.push_back(vertex);
+    }
+  }
+
   [[nodiscard]] bool is_drawn(std::size_t edge) const { return folds_[edge].grade >= FoldGrade::strong; }
 
  private:
@@ -69,7 +528,22 @@ class CreaseGraph {
     const std::span<const std::uint32_t> here = at(vertex);
     return std::size_t(std::count_if(here.begin(), here.end(), [&](std::uint32_t e) { return is_drawn(e); }));
   }
-  [[nodiscard]] std::vector<std::uint32_t> line_from(std::uint32_t tip) const;
+
+  /// The line from a vertex with one edge to where others meet it, or it bends sharply, or it is long enough.
+  [[nodiscard]] std::vector<std::uint32_t> line_from(std::uint32_t tip) const {
+    std::vector<std::uint32_t> line;
+    for (std::uint32_t vertex = tip; line.size() < kFewestEdges;) {
+      std::uint32_t next = no_index;
+      for (const std::uint32_t edge : at(vertex))
+        if (is_drawn(edge) && (line.empty() || edge != line.back())) next = edge;
+      if (next == no_index || !is_fold(edges_[next])) break;
+      if (!line.empty() && bend(line.back(), next, vertex) < kBend) break;
+      line.push_back(next);
+      vertex = other_end(next, vertex);
+      if (drawn_at(vertex) != 2) break;
+    }
+    return line;
+  }
 
   const WeldedMesh& mesh_;
   const std::vector<FeatureEdge>& edges_;
@@ -77,100 +551,6 @@ class CreaseGraph {
   std::vector<JudgedFold> folds_;
   Buckets<std::uint32_t> edges_at_;  ///< by vertex
 };
-
-CreaseGraph::CreaseGraph(const WeldedMesh& mesh, const std::vector<FeatureEdge>& edges, std::vector<JudgedFold> folds,
-                         const Execution& execution)
-    : mesh_(mesh), edges_(edges), execution_(execution), folds_(std::move(folds)) {
-  const auto list = [&](std::size_t i, const auto& add) {
-    if (folds_[i].grade == FoldGrade::smooth) return;
-    add(edges_[i].from, std::uint32_t(i));
-    add(edges_[i].to, std::uint32_t(i));
-  };
-  edges_at_ = Buckets<std::uint32_t>(mesh.positions.size(), edges_.size(), list, execution);
-}
-
-/// Makes weak folds strong that continue strong ones.
-void CreaseGraph::follow_strong() {
-  std::vector<std::uint32_t> open;
-  for (std::size_t i = 0; i < edges_.size(); ++i)
-    if (is_drawn(i) && is_fold(edges_[i])) open.push_back(std::uint32_t(i));
-  while (!open.empty()) {
-    const std::uint32_t edge = open.back();
-    open.pop_back();
-    for (const std::uint32_t vertex : {edges_[edge].from, edges_[edge].to})
-      for (const std::uint32_t next : at(vertex)) {
-        if (folds_[next].grade != FoldGrade::weak || bend(edge, next, vertex) < kGoesOn) continue;
-        folds_[next].grade = FoldGrade::strong;
-        open.push_back(next);
-      }
-  }
-}
-
-/// Removes the faintest crease of triangles with three. A crease that zigzags across a row of triangles gives them
-/// three.
-void CreaseGraph::thin() {
-  const auto for_each_side = [&](const auto& visit) {
-    for (std::size_t i = 0; i < edges_.size(); ++i)
-      if (is_drawn(i) && is_fold(edges_[i]))
-        for (const std::uint32_t triangle : {edges_[i].left, edges_[i].right}) visit(triangle, std::uint32_t(i));
-  };
-  Buffer<std::uint8_t> creases(mesh_.triangles.size(), 0);
-  for_each_side([&](std::uint32_t triangle, std::uint32_t) { ++creases[triangle]; });
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;  // triangle, edge
-  for_each_side([&](std::uint32_t triangle, std::uint32_t edge) {
-    if (creases[triangle] == 3) sides.emplace_back(triangle, edge);
-  });
-  std::sort(sides.begin(), sides.end());
-  std::vector<std::uint32_t> faint;
-  const auto less = [&](const auto& a, const auto& b) { return folds_[a.second].jump < folds_[b.second].jump; };
-  for (std::size_t i = 0; i + 2 < sides.size(); i += 3) {
-    const auto [least, most] = std::minmax_element(&sides[i], &sides[i] + 3, less);
-    const JudgedFold& fold = folds_[least->second];
-    if (fold.grade == FoldGrade::strong && fold.jump < kFaintest * folds_[most->second].jump)
-      faint.push_back(least->second);
-  }
-  for (const std::uint32_t edge : faint) folds_[edge].grade = FoldGrade::smooth;
-}
-
-/// The line from a vertex with one edge to where others meet it, or it bends sharply, or it is long enough.
-std::vector<std::uint32_t> CreaseGraph::line_from(std::uint32_t tip) const {
-  std::vector<std::uint32_t> line;
-  for (std::uint32_t vertex = tip; line.size() < kFewestEdges;) {
-    std::uint32_t next = no_index;
-    for (const std::uint32_t edge : at(vertex))
-      if (is_drawn(edge) && (line.empty() || edge != line.back())) next = edge;
-    if (next == no_index || !is_fold(edges_[next])) break;
-    if (!line.empty() && bend(line.back(), next, vertex) < kBend) break;
-    line.push_back(next);
-    vertex = other_end(next, vertex);
-    if (drawn_at(vertex) != 2) break;
-  }
-  return line;
-}
-
-void CreaseGraph::cut_short_ends() {
-  glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
-  std::vector<std::uint32_t> tips;
-  for (std::uint32_t v = 0; v < mesh_.positions.size(); ++v) {
-    low = glm::min(low, mesh_.positions[v]);
-    high = glm::max(high, mesh_.positions[v]);
-    if (drawn_at(v) == 1) tips.push_back(v);
-  }
-  const double least = kLong * glm::distance(low, high);
-  for (std::size_t i = 0; i < tips.size(); ++i) {
-    if (i % kEdgesPerPart == 0) check_cancelled(execution_);
-    if (drawn_at(tips[i]) != 1) continue;
-    const std::vector<std::uint32_t> line = line_from(tips[i]);
-    double length = 0;
-    for (const std::uint32_t edge : line)
-      length += glm::distance(mesh_.positions[edges_[edge].from], mesh_.positions[edges_[edge].to]);
-    if (line.empty() || line.size() >= kFewestEdges || length > least) continue;
-    for (const std::uint32_t edge : line) folds_[edge].grade = FoldGrade::smooth;
-    // An edge that met the removed line may end in the air now.
-    for (const std::uint32_t vertex : {edges_[line.back()].from, edges_[line.back()].to})
-      if (drawn_at(vertex) == 1) tips.push_back(vertex);
-  }
-}
 
 }  // namespace
 

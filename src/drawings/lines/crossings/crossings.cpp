@@ -1,27 +1,246 @@
 // SPDX-License-Identifier: Apache-2.0
+// Pairs of triangles that may cross are found by a tree of boxes: triangles are sorted once by (class of size, place on
+// D. Hilbert's curve), in groups of sixteen, groups of sixteen groups, and so on. A group is compared with itself and
+// with all later groups whose boxes touch its own, so every pair meets once.
+//
 // Two triangles that straddle each other's planes meet the planes' common line in an interval each. The common part of
 // the intervals ends at those of their four ends that lie within the other triangle. Signs of tetrahedra decide that
 // before any point is constructed.
-//
 // O. Devillers, P. Guigue. Faster Triangle-Triangle Intersection Tests. 2002.
 #include "lines/crossings/crossings.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstring>
 #include <optional>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "base/parallel.h"
 #include "base/work_limit.h"
-#include "lines/crossings/box_tree.h"
+#include "lines/crossings/space_lanes.h"
 #include "lines/lists.h"
+#include "lines/mesh/feature_edges.h"
+#include "surfaces/hilbert.h"
+#include "surfaces/radix_sort.h"
 #include "view/sight.h"
 
 namespace frontmost::lines_detail {
 namespace {
 
+constexpr std::size_t kPerPart = 4096, kBoxGroupsPerPart = 256;
+constexpr int kBitsAnAxis = 9, kKeyBits = 3 + 3 * kBitsAnAxis;
+constexpr int kExponents = 160;  // more than floats have
+
+/// Spreads the low 9 bits, with two zeros between neighbours.
+std::uint32_t spread(std::uint32_t bits) {
+  std::uint32_t out = 0;
+  for (int i = 0; i < kBitsAnAxis; ++i) out |= (bits >> i & 1u) << 3 * i;
+  return out;
+}
+
+Box box_of(const WeldedMesh& mesh, std::size_t triangle) {
+  Box box;
+  for (int k = 0; k < 3; ++k) box.include(mesh.positions.places()[mesh.triangles[triangle][k]]);
+  return box;
+}
+
+/// The exponent that std::frexp() gives for the box's longest side, but many times faster. That side is not 0.
+int exponent_of(const Box& box) {
+  const glm::dvec3 size = glm::dvec3(box.high) - glm::dvec3(box.low);
+  const double longest = std::max({size.x, size.y, size.z});
+  std::uint64_t bits;
+  std::memcpy(&bits, &longest, sizeof bits);
+  return std::clamp(int(bits >> 52) - 1022, -kExponents, kExponents - 1);
+}
+
+/// Classes of triangles by size.
+struct SizeClasses {
+  /// By exponent: 0 for nine tenths of all triangles; each class beyond spans a factor of 4.
+  std::array<std::uint32_t, 2 * kExponents> of{};
+  int usual = 0;  ///< the largest exponent of those nine tenths
+};
+
+/// Determined from every sixteenth triangle.
+SizeClasses size_classes(const WeldedMesh& mesh, const Execution& execution) {
+  const std::size_t asked = (mesh.triangles.size() + 15) / 16;
+  Buffer<std::int16_t> exponents(asked);
+  parallel_for(execution, asked, kPerPart / 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) exponents[i] = std::int16_t(exponent_of(box_of(mesh, 16 * i)));
+  });
+  std::array<std::size_t, 2 * kExponents> counts{};
+  for (const std::int16_t exponent : exponents) ++counts[std::size_t(exponent + kExponents)];
+  SizeClasses classes;
+  std::size_t seen = 0;
+  std::uint32_t above = 0;
+  for (std::size_t e = 0; e < counts.size(); ++e) {
+    if (10 * seen >= 9 * asked) ++above;
+    if (above == 0) classes.usual = int(e) - kExponents;
+    classes.of[e] = std::min(7u, above / 2);
+    seen += counts[e];
+  }
+  return classes;
+}
+
+Box bounds_of(const Buffer<glm::vec3>& places, const Execution& execution) {
+  std::vector<Box> parts((places.size() + kPerPart - 1) / kPerPart);
+  parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    Box box;
+    for (std::size_t i = begin; i < end; ++i) box.include(places[i]);
+    parts[begin / kPerPart] = box;
+  });
+  Box all;
+  for (const Box& box : parts) all.include(box);
+  return all;
+}
+
+/// Keys on D. Hilbert's curve, 30 bits: the class of size, then the place of the box's middle.
+class Curve {
+ public:
+  Curve(const WeldedMesh& mesh, const Execution& execution) : classes_(size_classes(mesh, execution)) {
+    const Box all = bounds_of(mesh.positions.places(), execution);
+    low_ = glm::dvec3(all.low);
+    const glm::dvec3 extent = glm::dvec3(all.high) - low_;
+    scale_ = kSteps / std::max({extent.x, extent.y, extent.z, 1e-300});
+    for (std::uint32_t i = 0; i < spread_.size(); ++i) spread_[i] = spread(i);
+  }
+  [[nodiscard]] std::uint32_t place_of(const Box& box) const {
+    const glm::dvec3 at = ((glm::dvec3(box.low) + glm::dvec3(box.high)) * 0.5 - low_) * scale_;
+    const auto step = [&](double t) { return spread_[std::size_t(std::clamp(t, 0.0, kSteps))]; };
+    const std::uint32_t size = classes_.of[std::size_t(exponent_of(box) + kExponents)];
+    return size << 3 * kBitsAnAxis | hilbert_place(step(at.x) | step(at.y) << 1 | step(at.z) << 2, kBitsAnAxis);
+  }
+  /// A power of two that makes most triangles about 1 in size. The kernels take products of many lengths, and denormal
+  /// floats cost hundreds of cycles. The scaling rounds nothing; what becomes infinite is left open by the kernels.
+  [[nodiscard]] float scale() const { return std::ldexp(1.0f, std::clamp(-classes_.usual, 0, kMostScale)); }
+
+ private:
+  static constexpr double kSteps = (1 << kBitsAnAxis) - 1;
+  static constexpr int kMostScale = 60;
+  SizeClasses classes_;
+  glm::dvec3 low_{0};
+  double scale_ = 0;
+  std::array<std::uint32_t, 1 << kBitsAnAxis> spread_;
+};
+
+class BoxTree {
+ public:
+  /// O(triangles). Triangles of similar size are grouped, so that large ones do not widen the boxes of small ones.
+  /// Twins (Features::twins) are left out.
+  BoxTree(const WeldedMesh& mesh, const Features& features, const Execution& execution)
+      : kernels_(space_kernels(execution.isa)), triangles_(mesh.triangles.size() - features.twins.size()) {
+    const std::vector<std::uint32_t>& left_out = features.twins;
+    const std::size_t count = triangles_.count;
+    const Curve curve(mesh, execution);
+    Buffer<std::uint64_t> keys(count);
+    parallel_for(execution, count, kPerPart, [&](std::size_t begin, std::size_t end) {
+      // Index i counts triangles that are not left out; `t` is the triangle's number with those before it added.
+      std::size_t t = begin;
+      auto next = left_out.begin();
+      for (; next != left_out.end() && *next <= t; ++next) ++t;
+      for (std::size_t i = begin; i < end; ++i, ++t) {
+        for (; next != left_out.end() && *next == t; ++next) ++t;
+        keys[i] = std::uint64_t(curve.place_of(box_of(mesh, t))) << 32 | t;
+      }
+    });
+    keys = radix_sort(std::move(keys), kKeyBits, execution);
+    const float scale = curve.scale();
+    const bool knows_spread = !features.is_spread.empty();
+    levels_.emplace_back(group_count());
+    parallel_for(execution, group_count(), kBoxGroupsPerPart, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t group = begin; group < end; ++group) {
+        Box box;
+        for (std::size_t i = group * kSpaceLanes; i < (group + 1) * kSpaceLanes; ++i) {
+          const auto number = std::uint32_t(keys[std::min(i, count - 1)]);
+          triangles_.numbers[i] = number;
+          for (int k = 0; k < 3; ++k) {
+            const std::uint32_t vertex = (&mesh.triangles[number].x)[k];
+            const glm::vec3 corner = mesh.positions.places()[vertex] * scale;
+            triangles_.vertices[k][i] = knows_spread && features.is_spread[vertex] ? vertex : vertex | kNotSpread;
+            triangles_.corners[3 * k][i] = corner.x;
+            triangles_.corners[3 * k + 1][i] = corner.y;
+            triangles_.corners[3 * k + 2][i] = corner.z;
+            box.include(corner);
+          }
+        }
+        levels_[0].set(group, box);
+      }
+    });
+    while (levels_.back().group_count() > 1) {
+      const SpaceBoxes& below = levels_.back();
+      SpaceBoxes level(below.group_count());
+      for (std::size_t group = 0; group < below.group_count(); ++group) {
+        Box box;
+        for (std::size_t i = 0; i < kSpaceLanes; ++i) box.include(below.get(group * kSpaceLanes + i));
+        level.set(group, box);
+      }
+      levels_.push_back(std::move(level));
+    }
+  }
+
+  /// The number of groups of up to sixteen triangles.
+  [[nodiscard]] std::size_t group_count() const { return triangles_.numbers.size() / kSpaceLanes; }
+
+  /// Calls visit(a, b) for every pair that SpaceKernels::crossing leaves open, with one triangle of this group and the
+  /// other of this group or a later one. Each pair is visited once.
+  template <class Visitor>
+  void visit_pairs(std::size_t group, const Visitor& visit) const {
+    const std::size_t begin = group * kSpaceLanes;
+    SpaceProbes probes;
+    kernels_.set_probes(triangles_, begin, probes);
+    visit_groups(group, [&](std::size_t other, const Box& other_box) {
+      const std::size_t first = other * kSpaceLanes;
+      SpaceMasks masks;
+      std::uint32_t found = kernels_.crossing(triangles_, first, other_box, probes, masks);
+      for (; found != 0; found &= found - 1) {
+        const auto i = std::size_t(std::countr_zero(found));
+        if (begin + i >= triangles_.count) break;
+        std::uint32_t bits = masks[i];
+        if (other == group) bits &= 0xFFFEu << i;
+        for (; bits != 0; bits &= bits - 1) {
+          const std::size_t j = first + std::size_t(std::countr_zero(bits));
+          if (j < triangles_.count) visit(triangles_.numbers[begin + i], triangles_.numbers[j]);
+        }
+      }
+    });
+  }
+
+ private:
+  /// Calls visit(other, its box) for every group from `group` on whose box touches that of `group`.
+  template <class Visitor>
+  void visit_groups(std::size_t group, const Visitor& visit) const {
+    const Box box = levels_[0].get(group);
+    struct Step {
+      std::size_t level, group;
+    };
+    Step open[kSpaceLanes * kMostLevels];
+    std::size_t count = 0;
+    open[count++] = {levels_.size() - 1, 0};
+    while (count > 0) {
+      const Step step = open[--count];
+      const std::size_t first = step.group * kSpaceLanes;
+      for (std::uint32_t bits = kernels_.touching(levels_[step.level], first, box); bits != 0; bits &= bits - 1) {
+        const std::size_t child = first + std::size_t(std::countr_zero(bits));
+        if (step.level > 0)
+          open[count++] = {step.level - 1, child};
+        else if (child >= group)
+          visit(child, levels_[0].get(child));
+      }
+    }
+  }
+
+  static constexpr std::size_t kMostLevels = 9;  ///< 16^8 is more than there are numbers for triangles
+  SpaceKernels kernels_;
+  SpaceTriangles triangles_;
+  std::vector<SpaceBoxes> levels_;  ///< boxes of groups of sixteen triangles, then of groups of such groups
+};
+
 constexpr std::size_t kGroupsPerPart = 16, kPairsPerPoll = 16384;
+constexpr std::size_t kMostSegments = std::size_t(1) << 20, kMostSegmentsOfTriangle = 16;
 /// A pair counts as kStepsOfPair steps of ten nanoseconds; the other two bound all steps. A city has 42 thousand
 /// segments.
 constexpr std::uint64_t kStepsOfPair = 8, kMostSteps = std::uint64_t(1) << 30, kMostStepsOfTriangle = 256;
@@ -175,11 +394,11 @@ std::optional<Crossing> crossing(const WeldedMesh& mesh, const std::array<const 
       if (is_within(mesh, end, *faces[1 - k])) within[k][count[k]++] = &end;
   // Where edges meet, both triangles have an end there; two ends of one triangle are then enough.
   for (std::size_t k = 0; k < 2; ++k)
-    if (count[k] == 2) return Crossing{within[k][0]->end, within[k][1]->end, 0, 0};
+    if (count[k] == 2) return Crossing{within[k][0]->end, within[k][1]->end, faces[0]->triangle, faces[1]->triangle};
   if (count[0] == 0 || count[1] == 0) return std::nullopt;
   const EdgeMeeting &a = *within[0][0], &b = *within[1][0];
   if (turn(mesh, a.p, a.q, b.p, b.q) == 0) return std::nullopt;  // they touch in a point
-  return Crossing{a.end, b.end, 0, 0};
+  return Crossing{a.end, b.end, faces[0]->triangle, faces[1]->triangle};
 }
 
 auto order(const Crossing& c) {
@@ -191,42 +410,13 @@ bool is_same_line(const Crossing& a, const Crossing& b) {
   return a.from.place == b.from.place && a.to.place == b.to.place;
 }
 
-/// Counts the segments of all threads, so that a limit is checked before memory is requested.
-class Tally {
- public:
-  explicit Tally(std::size_t triangles) : most_(kMost + kMostOfTriangle * triangles) {}
-
-  void add(std::size_t count) {
-    if ((all_ += count) > most_)
-      throw Error(ErrorCode::limit_exceeded, "lines",
-                  "more than " + std::to_string(most_) + " segments where triangles pass through each other");
-  }
-
- private:
-  static constexpr std::size_t kMost = std::size_t(1) << 20, kMostOfTriangle = 16;
-  std::size_t most_;
-  std::atomic<std::size_t> all_{0};
-};
-
-/// Appends the segment of two triangles, if there is one.
-void add_crossing(const WeldedMesh& mesh, std::uint32_t left, std::uint32_t right, Found& found) {
-  const CrossedFace one(mesh, left), two(mesh, right);
-  std::optional<Crossing> segment = crossing(mesh, {&one, &two}, found);
-  if (!segment) return;
-  segment->left = left;
-  segment->right = right;
-  found.crossings.push_back(*segment);
-}
-
 /// Puts the lesser end first, and drops segments whose ends were rounded to one place.
 void order_ends(std::vector<Crossing>& crossings) {
   for (Crossing& c : crossings) {
     const glm::dvec3 &p = c.from.place, &q = c.to.place;
     if (std::make_tuple(q.x, q.y, q.z) < std::make_tuple(p.x, p.y, p.z)) std::swap(c.from, c.to);
   }
-  crossings.erase(
-      std::remove_if(crossings.begin(), crossings.end(), [](const Crossing& c) { return c.from.place == c.to.place; }),
-      crossings.end());
+  std::erase_if(crossings, [](const Crossing& c) { return c.from.place == c.to.place; });
 }
 
 }  // namespace
@@ -237,20 +427,26 @@ std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& fea
   const std::size_t parts = (tree.group_count() + kGroupsPerPart - 1) / kGroupsPerPart;
   std::vector<std::vector<Crossing>> crossings(parts);
   std::vector<std::vector<EdgeContact>> contacts(parts);
-  Tally tally(mesh.triangles.size());
+  // Counted over all threads, so that the limit is checked before memory is requested.
+  const std::size_t most_segments = kMostSegments + kMostSegmentsOfTriangle * mesh.triangles.size();
+  std::atomic<std::size_t> segments{0};
   WorkLimit work(execution, kMostSteps + kMostStepsOfTriangle * mesh.triangles.size(), "lines");
   parallel_for(execution, tree.group_count(), kGroupsPerPart, [&](std::size_t begin, std::size_t end) {
     Found found;
     std::size_t counted = 0, asked = 0;
     const auto count = [&] {
       const std::size_t all = found.crossings.size() + found.contacts.size();
-      tally.add(all - counted);
+      if ((segments += all - counted) > most_segments)
+        throw Error(ErrorCode::limit_exceeded, "lines",
+                    "more than " + std::to_string(most_segments) + " segments where triangles pass through each other");
       counted = all;
     };
     for (std::size_t group = begin; group < end; ++group) {
       check_cancelled(execution);
       tree.visit_pairs(group, [&](std::uint32_t a, std::uint32_t b) {
-        add_crossing(mesh, std::min(a, b), std::max(a, b), found);
+        const CrossedFace one(mesh, std::min(a, b)), two(mesh, std::max(a, b));
+        if (const std::optional<Crossing> segment = crossing(mesh, {&one, &two}, found))
+          found.crossings.push_back(*segment);
         if (++asked % kPairsPerPoll != 0) return;
         work.add(kStepsOfPair * kPairsPerPoll, [] {
           return std::string("too many triangles come near each other to find where they pass through each other");

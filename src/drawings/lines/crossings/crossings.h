@@ -35,8 +35,6 @@ struct Crossing {
 [[nodiscard]] std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features,
                                                    const Execution& execution);
 
-// Surfaces that pass through each other exactly along an edge.
-
 /// An edge, the lower vertex first, that lies in the plane of a triangle whose edge it is not.
 struct EdgeContact {
   std::uint32_t from, to, triangle;

@@ -20,8 +20,7 @@ namespace {
 
 struct Edge {
   std::uint32_t from, to;
-  bool operator<(const Edge& other) const { return std::tie(from, to) < std::tie(other.from, other.to); }
-  bool operator==(const Edge& other) const { return from == other.from && to == other.to; }
+  friend auto operator<=>(const Edge&, const Edge&) = default;
 };
 
 /// The triangles at an edge, by their third vertices.

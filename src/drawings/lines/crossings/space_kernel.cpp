@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernel computes in floats; pairs that it leaves open are decided exactly afterwards.
+// Pairs of triangles are excluded in floats, sixteen triangles (lanes) against sixteen probes:
 //
-//    sixteen triangles (lanes) against sixteen probes
 //      boxes touch, and no spread vertex is shared                                 MayMeet
 //      the lanes may have corners on both sides of the probe's plane               Straddles
 //      the probe may have corners on both sides of the lanes' planes               IsStraddled
 //      neighbours lie on one side of the shared vertex along the common line       LiesApart
 //      both meet the planes' common line in overlapping stretches                  MeetsLineApart
-//    pairs that are left are decided exactly, one at a time                        crossings.cpp
 //
-// Each step answers "certainly not" or "perhaps", with a bound on all rounding errors, so no crossing is lost. The
-// steps are in the order of their cost per pair that they exclude.
+// Each step answers "certainly not" or "perhaps", with a bound on all rounding errors, so no crossing is lost. Pairs
+// that are left are decided exactly, one at a time.
 
 #include "lines/crossings/space_lanes.h"
 

@@ -57,14 +57,6 @@ struct SpaceTriangles {
     for (Buffer<float>& c : corners) c = Buffer<float>(padded_to_lanes(size));
     for (Buffer<std::uint32_t>& v : vertices) v = Buffer<std::uint32_t>(padded_to_lanes(size));
   }
-  [[nodiscard]] glm::vec3 corner(std::size_t i, std::size_t k) const {
-    return {corners[3 * k][i], corners[3 * k + 1][i], corners[3 * k + 2][i]};
-  }
-  [[nodiscard]] Box box(std::size_t i) const {
-    Box box;
-    for (std::size_t k = 0; k < 3; ++k) box.include(corner(i, k));
-    return box;
-  }
 };
 
 /// Added to the size of a normal, in place of what products of floats lose by underflow.

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "frontmost/lines.h"
+#include "lines/hiding/occluder.h"
 #include "lines/hiding/occluder_grid.h"
-#include "lines/hiding/shadow_kernel.h"
 #include "lines/mesh/feature_edges.h"
 
 namespace frontmost::lines_detail {
@@ -32,9 +32,6 @@ struct EdgeOccluders {
 ///    t = 0                              1        United intervals show which parts are still open; the search
 ///    ---[======]------[===]--[========]---       ends when none is. With counts, every triangle has its own
 ///       hidden        hidden  hidden             interval; as many triangles hide a place as intervals cover it.
-///
-/// An edge passes cells from one end to the other, so new intervals mostly lengthen the last one or follow it. A deque
-/// is also quick at the other end.
 class HiddenIntervals {
  public:
   struct Hidden {
@@ -101,7 +98,7 @@ class HiddenIntervals {
   }
 
   bool counts_ = false;
-  std::deque<Hidden> hidden_;  ///< a deque, because cells may come from an edge's end to its beginning
+  std::deque<Hidden> hidden_;  ///< a deque: cells may come from either end of the edge
 };
 
 /// The findings about an edge, and the occluders that are to be compared next.

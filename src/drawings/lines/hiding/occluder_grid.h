@@ -8,12 +8,19 @@
 #include <atomic>
 #include <vector>
 
-#include "lines/hiding/cell_depth.h"
 #include "lines/hiding/occluder.h"
-#include "lines/hiding/shadow_kernel.h"
-#include "lines/mesh/seen_mesh.h"
+#include "lines/mesh/mesh.h"
+#include "lines/square_grid.h"
 
 namespace frontmost::lines_detail {
+
+/// Linear on the screen; larger values are nearer.
+[[nodiscard]] inline double nearness(double distance, bool is_parallel) {
+  return is_parallel ? -distance : 1 / distance;
+}
+
+/// In cells; more than the rounding error of any place in the picture.
+inline constexpr double kCellPad = 1e-6;
 
 class GridPlan;
 
@@ -71,11 +78,6 @@ class OccluderGrid {
   [[nodiscard]] bool has_sides(std::size_t cell) const { return first_[cell + 1] - first_[cell] >= kMany; }
   void fill_cells(const GridPlan& plan);
   void fill_sides(const GridPlan& plan);
-  void set_side(std::size_t i, int k, const CellDepth::Side& side) {
-    sides_[3 * k][i] = side.a;
-    sides_[3 * k + 1][i] = side.b;
-    sides_[3 * k + 2][i] = side.c;
-  }
 
   SquareGrid cells_;
   double scale_ = 1;

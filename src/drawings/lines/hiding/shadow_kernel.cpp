@@ -6,7 +6,7 @@
 // edge in doubles, eight triangles at a time, with bounds on the errors of all four functions. Each hides nothing,
 // hides an interval for certain, or is left open.
 
-#include "lines/hiding/shadow_kernel.h"
+#include "lines/hiding/occluder.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lines/hiding/shadow_kernel.cpp"

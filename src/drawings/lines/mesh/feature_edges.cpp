@@ -1,42 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edges are found at their lower vertex. Most have two triangles that are wound alike and need no sort.
-//
-// For the others, the sides at a vertex are sorted by their upper vertex; sides with the same one form an edge.
+// Edges are found at their lower vertex. A kernel finds the vertices that have no features; these are skipped.
 //
 //    triangles at the edge     what is drawn
-//    one                       boundary
+//    one                       boundary, unless a gap lies beside it
 //    two                       silhouette where only one faces the eye; border; crease by their angle
 //    more                      each pair of sides of one surface is judged like two; without pairs, surfaces meet
 //
-// Assemblies are exported part by part, and parts that touch have the same triangles where they do. Sides with the same
-// third vertex are copies. Two groups of copies form a pair. Three or more form pairs only if one group is as large as
-// all others together: it is the part that the others share, like the wall between two rooms.
-//
-//        A       B            three sides at an edge (o), S twice: the pairs are A-S and B-S
-//         .     /
-//          .   /
-//            o
-//            |  S (twice)
-//
-// A kernel finds the vertices that have no features, many corners at a time, and these are skipped.
+// Parts that touch have the same triangles where they do. Three or more groups of copies form pairs only if one group
+// is as large as all others together: it is the part that the others share, like the wall between two rooms.
 #include "lines/mesh/feature_edges.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "base/parallel.h"
-#include "lines/creases/creases.h"
 #include "lines/lists.h"
-#include "lines/mesh/corner_table.h"
+#include "lines/mesh/mesh.h"
 
 namespace frontmost::lines_detail {
 namespace {
 
+constexpr std::size_t kMostInLeaf = 8, kMostBeside = 64;
+constexpr double kShare = 1.0 / 16;  // the widest gap, as a share of an edge's length
+constexpr double kAcross = 0.5;      // least cosine of the angle between the directions into both triangles
 constexpr std::size_t kVerticesPerPart = 1024;
 constexpr double kWidestGap = 1.0 / 65536;  // of the scene's diagonal: a two hundredth of a millimetre on paper of A4
 
@@ -51,6 +44,8 @@ class Classifier {
         has_borders_(options.borders && !is_one_surface(surfaces.scene())) {}
 
   [[nodiscard]] const WeldedMesh& mesh() const { return mesh_; }
+  /// The least cosine of the angle by which a continuing surface turns.
+  [[nodiscard]] double cosine() const { return cosine_; }
   /// An edge of two triangles that are wound alike and face the same way is no feature if the cosine of their
   /// SeenTriangle normals is higher.
   [[nodiscard]] float plain_cosine() const {
@@ -78,9 +73,6 @@ class Classifier {
 
   [[nodiscard]] SurfaceOfTriangle surface_of_triangle() const {
     return [this](std::uint32_t triangle) { return surface_of(triangle); };
-  }
-  [[nodiscard]] GapOptions gap_options(double widest, std::size_t twins) const {
-    return {cosine_, widest, mesh_.triangles.size() - twins, surface_of_triangle()};
   }
 
   /// The side of the edge on which no triangle lies, as seen; 0 where triangles are on both sides.
@@ -125,6 +117,186 @@ class Classifier {
   const double cosine_;
   const bool has_borders_;
 };
+
+/// A side of one triangle alone.
+struct OpenSide {
+  /// `from` is a point, the others unit vectors; `ahead` points into the triangle.
+  glm::dvec3 from, along, normal, ahead;
+  double length;
+  std::uint32_t edge, triangle;
+  std::array<std::uint32_t, 2> ends;
+  Box box;
+};
+
+OpenSide open_side(const WeldedMesh& mesh, const FeatureEdge& edge, std::uint32_t number) {
+  const glm::dvec3 from = mesh.positions[edge.from], to = mesh.positions[edge.to];
+  const std::uint32_t tip = third_of(mesh.triangles[edge.left], edge.from, edge.to);
+  const double length = glm::distance(from, to);
+  const glm::dvec3 along = (to - from) / length, normal = normal_of(mesh, edge.left);
+  const glm::dvec3 to_tip = mesh.positions[tip] - from, across = to_tip - along * glm::dot(to_tip, along);
+  OpenSide side{from,
+                along,
+                normal / glm::length(normal),
+                across / glm::length(across),
+                length,
+                number,
+                edge.left,
+                {edge.from, edge.to},
+                {}};
+  side.box.include(mesh.positions.places()[edge.from]);
+  side.box.include(mesh.positions.places()[edge.to]);
+  return side;
+}
+
+/// Open sides in a binary tree of boxes.
+class SideTree {
+ public:
+  explicit SideTree(std::vector<OpenSide> sides) : sides_(std::move(sides)), boxes_(1) { build(0, 0, sides_.size()); }
+
+  [[nodiscard]] const std::vector<OpenSide>& sides() const { return sides_; }
+  /// Visits sides whose boxes touch `box`, until `visit` returns false.
+  template <class Visit>
+  void visit_near(const Box& box, const Visit& visit) const {
+    (void)visit_node(0, 0, sides_.size(), box, visit);
+  }
+
+ private:
+  void build(std::size_t node, std::size_t begin, std::size_t end) {
+    if (node >= boxes_.size()) boxes_.resize(node + 1);
+    Box box;
+    for (std::size_t i = begin; i < end; ++i) box.include(sides_[i].box);
+    boxes_[node] = box;
+    if (end - begin <= kMostInLeaf) return;
+    const glm::vec3 size = box.high - box.low;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const auto place = [&](const OpenSide& side) { return side.box.low[axis] + side.box.high[axis]; };
+    const std::size_t middle = begin + (end - begin) / 2;
+    std::nth_element(sides_.begin() + std::ptrdiff_t(begin), sides_.begin() + std::ptrdiff_t(middle),
+                     sides_.begin() + std::ptrdiff_t(end), [&](const OpenSide& a, const OpenSide& b) {
+                       return std::pair(place(a), a.edge) < std::pair(place(b), b.edge);
+                     });
+    build(2 * node + 1, begin, middle);
+    build(2 * node + 2, middle, end);
+  }
+
+  static bool overlap(const Box& a, const Box& b) {
+    return glm::all(glm::lessThanEqual(a.low, b.high)) && glm::all(glm::lessThanEqual(b.low, a.high));
+  }
+
+  template <class Visit>
+  [[nodiscard]] bool visit_node(std::size_t node, std::size_t begin, std::size_t end, const Box& box,
+                                const Visit& visit) const {
+    if (!overlap(boxes_[node], box)) return true;
+    if (end - begin <= kMostInLeaf) {
+      for (std::size_t i = begin; i < end; ++i)
+        if (overlap(sides_[i].box, box) && !visit(sides_[i])) return false;
+      return true;
+    }
+    const std::size_t middle = begin + (end - begin) / 2;
+    return visit_node(2 * node + 1, begin, middle, box, visit) && visit_node(2 * node + 2, middle, end, box, visit);
+  }
+
+  std::vector<OpenSide> sides_;
+  std::vector<Box> boxes_;
+};
+
+/// Whether stretches cover a length, up to holes of `slack`.
+bool cover(std::vector<std::pair<double, double>>& stretches, double length, double slack) {
+  std::sort(stretches.begin(), stretches.end());
+  double reached = 0;
+  for (const auto& [begin, end] : stretches) {
+    if (begin > reached + slack) return false;
+    reached = std::max(reached, end);
+  }
+  return reached >= length - slack;
+}
+
+class Gaps {
+ public:
+  Gaps(const SeenMesh& seen, const Classifier& classifier, double widest, std::vector<OpenSide> sides)
+      : seen_(seen), classifier_(classifier), widest_(widest), tree_(std::move(sides)) {}
+
+  [[nodiscard]] const std::vector<OpenSide>& sides() const { return tree_.sides(); }
+
+  /// Whether the side is a gap. Adds its vertices, with those beyond the gap, to `continued`.
+  [[nodiscard]] bool is_one(const OpenSide& side, VertexPairs& continued) const {
+    const double widest = std::min(widest_, kShare * side.length);
+    Box box = side.box;
+    box.low -= glm::vec3(float(widest));
+    box.high += glm::vec3(float(widest));
+    std::vector<std::pair<double, double>> stretches;
+    const std::size_t first = continued.size();
+    std::size_t count = 0;
+    tree_.visit_near(box, [&](const OpenSide& other) {
+      if (other.edge == side.edge) return true;
+      const auto stretch = stretch_beside(side, other, widest);
+      if (stretch.first < stretch.second && goes_on(side, other)) {
+        stretches.push_back(stretch);
+        for (const std::uint32_t own : side.ends)
+          for (const std::uint32_t its : other.ends) continued.emplace_back(std::minmax({own, its}));
+      }
+      return ++count <= kMostBeside;
+    });
+    const bool is_gap = count <= kMostBeside && cover(stretches, side.length, 2 * widest);
+    if (!is_gap) continued.resize(first);
+    return is_gap;
+  }
+
+ private:
+  /// The stretch of `side` beside which `other` lies, in lengths from its beginning; empty if there is none.
+  static std::pair<double, double> stretch_beside(const OpenSide& side, const OpenSide& other, double widest) {
+    const double slope = glm::dot(other.along, side.along);
+    if (slope == 0) return {0, 0};
+    const glm::dvec3 start = other.from - side.from;
+    const double s = glm::dot(start, side.along), e = s + slope * other.length;
+    // A little beyond the ends: triangles that meet the side only at a corner may reach into its own triangle.
+    const double begin = std::max(-widest, std::min(s, e)), end = std::min(side.length + widest, std::max(s, e));
+    const auto is_near = [&](double at) {
+      const glm::dvec3 place = start + other.along * ((at - s) / slope);
+      return glm::length(place - side.along * at) <= widest;
+    };
+    return begin < end && is_near(begin) && is_near(end) ? std::pair(begin, end) : std::pair(0.0, 0.0);
+  }
+
+  [[nodiscard]] bool goes_on(const OpenSide& side, const OpenSide& other) const {
+    const double cosine = glm::dot(side.normal, other.normal);
+    const int facing = seen_.facing[side.triangle];
+    return glm::dot(side.ahead, other.ahead) < -kAcross && std::abs(cosine) > classifier_.cosine() && facing != 0 &&
+           facing == seen_.facing[other.triangle] * (cosine < 0 ? -1 : 1) &&
+           classifier_.surface_of(side.triangle) == classifier_.surface_of(other.triangle);
+  }
+
+  const SeenMesh& seen_;
+  const Classifier& classifier_;
+  const double widest_;
+  SideTree tree_;
+};
+
+/// Removes from `edges` the boundaries across which their surface continues. All along such a boundary lie others of
+/// the same object and material, within `widest` and a sixteenth of its length. Their triangles are on the other side,
+/// face the same way and are turned by no more than the angle. (Exporters tessellate each face by itself, so rims share
+/// no vertices.) Where more than a third of all sides are open there is no surface, and all boundaries stay.
+/// \returns pairs of a gap's vertices and those across it, the lower first, ascending. O(boundaries log boundaries); a
+/// boundary with more than 64 others beside it stays.
+VertexPairs leave_out_gaps(const SeenMesh& seen, const Classifier& classifier, double widest, std::size_t triangles,
+                           std::vector<FeatureEdge>& edges) {
+  std::vector<OpenSide> sides;
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    if (edges[i].kind == EdgeKind::boundary && edges[i].right == no_index && seen.facing[edges[i].left] != 0)
+      sides.push_back(open_side(seen.mesh, edges[i], std::uint32_t(i)));
+  if (sides.empty() || sides.size() > triangles) return {};
+  const Gaps gaps(seen, classifier, widest, std::move(sides));
+  VertexPairs continued;
+  std::vector<bool> is_gap(edges.size(), false);
+  for (const OpenSide& side : gaps.sides()) is_gap[side.edge] = gaps.is_one(side, continued);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    if (!is_gap[i]) edges[kept++] = edges[i];
+  edges.resize(kept);
+  std::sort(continued.begin(), continued.end());
+  continued.erase(std::unique(continued.begin(), continued.end()), continued.end());
+  return continued;
+}
 
 /// Appends the edge to Corner::last() of corner j of a paired star, if it is a feature.
 void add_feature(std::uint32_t vertex, std::span<const Corner> corners, std::size_t j, const Classifier& classifier,
@@ -318,9 +490,19 @@ Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const Lin
   std::sort(all.twins.begin(), all.twins.end());
   if (options.creases && !options.crease_angle) judge_creases(seen, table, all.edges, execution);
   if (options.boundaries)
-    all.continued = leave_out_gaps(
-        seen, classifier.gap_options(kWidestGap * double(surfaces.bounds().diagonal()), all.twins.size()), all.edges);
+    all.continued = leave_out_gaps(seen, classifier, kWidestGap * double(surfaces.bounds().diagonal()),
+                                   seen.mesh.triangles.size() - all.twins.size(), all.edges);
   return all;
+}
+
+bool meet_at_gap(const WeldedMesh& mesh, const VertexPairs& continued, std::uint32_t a, std::uint32_t b) {
+  if (continued.empty()) return false;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) {
+      const std::pair<std::uint32_t, std::uint32_t> pair = std::minmax({mesh.triangles[a][i], mesh.triangles[b][k]});
+      if (std::binary_search(continued.begin(), continued.end(), pair)) return true;
+    }
+  return false;
 }
 
 }  // namespace frontmost::lines_detail

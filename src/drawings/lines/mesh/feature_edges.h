@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "frontmost/lines.h"
-#include "lines/mesh/seen_mesh.h"
+#include "lines/mesh/mesh.h"
 
 namespace frontmost::lines_detail {
 
@@ -70,23 +70,19 @@ using SurfaceOfTriangle = std::function<SurfaceOf(std::uint32_t triangle)>;
 [[nodiscard]] std::optional<std::vector<SidePair>> paired_sides(std::span<const Side> sides,
                                                                 const SurfaceOfTriangle& surface_of);
 
-struct GapOptions {
-  double cosine;          ///< least cosine of the angle by which a continuing surface turns
-  double widest;          ///< greatest width of a gap, in world space
-  std::size_t triangles;  ///< number of triangles of the mesh, copies counted once
-  SurfaceOfTriangle surface_of;
-};
-
-/// Removes from `edges` the boundaries across which their surface continues. All along such a boundary lie others of
-/// the same object and material, within `widest` and a sixteenth of its length. Their triangles are on the other side,
-/// face the same way and are turned by no more than the angle. (Exporters tessellate each face by itself, so rims share
-/// no vertices.) Where more than a third of all sides are open there is no surface, and all boundaries stay.
-/// \returns pairs of a gap's vertices and those across it, the lower first, ascending. O(boundaries log boundaries); a
-/// boundary with more than 64 others beside it stays.
-[[nodiscard]] VertexPairs leave_out_gaps(const SeenMesh& seen, const GapOptions& options,
-                                         std::vector<FeatureEdge>& edges);
-
 /// Whether two triangles lie on both sides of a gap: such triangles pass through each other only by rounding.
 [[nodiscard]] bool meet_at_gap(const WeldedMesh& mesh, const VertexPairs& continued, std::uint32_t a, std::uint32_t b);
+
+/// The cosine of 15 degrees. A fold is an edge at which a surface turns. Smaller folds are never creases: half the
+/// edges of a scan are folds of some degrees.
+inline constexpr double kLeastFoldCosine = 0.96592582628906831;
+
+/// Removes from `edges` the creases that the surfaces on both sides do not confirm, by hysteresis as in J. Canny. A
+/// Computational Approach to Edge Detection. 1986. A strong fold is a crease, and so are weak folds that continue one.
+/// The faintest crease of a triangle with three goes. A line of one or two edges that ends in the air goes, unless it
+/// is long. Silhouettes take part, so that the result hardly depends on the view; boundaries and borders hold what ends
+/// at them. The other edges and their order stay. O(edges).
+void judge_creases(const SeenMesh& seen, const CornerTable& table, std::vector<FeatureEdge>& edges,
+                   const Execution& execution);
 
 }  // namespace frontmost::lines_detail

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joins segments to chains, and removes corners from them.
-//
-// Ends are rounded to a thousandth of a pixel and sorted. Two ends of one rank at one place, and no third, are joined.
-// Where more meet, all of them end, since the continuation would be a guess.
+// Segments are joined to chains. Then corners are removed from the chains, and runs of chords become arcs.
 //
 // Corners are removed with a cone from the last corner that stayed. The cone holds the directions that pass every point
-// since then at less than the tolerance.
+// since then at less than the tolerance. An arc runs through its first, its middle and its last corner; the length of a
+// run is doubled while it fits, and then halved.
 //
 //            . - '       p4 lies outside of the cone: p3 becomes
 //    p0 <====.  p2  p3   a corner, and a new cone begins there
 //            ' - .    p4
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
+#include <tuple>
 
 #include "lines/strokes/parts.h"
 
@@ -27,10 +28,7 @@ struct SegmentEnd {
 
   [[nodiscard]] bool meets(const SegmentEnd& o) const { return rank == o.rank && x == o.x && y == o.y; }
   friend bool operator<(const SegmentEnd& a, const SegmentEnd& b) {
-    if (a.rank != b.rank) return a.rank < b.rank;
-    if (a.x != b.x) return a.x < b.x;
-    if (a.y != b.y) return a.y < b.y;
-    return a.number < b.number;
+    return std::tie(a.rank, a.x, a.y, a.number) < std::tie(b.rank, b.x, b.y, b.number);
   }
 };
 
@@ -57,47 +55,6 @@ std::vector<std::uint32_t> partners(const std::vector<LineSegment>& segments) {
   }
   return partner;
 }
-
-class Chaining {
- public:
-  explicit Chaining(const std::vector<LineSegment>& segments)
-      : segments_(segments), partner_(partners(segments)), is_used_(segments.size()) {}
-
-  std::vector<Chain> run() {
-    for (std::uint32_t end = 0; end < partner_.size(); ++end)
-      if (partner_[end] == none && !is_used_[end / 2]) follow(end);
-    for (std::uint32_t end = 0; end < partner_.size(); end += 2)
-      if (!is_used_[end / 2]) follow(end);
-    std::stable_sort(chains_.begin(), chains_.end(), [](const Chain& a, const Chain& b) { return a.rank < b.rank; });
-    return std::move(chains_);
-  }
-
- private:
-  [[nodiscard]] const glm::dvec2& place(std::uint32_t end) const {
-    return end % 2 == 0 ? segments_[end / 2].from : segments_[end / 2].to;
-  }
-
-  /// Appends the chain from this end to the next end without a partner, or once around.
-  void follow(std::uint32_t end) {
-    Chain chain;
-    chain.rank = segments_[end / 2].rank;
-    chain.points.push_back(place(end));
-    while (end != none && !is_used_[end / 2]) {
-      is_used_[end / 2] = true;
-      chain.is_contour |= segments_[end / 2].is_contour;
-      chain.points.push_back(place(end ^ 1));
-      end = partner_[end ^ 1];
-    }
-    chain.is_closed = end != none;
-    if (chain.is_closed) chain.points.pop_back();
-    chains_.push_back(std::move(chain));
-  }
-
-  const std::vector<LineSegment>& segments_;
-  std::vector<std::uint32_t> partner_;
-  std::vector<bool> is_used_;
-  std::vector<Chain> chains_;
-};
 
 /// Rotates a closed chain so that no arc and no straight line runs across its beginning. It then begins at its sharpest
 /// corner or, where all are blunt, at the end of its longest line.
@@ -148,9 +105,203 @@ class Cone {
   bool is_open_ = true;
 };
 
+constexpr std::size_t fewest_joins = 4;
+constexpr double widest_join = 20.01 * std::numbers::pi / 180;  // of the circle; 18 to the whole
+constexpr double least_turn = 10 * std::numbers::pi / 180;      // a smaller arc is drawn as a line
+/// A chord that deviates by more than the tolerance needs two chords at least half as long, among the three before it
+/// and the three after it. Looking at the next ones alone fails where corners of other things stand on the circle.
+constexpr std::size_t reach = 3;
+constexpr int fewest_alike = 2;
+constexpr double alike = 0.5;
+
+struct Circle {
+  glm::dvec2 centre;
+  double radius;
+};
+
+std::optional<Circle> circle_through(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+  const glm::dvec2 u = b - a, v = c - a;
+  const double area = 2 * cross(u, v);
+  if (area == 0) return std::nullopt;
+  const double uu = glm::dot(u, u), vv = glm::dot(v, v);
+  const glm::dvec2 to_centre = glm::dvec2(v.y * uu - u.y * vv, u.x * vv - v.x * uu) / area;
+  return Circle{a + to_centre, glm::length(to_centre)};
+}
+
+/// The angle from one point of the circle to another, in (-pi, pi].
+double turn_between(const Circle& circle, const glm::dvec2& a, const glm::dvec2& b) {
+  const glm::dvec2 u = a - circle.centre, v = b - circle.centre;
+  return std::atan2(cross(u, v), glm::dot(u, v));
+}
+
+/// A run of corners, open or closed to a ring.
+class ChordRun {
+ public:
+  ChordRun(const std::vector<glm::dvec2>& points, std::size_t first, std::size_t chords)
+      : points_(points), first_(first), chords_(chords) {}
+
+  /// Whether every chord lies within `tolerance` of the arc or is evenly stepped. The circle runs through all corners
+  /// within the tolerance.
+  [[nodiscard]] bool is_like(const Circle& circle, double tolerance) const {
+    for (std::size_t i = 0; i < chords_; ++i) {
+      const double to_middle = glm::distance((corner(i) + corner(i + 1)) / 2.0, circle.centre);
+      if (circle.radius - to_middle > tolerance && !is_evenly_stepped(i)) return false;
+    }
+    return true;
+  }
+
+ private:
+  [[nodiscard]] const glm::dvec2& corner(std::size_t i) const { return points_[(first_ + i) % points_.size()]; }
+  [[nodiscard]] double length(std::size_t chord) const { return glm::distance(corner(chord), corner(chord + 1)); }
+  [[nodiscard]] bool is_ring() const { return chords_ == points_.size(); }
+
+  [[nodiscard]] bool is_evenly_stepped(std::size_t chord) const {
+    const double least = alike * length(chord);
+    int found = 0;
+    for (std::size_t k = 1; k <= reach; ++k) {
+      if (is_ring() || chord >= k) found += length((chord + chords_ - k) % chords_) >= least;
+      if (is_ring() || chord + k < chords_) found += length((chord + k) % chords_) >= least;
+    }
+    return found >= fewest_alike;
+  }
+
+  const std::vector<glm::dvec2>& points_;
+  const std::size_t first_, chords_;
+};
+
+class ArcFinder {
+ public:
+  ArcFinder(Chain& chain, double tolerance) : chain_(chain), points_(chain.points), tolerance_(tolerance) {}
+
+  void run() {
+    if (chain_.is_closed && make_circle()) return;
+    if (chain_.is_closed) points_.push_back(points_.front());
+    std::vector<glm::dvec2> kept;
+    std::size_t at = 0;
+    while (at + 1 < points_.size()) {
+      const std::size_t end = longest_run(at);
+      kept.push_back(points_[at]);
+      bulges_.push_back(0);
+      if (end > at) {
+        add_arc(at, end, kept);
+        at = end;
+      } else {
+        ++at;
+      }
+    }
+    if (!chain_.is_closed) {
+      kept.push_back(points_.back());
+      bulges_.push_back(0);
+    }
+    points_ = std::move(kept);
+    chain_.bulges = std::move(bulges_);
+  }
+
+ private:
+  struct Fit {
+    Circle circle;
+    double turn;
+  };
+
+  /// The arc through the corners from `first` to `last`, if they fit.
+  [[nodiscard]] std::optional<Fit> fit(std::size_t first, std::size_t last) const {
+    const std::optional<Circle> circle = circle_through(points_[first], points_[(first + last) / 2], points_[last]);
+    if (!circle) return std::nullopt;
+    const std::optional<double> turn = turn_along(*circle, first, last);
+    if (!turn || std::abs(*turn) < least_turn || std::abs(*turn) > 6.2) return std::nullopt;
+    if (!ChordRun(points_, first, last - first).is_like(*circle, tolerance_)) return std::nullopt;
+    return Fit{*circle, *turn};
+  }
+
+  /// The angle around the circle from corner to corner. None if a corner is off the circle or far from the next.
+  [[nodiscard]] std::optional<double> turn_along(const Circle& circle, std::size_t first, std::size_t last) const {
+    double turn = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      if (std::abs(glm::distance(points_[i], circle.centre) - circle.radius) > tolerance_) return std::nullopt;
+      const double by = turn_between(circle, points_[i], points_[i + 1 == points_.size() ? 0 : i + 1]);
+      if (std::abs(by) > widest_join || by * turn < 0) return std::nullopt;
+      turn += by;
+    }
+    return turn;
+  }
+
+  [[nodiscard]] std::size_t longest_run(std::size_t first) const {
+    const std::size_t most = points_.size() - 1;
+    std::size_t fits = first + fewest_joins;
+    if (fits > most || !fit(first, fits)) return first;
+    std::size_t step = fewest_joins;
+    while (fits < most && fit(first, std::min(most, fits + step))) {
+      fits = std::min(most, fits + step);
+      step *= 2;
+    }
+    for (; step > 0; step /= 2)
+      if (fits + step <= most && fit(first, fits + step)) fits += step;
+    return fits;
+  }
+
+  /// An arc beyond a half circle is split in two: formats differ in how they take longer ones.
+  void add_arc(std::size_t first, std::size_t last, std::vector<glm::dvec2>& kept) {
+    const Fit arc = *fit(first, last);
+    if (std::abs(arc.turn) <= std::numbers::pi) {
+      bulges_.back() = std::tan(arc.turn / 4);
+      return;
+    }
+    const glm::dvec2 begin = points_[first] - arc.circle.centre;
+    const double c = std::cos(arc.turn / 2), s = std::sin(arc.turn / 2);
+    bulges_.back() = std::tan(arc.turn / 8);
+    kept.push_back(arc.circle.centre + glm::dvec2(begin.x * c - begin.y * s, begin.x * s + begin.y * c));
+    bulges_.push_back(std::tan(arc.turn / 8));
+  }
+
+  bool make_circle() {
+    const std::size_t n = points_.size();
+    if (n < 18) return false;
+    const std::optional<Circle> circle = circle_through(points_[0], points_[n / 3], points_[2 * n / 3]);
+    if (!circle) return false;
+    const std::optional<double> turn = turn_along(*circle, 0, n);
+    if (!turn || std::abs(std::abs(*turn) - 2 * std::numbers::pi) > 1e-6) return false;
+    if (!ChordRun(points_, 0, n).is_like(*circle, tolerance_)) return false;
+    const double bulge = *turn > 0 ? 1 : -1;
+    points_ = {points_[0], 2.0 * circle->centre - points_[0]};
+    chain_.bulges = {bulge, bulge};
+    return true;
+  }
+
+  Chain& chain_;
+  std::vector<glm::dvec2>& points_;
+  const double tolerance_;
+  std::vector<double> bulges_;
+};
+
 }  // namespace
 
-std::vector<Chain> chained(const std::vector<LineSegment>& segments) { return Chaining(segments).run(); }
+std::vector<Chain> chained(const std::vector<LineSegment>& segments) {
+  const std::vector<std::uint32_t> partner = partners(segments);
+  std::vector<bool> is_used(segments.size());
+  std::vector<Chain> chains;
+  const auto place = [&](std::uint32_t end) { return end % 2 == 0 ? segments[end / 2].from : segments[end / 2].to; };
+  // Appends the chain from this end to the next end without a partner, or once around.
+  const auto follow = [&](std::uint32_t end) {
+    Chain chain;
+    chain.rank = segments[end / 2].rank;
+    chain.points.push_back(place(end));
+    while (end != none && !is_used[end / 2]) {
+      is_used[end / 2] = true;
+      chain.is_contour |= segments[end / 2].is_contour;
+      chain.points.push_back(place(end ^ 1));
+      end = partner[end ^ 1];
+    }
+    chain.is_closed = end != none;
+    if (chain.is_closed) chain.points.pop_back();
+    chains.push_back(std::move(chain));
+  };
+  for (std::uint32_t end = 0; end < partner.size(); ++end)
+    if (partner[end] == none && !is_used[end / 2]) follow(end);
+  for (std::uint32_t end = 0; end < partner.size(); end += 2)
+    if (!is_used[end / 2]) follow(end);
+  std::stable_sort(chains.begin(), chains.end(), [](const Chain& a, const Chain& b) { return a.rank < b.rank; });
+  return chains;
+}
 
 void straighten(Chain& chain, double tolerance) {
   std::vector<glm::dvec2>& points = chain.points;
@@ -172,6 +323,10 @@ void straighten(Chain& chain, double tolerance) {
   points = std::move(kept);
   // The chain runs along a line and back again.
   if (chain.is_closed && points.size() == 2) chain.is_closed = false;
+}
+
+void find_arcs(Chain& chain, double tolerance) {
+  if (chain.points.size() > fewest_joins) ArcFinder(chain, tolerance).run();
 }
 
 }  // namespace frontmost::lines_detail

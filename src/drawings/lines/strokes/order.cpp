@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // An order of chains with little pen travel: the next chain begins at the nearest end.
 //
-// Ends lie in a tree of boxes whose nodes know their lowest remaining end. Empty nodes are not entered, nor are nodes
-// where only higher numbers are as near. So crowds of ends, even at one place, cost no more than others.
-//
 //    ends left in a box    lowest     The search finds the end nearest to the pen; of equals, the one with the lowest
 //    [ 3 7 9 | 4 5 ]         3        number. A box is entered only if it may hold a nearer end, or one as near with a
 //      /         .                    lower number. Both ends of a chain leave the tree when it is drawn, and the
-//    [3 7 9]   [4 5]                  lowest numbers are updated on the way up.
+//    [3 7 9]   [4 5]                  lowest numbers are updated on the way up. So crowds of ends cost no more than
+//    others.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -157,23 +155,6 @@ void draw(Chain&& chain, double touching, std::size_t first, std::vector<Chain>&
   drawn.push_back(std::move(chain));
 }
 
-void order_rank(std::vector<Chain>& chains, std::size_t first, std::size_t last, double touching,
-                std::vector<Chain>& drawn, const Execution& execution) {
-  EndTree left(chains, first, last);
-  const std::size_t begin = drawn.size();
-  glm::dvec2 pen(0);
-  for (std::size_t i = first; i < last; ++i) {
-    if (i % 1024 == 0) check_cancelled(execution);
-    const std::uint32_t number = left.nearest(pen);
-    left.remove(number);
-    left.remove(number ^ 1);
-    Chain& chain = chains[number / 2];
-    if (number % 2 == 1 && !chain.is_closed) reverse(chain);
-    pen = chain.is_closed ? chain.points.front() : chain.points.back();
-    draw(std::move(chain), touching, begin, drawn);
-  }
-}
-
 }  // namespace
 
 std::vector<Chain> nearest_first(std::vector<Chain> chains, double touching, const Execution& execution) {
@@ -181,7 +162,19 @@ std::vector<Chain> nearest_first(std::vector<Chain> chains, double touching, con
   for (std::size_t first = 0; first < chains.size();) {
     std::size_t last = first + 1;
     while (last < chains.size() && chains[last].rank == chains[first].rank) ++last;
-    order_rank(chains, first, last, touching, drawn, execution);
+    EndTree left(chains, first, last);
+    const std::size_t begin = drawn.size();
+    glm::dvec2 pen(0);
+    for (std::size_t i = first; i < last; ++i) {
+      if (i % 1024 == 0) check_cancelled(execution);
+      const std::uint32_t number = left.nearest(pen);
+      left.remove(number);
+      left.remove(number ^ 1);
+      Chain& chain = chains[number / 2];
+      if (number % 2 == 1 && !chain.is_closed) reverse(chain);
+      pen = chain.is_closed ? chain.points.front() : chain.points.back();
+      draw(std::move(chain), touching, begin, drawn);
+    }
     first = last;
   }
   return drawn;

@@ -8,7 +8,6 @@
 // edges that it came from.
 #pragma once
 
-#include <functional>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -45,18 +44,6 @@ inline constexpr double places_per_pixel = 1000;
 
 /// Joins segments of one rank wherever exactly two ends meet. Chains are sorted by rank, then by their first segment.
 [[nodiscard]] std::vector<Chain> chained(const std::vector<LineSegment>& segments);
-
-struct ShortChainRule {
-  double shortest;  ///< pixels: chains below this length are short
-  double touching;  ///< pixels: nearer ends and lines touch
-  std::function<bool(std::uint32_t rank)> is_hidden;
-};
-
-/// Leaves out short chains with an end that touches nothing, and short chains between lines that continue without them,
-/// unless they are contours. Short chains that hold others together stay. Hidden chains hold no visible ones.
-/// Near-linear, unless most short chains lie within a thousandth of the drawing. Precondition: no arcs.
-[[nodiscard]] std::vector<Chain> without_short_ones(std::vector<Chain> chains, const ShortChainRule& rule,
-                                                    const Execution& execution);
 
 /// Removes corners that lie within `tolerance` of the line between the remaining ones.
 void straighten(Chain& chain, double tolerance);

@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // A rank is a number for everything that the parts of a stroke have in common: whether they are hidden, whether they
-// are an outline, their kind and their instance, as far as the options ask for it. Ranks are numbered in that order, so
-// sorting by rank sorts by drawing order.
+// are an outline, their kind and their instance, as far as the options ask for it. Sorting by rank sorts by drawing
+// order.
+//
+//        a ________________ b          Short chain c ends in the air and is left out. Short chain d holds a line that
+//              |    d/                 would end in the air otherwise, so d stays. The lines that pass near the ends of
+//             c     /________ e        short chains show, once for all, which ends touch something.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
+#include <tuple>
 
 #include "base/parallel.h"
 #include "frontmost/lines.h"
+#include "geometry/buckets.h"
+#include "lines/square_grid.h"
 #include "lines/strokes/parts.h"
 
 namespace frontmost {
@@ -16,13 +24,175 @@ namespace {
 
 using namespace lines_detail;
 
-/// Maps the common properties of a stroke's parts to one number, which gives the order of strokes.
-class Classes {
- public:
-  Classes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options)
-      : surfaces_(surfaces), drawing_(drawing), options_(options) {}
+struct ShortChainRule {
+  double shortest;  ///< pixels: chains below this length are short
+  double touching;  ///< pixels: nearer ends and lines touch
+  std::function<bool(std::uint32_t rank)> is_hidden;
+};
 
-  /// Lower keys are drawn above higher ones: outlines come first, hidden lines last.
+double length_of(const Chain& chain) {
+  double length = 0;
+  for (std::size_t i = 1; i < chain.points.size(); ++i) length += glm::distance(chain.points[i - 1], chain.points[i]);
+  if (chain.is_closed) length += glm::distance(chain.points.back(), chain.points.front());
+  return length;
+}
+
+double distance_to(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
+  const glm::dvec2 along = b - a;
+  const double square = glm::dot(along, along);
+  const double t = square > 0 ? std::clamp(glm::dot(p - a, along) / square, 0.0, 1.0) : 0;
+  return glm::distance(p, a + t * along);
+}
+
+/// A grid of at most 2^20 cells over these places; cells are no smaller than `least`.
+SquareGrid grid_over(const std::vector<glm::dvec2>& places, double least) {
+  glm::dvec2 low(1e300), high(-1e300);
+  for (const glm::dvec2& place : places) {
+    low = glm::min(low, place);
+    high = glm::max(high, place);
+  }
+  const double cell = std::max({(high.x - low.x) / 1023, (high.y - low.y) / 1023, least, 1e-6});
+  return {low, cell, int((high.x - low.x) / cell) + 1, int((high.y - low.y) / cell) + 1};
+}
+
+/// A chain on which an end of a short chain lies. The first end of chain i is number 2 i, its last 2 i + 1.
+struct Touch {
+  std::size_t end, chain;
+  bool is_at_end;  ///< it also is an end of that chain
+
+  friend bool operator<(const Touch& a, const Touch& b) {
+    return std::tie(a.end, a.chain, b.is_at_end) < std::tie(b.end, b.chain, a.is_at_end);
+  }
+};
+
+class ShortChains {
+ public:
+  ShortChains(std::vector<Chain>& chains, const ShortChainRule& rule, const Execution& execution)
+      : chains_(chains), rule_(rule), execution_(execution), is_short_(chains.size()), is_left_out_(chains.size()) {
+    for (std::size_t i = 0; i < chains.size(); ++i) is_short_[i] = length_of(chains[i]) < rule.shortest;
+  }
+
+  /// Leaves out short chains. \returns the others.
+  std::vector<Chain> kept() {
+    find_touches();
+    std::vector<std::size_t> asked;
+    for (std::size_t i = 0; i < chains_.size(); ++i)
+      if (is_short_[i]) asked.push_back(i);
+    while (!asked.empty()) {
+      const std::size_t i = asked.back();
+      asked.pop_back();
+      if (is_left_out_[i] || !is_loose(i)) continue;
+      is_left_out_[i] = true;
+      // Short chains that ended on this one may be loose now.
+      for (const std::size_t other : touched_by_[i]) asked.push_back(other);
+    }
+    std::vector<Chain> kept;
+    for (std::size_t i = 0; i < chains_.size(); ++i)
+      if (!is_left_out_[i]) kept.push_back(std::move(chains_[i]));
+    return kept;
+  }
+
+ private:
+  [[nodiscard]] const glm::dvec2& place(std::size_t end) const {
+    const Chain& chain = chains_[end / 2];
+    return end % 2 == 0 ? chain.points.front() : chain.points.back();
+  }
+
+  void find_touches() {
+    std::vector<std::uint32_t> ends;
+    std::vector<glm::dvec2> places;
+    for (std::uint32_t i = 0; i < chains_.size(); ++i)
+      if (is_short_[i] && !chains_[i].is_closed)
+        for (const std::uint32_t end : {2 * i, 2 * i + 1}) {
+          ends.push_back(end);
+          places.push_back(place(end));
+        }
+    touched_by_.resize(chains_.size());
+    if (ends.empty()) return;
+    const SquareGrid grid = grid_over(places, rule_.shortest);
+    const auto list = [&](std::size_t i, const auto& add) {
+      grid.visit_along(places[i], places[i], 0, [&](const PassedCell& passed) {
+        add(passed.cell, ends[i]);
+        return true;
+      });
+    };
+    const Buckets<std::uint32_t> by_cell(grid.count(), ends.size(), list, execution_);
+    for (std::size_t i = 0; i < chains_.size(); ++i) {
+      if (i % 1024 == 0) check_cancelled(execution_);
+      const Chain& chain = chains_[i];
+      const std::size_t joins = chain.points.size() - (chain.is_closed ? 0 : 1);
+      for (std::size_t k = 0; k < joins; ++k) {
+        const glm::dvec2 &a = chain.points[k], &b = chain.points[k + 1 == chain.points.size() ? 0 : k + 1];
+        grid.visit_along(a, b, rule_.touching, [&](const PassedCell& passed) {
+          for (const std::uint32_t end : by_cell[passed.cell])
+            if (distance_to(place(end), a, b) <= rule_.touching) add_touch(end, i);
+          return true;
+        });
+      }
+    }
+    std::sort(touches_.begin(), touches_.end());
+    touches_.erase(std::unique(touches_.begin(), touches_.end(),
+                               [](const Touch& a, const Touch& b) { return a.end == b.end && a.chain == b.chain; }),
+                   touches_.end());
+    for (const Touch& touch : touches_) touched_by_[touch.chain].push_back(touch.end / 2);
+  }
+
+  void add_touch(std::size_t end, std::size_t chain) {
+    // Hidden chains hold no visible ones.
+    if (end / 2 == chain || (rule_.is_hidden(chains_[chain].rank) && !rule_.is_hidden(chains_[end / 2].rank))) return;
+    const auto is_near = [&](std::size_t other) { return glm::distance(place(end), place(other)) <= rule_.touching; };
+    touches_.push_back({end, chain, !chains_[chain].is_closed && (is_near(2 * chain) || is_near(2 * chain + 1))});
+  }
+
+  /// Whether the short chain may be left out: one of its ends is in the air, or it is not of a contour and only
+  /// connects lines that continue without it.
+  [[nodiscard]] bool is_loose(std::size_t number) const {
+    if (chains_[number].is_closed) return !chains_[number].is_contour;
+    bool is_link = true;
+    for (std::size_t end = 2 * number; end < 2 * number + 2; ++end) {
+      bool is_held = false, meets_end = false;
+      for (auto touch = std::lower_bound(touches_.begin(), touches_.end(), Touch{end, 0, true});
+           touch != touches_.end() && touch->end == end; ++touch) {
+        if (is_left_out_[touch->chain]) continue;
+        is_held = true;
+        meets_end |= touch->is_at_end;
+      }
+      if (!is_held) return true;
+      is_link &= meets_end;
+    }
+    return !is_link && !chains_[number].is_contour;
+  }
+
+  std::vector<Chain>& chains_;
+  const ShortChainRule& rule_;
+  const Execution& execution_;
+  std::vector<bool> is_short_, is_left_out_;
+  std::vector<Touch> touches_;                        ///< ascending
+  std::vector<std::vector<std::size_t>> touched_by_;  ///< by chain: the short chains that end on it
+};
+
+/// Leaves out short chains with an end that touches nothing, and short chains between lines that continue without them,
+/// unless they are contours. Short chains that hold others together stay. Hidden chains hold no visible ones.
+/// Near-linear, unless most short chains lie within a thousandth of the drawing. Precondition: no arcs.
+std::vector<Chain> without_short_ones(std::vector<Chain> chains, const ShortChainRule& rule,
+                                      const Execution& execution) {
+  return ShortChains(chains, rule, execution).kept();
+}
+
+/// The parts of a drawing, as the options of strokes see them.
+class PartReader {
+ public:
+  PartReader(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options)
+      : surfaces_(surfaces), drawing_(drawing), options_(options), cosine_(std::cos(options.grazing_angle)) {}
+
+  /// Whether the part gets a stroke.
+  [[nodiscard]] bool is_drawn(const DrawnPart& part) const {
+    if (part.hidden_by == 0) return true;
+    return options_.with_hidden && (options_.grazing_angle == 0 || !is_grazing(drawing_.edges[part.edge]));
+  }
+
+  /// The common properties of a stroke's parts. Lower keys are drawn above higher ones: outlines come first, hidden
+  /// lines last.
   [[nodiscard]] std::uint64_t key(const DrawnPart& part) const {
     const DrawnEdge& edge = drawing_.edges[part.edge];
     std::uint64_t key = part.hidden_by != 0;
@@ -42,36 +212,6 @@ class Classes {
     return id == no_primitive ? no_index : surfaces_.source(id).instance;
   }
 
-  const Surfaces& surfaces_;
-  const Drawing& drawing_;
-  const StrokeOptions& options_;
-};
-
-void check(const StrokeOptions& options) {
-  if (!(options.apart >= 0.002 && options.apart <= 1))
-    throw Error(ErrorCode::bad_argument, "strokes", "lines that count as one must be apart by from 0.002 to 1 pixel");
-  if (!(options.tolerance >= 1e-4 && options.tolerance <= 1))
-    throw Error(ErrorCode::bad_argument, "strokes", "the tolerance must be from 0.0001 to 1 pixel");
-  if (!(options.arc_tolerance >= 0 && options.arc_tolerance <= 100))
-    throw Error(ErrorCode::bad_argument, "strokes", "the tolerance of arcs must be from 0 to 100 pixels");
-  if (!(options.shortest >= 0 && options.shortest <= 1e4))
-    throw Error(ErrorCode::bad_argument, "strokes", "the shortest stroke must be from 0 to 10000 pixels");
-  if (!(options.grazing_angle >= 0 && options.grazing_angle <= std::numbers::pi / 2))
-    throw Error(ErrorCode::bad_argument, "strokes", "the grazing angle must be from 0 to pi/2");
-}
-
-/// Selects the parts of a drawing that get strokes.
-class Choice {
- public:
-  Choice(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options)
-      : surfaces_(surfaces), drawing_(drawing), options_(options), cosine_(std::cos(options.grazing_angle)) {}
-
-  [[nodiscard]] bool has(const DrawnPart& part) const {
-    if (part.hidden_by == 0) return true;
-    return options_.with_hidden && (options_.grazing_angle == 0 || !is_grazing(drawing_.edges[part.edge]));
-  }
-
- private:
   /// True regardless of the triangles' winding.
   [[nodiscard]] bool is_grazing(const DrawnEdge& edge) const {
     if (edge.kind != EdgeKind::intersection) return false;
@@ -90,6 +230,19 @@ class Choice {
   const double cosine_;
 };
 
+void check(const StrokeOptions& options) {
+  if (!(options.apart >= 0.002 && options.apart <= 1))
+    throw Error(ErrorCode::bad_argument, "strokes", "lines that count as one must be apart by from 0.002 to 1 pixel");
+  if (!(options.tolerance >= 1e-4 && options.tolerance <= 1))
+    throw Error(ErrorCode::bad_argument, "strokes", "the tolerance must be from 0.0001 to 1 pixel");
+  if (!(options.arc_tolerance >= 0 && options.arc_tolerance <= 100))
+    throw Error(ErrorCode::bad_argument, "strokes", "the tolerance of arcs must be from 0 to 100 pixels");
+  if (!(options.shortest >= 0 && options.shortest <= 1e4))
+    throw Error(ErrorCode::bad_argument, "strokes", "the shortest stroke must be from 0 to 10000 pixels");
+  if (!(options.grazing_angle >= 0 && options.grazing_angle <= std::numbers::pi / 2))
+    throw Error(ErrorCode::bad_argument, "strokes", "the grazing angle must be from 0 to pi/2");
+}
+
 /// The segments of all parts with their ranks, and for each rank a stroke without points.
 struct Ranked {
   std::vector<LineSegment> segments;
@@ -97,35 +250,26 @@ struct Ranked {
 };
 
 Ranked ranked(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options) {
-  const Classes classes(surfaces, drawing, options);
+  const PartReader reader(surfaces, drawing, options);
   std::map<std::uint64_t, std::pair<std::uint32_t, Stroke>> known;
   std::vector<std::uint64_t> keys(drawing.parts.size());
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    keys[i] = classes.key(drawing.parts[i]);
-    known.try_emplace(keys[i], 0, classes.stroke(drawing.parts[i]));
+    keys[i] = reader.key(drawing.parts[i]);
+    known.try_emplace(keys[i], 0, reader.stroke(drawing.parts[i]));
   }
   Ranked result;
   for (auto& [key, entry] : known) {
     entry.first = std::uint32_t(result.strokes.size());
     result.strokes.push_back(entry.second);
   }
-  const Choice choice(surfaces, drawing, options);
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const DrawnPart& part = drawing.parts[i];
-    if (!choice.has(part)) continue;
+    if (!reader.is_drawn(part)) continue;
     const EdgeKind kind = drawing.edges[part.edge].kind;
     result.segments.push_back({part.from, part.to, known.find(keys[i])->second.first,
                                kind == EdgeKind::silhouette || kind == EdgeKind::boundary});
   }
   return result;
-}
-
-/// Whether all points are less than `apart` from the first: such a chain is seen as a point. It is left over where two
-/// tessellations of one circle pass through each other.
-bool is_point(const Chain& chain, double apart) {
-  const glm::dvec2& begin = chain.points.front();
-  return std::all_of(chain.points.begin(), chain.points.end(),
-                     [&](const glm::dvec2& p) { return glm::distance(begin, p) < apart; });
 }
 
 void append(const Chain& chain, const Stroke& like, bool with_arcs, Strokes& all) {
@@ -149,7 +293,12 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
   report_progress(execution, "strokes", 0);
   const Ranked parts = ranked(surfaces, drawing, options);
   std::vector<Chain> chains = chained(draw_once(parts.segments, options.apart, execution));
-  std::erase_if(chains, [&](const Chain& chain) { return is_point(chain, options.apart); });
+  // A chain that stays close to its beginning is seen as a point. It is left over where two tessellations of one circle
+  // pass through each other.
+  std::erase_if(chains, [&](const Chain& chain) {
+    return std::all_of(chain.points.begin(), chain.points.end(),
+                       [&](const glm::dvec2& p) { return glm::distance(chain.points.front(), p) < options.apart; });
+  });
   report_progress(execution, "strokes", 0.6);
   if (options.shortest > 0) {
     const auto is_hidden = [&](std::uint32_t rank) { return parts.strokes[rank].is_hidden; };

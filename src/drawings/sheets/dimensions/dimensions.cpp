@@ -1,71 +1,388 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dimensions: overall sizes first, then diameters where there is room.
+// Overall sizes come first: width below a view, height on its left, each direction of space once. Then circles get
+// diameters. Circles of one size in a view share one number ("6x"), which is placed so:
 //
-//    views --> overall sizes: width below, height on the left, each direction of space once
-//          --> diameters, view by view, where there is room
+//             __6x...__            knee and shelf with the number
+//           /                      leader, in one of twelve directions, from near to far
+//      .--<'                       tip on the circle
+//     (  o  )
 //
-// Upright sizes use the same code as level ones: x and y are swapped, and "below" becomes "left". Numbers are rounded
-// to the digits of a drawing, except where noise would decide how a half is rounded.
+// A leader costs its length, and more for every line that it crosses. The cheapest free place is taken. The largest
+// sizes go first, because their leaders have the longest ways around inner circles.
 #include "sheets/dimensions/dimensions.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numbers>
 
-#include "sheets/dimensions/diameters.h"
-#include "sheets/dimensions/measured_view.h"
+#include "rounds/found_rounds.h"
+#include "sheets/dimensions/obstacles.h"
 
 namespace frontmost::detail {
 namespace {
 
-constexpr double same_direction = 0.9999;  // cosine
+constexpr double square = 2e-3;               // sine, as for centre lines
+constexpr double least_drawn = 0.2;           // likewise
+constexpr double nearly_whole = 6.2;          // radians
+constexpr double widest_sagitta = 0.016;      // as a share of the radius, for sides of 20 degrees
+constexpr double same_place_on_paper = 0.02;  // millimetres of paper
 
-/// An overall size along `axis` of its view.
-struct OverallSize {
-  int axis;
-  Extent extent;
-  std::string text;
+/// A circle of the scene as it appears in a view.
+struct SeenCircle {
+  const Round* round;
+  glm::dvec2 centre;  ///< on the page
+  double radius;      ///< millimetres on the page
 };
 
-/// Draws a size: a level one as it is; for an upright one, x and y are swapped, seen from the right.
-class OverallPen {
- public:
-  OverallPen(DimensionPen& pen, const MeasuredView& view, const glm::dvec2& taken)
-      : pen_(pen), view_(view), distance_(first_distance + taken) {}
+/// The extent of a view along one of its axes.
+struct Extent {
+  double low, high;                 ///< on the page
+  double size;                      ///< in units of the scene
+  const Round* diameter = nullptr;  ///< set if both ends belong to one cylinder
+};
 
-  void draw(const OverallSize& size) {
-    const bool is_level = size.axis == 0;
-    const Extent& e = size.extent;
-    const double line = is_level ? view_.box().high.y + distance_.y : view_.box().low.x - distance_.x;
-    const double away = is_level ? 1 : -1;
-    const auto at = [&](double along, double across) {
-      return is_level ? glm::dvec2(along, across) : glm::dvec2(across, along);
+struct MeasuredView {
+  bool is_empty = true;
+  PageBox box;                        ///< of all drawn lines
+  std::vector<SeenCircle> circles;    ///< seen along their axes, and drawn to at least a fifth
+  std::vector<const Round*> undrawn;  ///< cylinders that are seen along their axes, but drawn less
+  std::vector<const Round*> prisms;   ///< of Rounds::prisms, seen along their axes
+
+  explicit MeasuredView(const DimensionedView& view) : view_(view) {
+    const View& camera = view.drawing->view;
+    const Projection& p = camera.projection;
+    millimetres_ = camera.width / (p.right - p.left) * view.sheet->millimetres_per_pixel;
+    const DrawingBounds drawn = bounds_of(*view.drawing, true);
+    is_empty = drawn.is_empty();
+    if (is_empty) return;
+    box = {view.sheet->on_page(drawn.low), view.sheet->on_page(drawn.high)};
+    if (view.rounds != nullptr) find_circles();
+  }
+
+  /// The extent along axis 0 (to the right) or 1 (upwards). Rounds reach farther than the corners of their polygons.
+  [[nodiscard]] Extent extent(int axis) const {
+    Extent all{box.low[axis], box.high[axis], 0};
+    const View& camera = view_.drawing->view;
+    const glm::dvec3 direction = axis == 0 ? camera.right() : camera.up();
+    double low = all.low, high = all.high;
+    for (const Round& round :
+         view_.rounds != nullptr ? std::span<const Round>(view_.rounds->rounds) : std::span<const Round>()) {
+      const double along = glm::dot(round.axis, direction), slack = widest_sagitta * round.radius * millimetres_;
+      if (round.turn < nearly_whole) continue;
+      const double reach = round.radius * millimetres_ * std::sqrt(std::max(0.0, 1 - along * along));
+      const double from = on_page(round.from)[axis], to = on_page(round.to)[axis];
+      const double begin = std::min(from, to) - reach, end = std::max(from, to) + reach;
+      const bool is_low =
+          begin <= box.low[axis] + same_place_on_paper && begin >= box.low[axis] - slack - same_place_on_paper;
+      const bool is_high =
+          end >= box.high[axis] - same_place_on_paper && end <= box.high[axis] + slack + same_place_on_paper;
+      if (is_low) low = std::min(low, begin);
+      if (is_high) high = std::max(high, end);
+      const bool is_larger = all.diameter == nullptr || round.radius > all.diameter->radius;
+      if (is_low && is_high && std::abs(along) <= square && is_larger) all.diameter = &round;
+    }
+    all.low = low;
+    all.high = high;
+    all.size = all.diameter != nullptr ? 2 * all.diameter->radius : (high - low) / millimetres_;
+    return all;
+  }
+
+  /// The position, along the other axis, of the outermost point at one end of an axis: the lowest such point (y is
+  /// down) for axis 0, the leftmost for axis 1.
+  [[nodiscard]] double foot_of_end(int axis, double end) const {
+    const double slack = same_place_on_paper + widest_sagitta * (box.high[axis] - box.low[axis]) / 2;
+    const int other = 1 - axis;
+    double nearest = std::numeric_limits<double>::infinity(), foot = axis == 0 ? box.low.y : box.high.x;
+    const auto look_at = [&](const glm::dvec2& point) {
+      const double off = std::abs(point[axis] - end);
+      if (off > slack || off > nearest + same_place_on_paper) return;
+      // Among points at one distance, the one nearest to the dimension line is taken.
+      const bool is_nearer = off < nearest - same_place_on_paper;
+      const double at = point[other];
+      foot = is_nearer ? at : axis == 0 ? std::max(foot, at) : std::min(foot, at);
+      nearest = std::min(nearest, off);
     };
-    for (const double end : {e.low, e.high})
-      pen_.line(at(end, view_.foot_of_end(size.axis, end) + away * extension_gap),
-                at(end, line + away * extension_overshoot));
-    const double length = e.high - e.low, arrow = pen_.arrow_length(), width = pen_.width_of(size.text);
-    const bool is_inside = length >= 2 * arrow + 1;
-    const bool is_text_inside = width + 2 * text_distance <= length;
-    // Read from the right, the text of an upright number runs upwards, towards lower y.
-    const double first = is_level ? e.high : e.low, forwards = is_level ? 1 : -1;
-    const double tail = is_inside ? 0 : 2 * arrow;
-    const double text_tail = is_text_inside ? tail : std::max(tail, arrow) + width + 2 * text_distance;
-    const double last = is_level ? e.low : e.high;
-    pen_.line(at(last - forwards * tail, line), at(first + forwards * text_tail, line));
-    const double inwards = is_inside ? -1 : 1;
-    pen_.arrow(at(e.low, line), at(inwards, 0));
-    pen_.arrow(at(e.high, line), at(-inwards, 0));
-    const double middle =
-        is_text_inside ? (e.low + e.high) / 2 : first + forwards * (text_tail - text_distance - width / 2);
-    pen_.text(size.text, at(middle, line), TextAlign::centre, !is_level);
+    for (const DrawnPart& part : view_.drawing->parts) {
+      look_at(view_.sheet->on_page(part.from));
+      look_at(view_.sheet->on_page(part.to));
+    }
+    return foot;
+  }
+
+  [[nodiscard]] glm::dvec2 on_page(const glm::dvec3& point) const {
+    return view_.sheet->on_page(on_screen(view_.drawing->view, point));
   }
 
  private:
-  DimensionPen& pen_;
-  const MeasuredView& view_;
-  const glm::dvec2 distance_;  ///< of dimension lines from the view, on its left and below it
+  void find_circles() {
+    for (const Round& prism : view_.rounds->prisms)
+      if (is_seen_along(prism)) prisms.push_back(&prism);
+    const std::vector<double> lengths = drawn_lengths(*view_.rounds, *view_.drawing, view_.with_hidden);
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+      const Round& round = view_.rounds->rounds[i];
+      if (round.kind == RoundKind::revolved) continue;  // its largest circle is no edge
+      if (!is_seen_along(round)) continue;
+      const double radius = round.radius * millimetres_;
+      if (lengths[i] * view_.sheet->millimetres_per_pixel >= least_drawn * round.turn * radius)
+        circles.push_back({&round, on_page(round.from), radius});
+      else if (round.kind == RoundKind::cylinder)
+        undrawn.push_back(&round);
+    }
+  }
+
+  [[nodiscard]] bool is_seen_along(const Round& round) const {
+    return glm::length(glm::cross(round.axis, view_.drawing->view.forward())) <= square;
+  }
+
+  const DimensionedView& view_;
+  double millimetres_;  ///< millimetres of paper per unit of the scene
 };
+
+constexpr double extension_gap = 1;        // millimetres between the measured feature and its extension line
+constexpr double extension_overshoot = 2;  // beyond the dimension line
+constexpr double first_distance = 10;      // of a dimension line from the view
+constexpr double text_distance = 1;        // of a number from its line, and from everything else
+
+/// Draws into the groups of a layer, and registers everything drawn as obstacles.
+class DimensionPen {
+ public:
+  DimensionPen(const DimensionOptions& options, Obstacles& obstacles)
+      : options_(options), obstacles_(obstacles), lines_{"", options.pen}, texts_{"", text_pen(options.text_height)} {
+    texts_.pen.color = options.pen.color;
+  }
+
+  void line(const glm::dvec2& from, const glm::dvec2& to) {
+    const glm::dvec2 ends[] = {from, to};
+    lines_.add(ends, false);
+    obstacles_.add(PageSegment{from, to});
+  }
+
+  void arrow(const glm::dvec2& tip, const glm::dvec2& pointing) {
+    add_arrowhead(lines_, tip, pointing, arrow_length());
+  }
+
+  /// Draws text above `at`, which is the middle or an end of its line; level, or upright to be read from the right.
+  void text(std::string_view text, const glm::dvec2& at, TextAlign align, bool is_upright = false) {
+    const glm::dvec2 above = is_upright ? glm::dvec2(-text_distance, 0) : glm::dvec2(0, -text_distance);
+    add_text(texts_, text, at + above,
+             {options_.text_height, is_upright ? std::numbers::pi / 2 : 0, align, TextLine::bottom});
+    if (!is_upright) return obstacles_.add(box_of(text, at, align));
+    const PageBox level = box_of(text, {0, 0}, align);
+    // A quarter turn maps (x, y) to (y, -x).
+    obstacles_.add(PageBox{at + glm::dvec2(level.low.y, -level.high.x), at + glm::dvec2(level.high.y, -level.low.x)});
+  }
+
+  [[nodiscard]] double width_of(std::string_view text) const { return text_width(text, options_.text_height); }
+  [[nodiscard]] double arrow_length() const { return 12 * options_.pen.width; }
+
+  /// The box of a level text above a place, with some room around it.
+  [[nodiscard]] PageBox box_of(std::string_view text, const glm::dvec2& at, TextAlign align) const {
+    const double width = width_of(text);
+    const double left = align == TextAlign::left ? 0 : align == TextAlign::right ? -width : -width / 2;
+    return {at + glm::dvec2(left - text_distance, -options_.text_height - 2 * text_distance),
+            at + glm::dvec2(left + width + text_distance, -text_distance / 2)};
+  }
+
+  [[nodiscard]] std::vector<PageGroup> take() {
+    std::vector<PageGroup> groups;
+    for (PageGroup* const group : {&lines_, &texts_})
+      if (!group->paths.empty()) groups.push_back(std::move(*group));
+    return groups;
+  }
+
+ private:
+  const DimensionOptions& options_;
+  Obstacles& obstacles_;
+  PageGroup lines_, texts_;
+};
+
+constexpr double least_turn = 190 * std::numbers::pi / 180;  // less is an arc, and has a radius
+constexpr double same_radius = 1e-3;                         // as a share of the radius
+constexpr double same_axis = 5e-3;                           // as a share of the radius
+constexpr double chamfer = 0.25;                             // as a share of the radius: how much wider its rim is
+constexpr double same_place = 0.05;                          // millimetres
+constexpr std::size_t most_circles = 4096;                   // per view
+constexpr std::size_t most_diameters = 64;
+constexpr std::size_t most_tried = 12;  // circles of one size
+constexpr double nearest_knee = 5, farthest_knee = 90, knee_step = 2.5;
+constexpr double cost_of_crossing = 4;  // in millimetres of leader
+constexpr int most_crossed = 16;        // no eye could follow a leader that crosses more
+
+/// Whether two rounds have the same axis.
+bool is_coaxial(const Round& a, const Round& b) {
+  if (glm::length(glm::cross(a.axis, b.axis)) > same_axis) return false;
+  const glm::dvec3 between = b.from - a.from;
+  return glm::length(between - glm::dot(between, a.axis) * a.axis) <= same_axis * std::max(a.radius, b.radius);
+}
+
+bool is_same_radius(const Round& a, const Round& b) {
+  return std::abs(a.radius - b.radius) <= same_radius * std::max(a.radius, b.radius);
+}
+
+/// Whether the circle ends a chamfer at a wall.
+bool is_rim(const SeenCircle& circle, const std::vector<SeenCircle>& all) {
+  if (circle.round->kind == RoundKind::cylinder) return false;
+  return std::any_of(all.begin(), all.end(), [&](const SeenCircle& wall) {
+    return wall.round->kind == RoundKind::cylinder && is_coaxial(*wall.round, *circle.round) &&
+           !is_same_radius(*wall.round, *circle.round) &&
+           std::abs(wall.radius - circle.radius) <= chamfer * circle.radius;
+  });
+}
+
+const std::string diameter_sign = "\u2300";
+
+/// The diameters of a sheet, each once.
+class Diameters {
+ public:
+  Diameters(const DimensionOptions& options, DimensionPen& pen, const Obstacles& obstacles)
+      : options_(options), pen_(pen), obstacles_(obstacles) {}
+
+  /// Marks a cylinder and its continuations as dimensioned. \returns false if it was already.
+  bool take(const Round& round) {
+    const bool is_new = std::none_of(taken_.begin(), taken_.end(), [&](const Round& other) {
+      return is_same_radius(other, round) && is_coaxial(other, round);
+    });
+    if (is_new) taken_.push_back(round);
+    return is_new;
+  }
+
+  /// Adds the diameters that this view shows and no earlier view does.
+  void add(const MeasuredView& view, Dimensions& all) {
+    all.left_out += view.circles.size() - std::min(view.circles.size(), most_circles);
+    for (const Group& group : groups_of(view)) {
+      const std::size_t count = group.circles.size();
+      const std::string text = count > 1 ? std::to_string(count) + "\u00d7" + group.text : group.text;
+      std::optional<Leader> leader;
+      if (placed_ < most_diameters) leader = best_leader(group, text);
+      if (!leader) {
+        ++all.left_out;
+        continue;
+      }
+      ++placed_;
+      ++all.count;
+      pen_.line(leader->tip, leader->knee);
+      pen_.line(leader->knee, leader->end);
+      pen_.arrow(leader->tip, glm::normalize(leader->tip - leader->knee));
+      const double side = leader->align == TextAlign::left ? 1 : -1;
+      pen_.text(text, leader->knee + glm::dvec2(side * text_distance, 0), leader->align);
+    }
+  }
+
+  /// Counts the cylinders of a view without a diameter, because no view draws them or because they are prisms. Call it
+  /// after all views were added.
+  void count_missing(const MeasuredView& view, Dimensions& all) {
+    const auto count = [&](const std::vector<const Round*>& rounds, std::size_t& number) {
+      std::size_t looked_at = 0;
+      for (const Round* const round : rounds)
+        number += round->turn >= least_turn && (++looked_at > most_circles || take(*round));
+    };
+    count(view.undrawn, all.undrawn);
+    count(view.prisms, all.prisms);
+  }
+
+ private:
+  struct Group {
+    std::string text;
+    std::vector<SeenCircle> circles;  ///< at different places
+  };
+  /// A leader from a circle to the shelf under its number.
+  struct Leader {
+    glm::dvec2 tip, knee, end;
+    TextAlign align;
+    double cost;
+  };
+
+  [[nodiscard]] std::vector<Group> groups_of(const MeasuredView& view) {
+    std::vector<SeenCircle> circles = view.circles;
+    circles.resize(std::min(circles.size(), most_circles));
+    std::vector<Group> groups;
+    for (const SeenCircle& circle : circles) {
+      if (circle.round->turn < least_turn || is_rim(circle, circles) || !take(*circle.round)) continue;
+      // Grouped by radius and not by number: rounding may split one size.
+      auto group = std::find_if(groups.begin(), groups.end(),
+                                [&](const Group& g) { return is_same_radius(*g.circles[0].round, *circle.round); });
+      if (group == groups.end()) {
+        const double number = 2 * circle.round->radius * options_.numbers_per_unit;
+        groups.push_back({diameter_sign + dimension_text(number, options_.decimals), {circle}});
+        continue;
+      }
+      const bool is_there = std::any_of(group->circles.begin(), group->circles.end(), [&](const SeenCircle& c) {
+        return glm::distance(c.centre, circle.centre) < same_place;
+      });
+      if (!is_there) group->circles.push_back(circle);
+    }
+    // The largest have the longest leaders around inner circles.
+    std::stable_sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) {
+      return a.circles[0].round->radius > b.circles[0].round->radius;
+    });
+    return groups;
+  }
+
+  [[nodiscard]] std::optional<Leader> best_leader(const Group& group, std::string_view text) const {
+    constexpr int degrees[] = {45, 135, 315, 225, 60, 120, 300, 240, 30, 150, 330, 210};
+    std::optional<Leader> best;
+    const double shelf = pen_.width_of(text) + 2 * text_distance;
+    for (std::size_t i = 0; i < std::min(group.circles.size(), most_tried); ++i) {
+      const SeenCircle& circle = group.circles[i];
+      for (const int angle : degrees) {
+        const double radians = angle * std::numbers::pi / 180;
+        const glm::dvec2 out(std::cos(radians), -std::sin(radians));
+        const glm::dvec2 tip = circle.centre + circle.radius * out;
+        const double side = out.x > 0 ? 1 : -1;
+        int crossed = obstacles_.crossings({tip + 0.1 * out, tip + nearest_knee * out});
+        for (double way = nearest_knee; way <= farthest_knee; way += knee_step) {
+          const double cost = way + cost_of_crossing * crossed;
+          if (crossed > most_crossed || (best && cost >= best->cost)) break;
+          const glm::dvec2 knee = tip + way * out, end = knee + glm::dvec2(side * shelf, 0);
+          const TextAlign align = side > 0 ? TextAlign::left : TextAlign::right;
+          PageBox box = pen_.box_of(text, knee + glm::dvec2(side * text_distance, 0), align);
+          box.high.y += 2 * text_distance;  // the shelf, and room below it
+          if (obstacles_.is_free(box)) best = Leader{tip, knee, end, align, cost};
+          crossed += obstacles_.crossings({knee, knee + knee_step * out});
+        }
+      }
+    }
+    return best;
+  }
+
+  const DimensionOptions& options_;
+  DimensionPen& pen_;
+  const Obstacles& obstacles_;
+  std::vector<Round> taken_;
+  std::size_t placed_ = 0;
+};
+
+constexpr double same_direction = 0.9999;  // cosine
+
+/// Draws an overall size along an axis: a level one as it is; for an upright one, x and y are swapped, seen from the
+/// right. `taken`: millimetres on the left of the view and below it that other marks occupy.
+void draw_overall_size(DimensionPen& pen, const MeasuredView& view, const glm::dvec2& taken, int axis, const Extent& e,
+                       const std::string& text) {
+  const bool is_level = axis == 0;
+  const double line =
+      is_level ? view.box.high.y + (first_distance + taken.y) : view.box.low.x - (first_distance + taken.x);
+  const double away = is_level ? 1 : -1;
+  const auto at = [&](double along, double across) {
+    return is_level ? glm::dvec2(along, across) : glm::dvec2(across, along);
+  };
+  for (const double end : {e.low, e.high})
+    pen.line(at(end, view.foot_of_end(axis, end) + away * extension_gap), at(end, line + away * extension_overshoot));
+  const double length = e.high - e.low, arrow = pen.arrow_length(), width = pen.width_of(text);
+  const bool is_inside = length >= 2 * arrow + 1;
+  const bool is_text_inside = width + 2 * text_distance <= length;
+  // Read from the right, the text of an upright number runs upwards, towards lower y.
+  const double first = is_level ? e.high : e.low, forwards = is_level ? 1 : -1;
+  const double tail = is_inside ? 0 : 2 * arrow;
+  const double text_tail = is_text_inside ? tail : std::max(tail, arrow) + width + 2 * text_distance;
+  const double last = is_level ? e.low : e.high;
+  pen.line(at(last - forwards * tail, line), at(first + forwards * text_tail, line));
+  const double inwards = is_inside ? -1 : 1;
+  pen.arrow(at(e.low, line), at(inwards, 0));
+  pen.arrow(at(e.high, line), at(-inwards, 0));
+  const double middle =
+      is_text_inside ? (e.low + e.high) / 2 : first + forwards * (text_tail - text_distance - width / 2);
+  pen.text(text, at(middle, line), TextAlign::centre, !is_level);
+}
 
 void validate(const DimensionOptions& options) {
   if (!(options.numbers_per_unit > 0 && std::isfinite(options.numbers_per_unit)))
@@ -132,7 +449,7 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
   DimensionPen pen(options, obstacles);
   Diameters diameters(options, pen, obstacles);
   for (std::size_t i = 0; i < views.size(); ++i) {
-    if (measured[i].is_empty()) continue;
+    if (measured[i].is_empty) continue;
     for (const int axis : {0, 1}) {
       if (!(axis == 0 ? shares[i].width : shares[i].height)) continue;
       const Extent extent = measured[i].extent(axis);
@@ -142,7 +459,7 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
         if (!diameters.take(*extent.diameter)) continue;
         text = diameter_sign + text;
       }
-      OverallPen(pen, measured[i], views[i].taken).draw({axis, extent, text});
+      draw_overall_size(pen, measured[i], views[i].taken, axis, extent, text);
       ++all.count;
     }
   }

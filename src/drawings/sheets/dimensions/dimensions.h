@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "frontmost/sheets.h"
-#include "sheets/page_marks.h"
+#include "sheets/paper.h"
 
 namespace frontmost::detail {
 

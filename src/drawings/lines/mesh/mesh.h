@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// All triangles of a scene over vertices that are shared wherever they coincide, with closed seams; their properties in
+// a view; and the triangles at each vertex.
+//
+//          C                  C            A filler A-M-B has its corners on one line, and no area: it was put there to
+//         / .                /|.           close the long side A-B against the two short ones. The filler is removed,
+//        /   .              / | .          and the triangle A-B-C beside it is split at M. So every side has one
+//       A--M--B      ->    A--M--B         neighbour again, and surfaces continue across it.
+#pragma once
+
+#include "frontmost/scene.h"
+#include "geometry/buckets.h"
+#include "view/sight.h"
+
+namespace frontmost::lines_detail {
+
+/// Vertex positions in world space, stored as floats, which halves the memory traffic.
+class Positions {
+ public:
+  Positions() = default;
+  explicit Positions(Buffer<glm::vec3> places) : places_(std::move(places)) {}
+  [[nodiscard]] std::size_t size() const { return places_.size(); }
+  [[nodiscard]] glm::dvec3 operator[](std::size_t vertex) const { return glm::dvec3(places_[vertex]); }
+  [[nodiscard]] const Buffer<glm::vec3>& places() const { return places_; }
+
+ private:
+  Buffer<glm::vec3> places_;
+};
+
+struct WeldedMesh {
+  Positions positions;
+  /// Three different vertices each, counter-clockwise seen from the front.
+  Buffer<glm::uvec3> triangles;
+  Buffer<PrimitiveId> ids;  ///< of the triangles
+};
+
+/// Leaves out triangles with a vertex that is not finite, and those with two vertices at one place. Vertices are
+/// numbered in the order in which their places first occur. O(triangles).
+[[nodiscard]] WeldedMesh weld(const Surfaces& surfaces, const Execution& execution);
+
+/// Removes the triangles whose corners lie exactly on one line (fillers), and splits triangles beside them at the
+/// corners on their sides. A long side A-B, a filler A-M-B and short sides A-M and M-B become two edges of two
+/// triangles each. Pieces come where their triangle was, with its id. A seam that would make more than five times as
+/// many triangles stays open, without its fillers: overlapping sides on one line could make as many as the square of
+/// their number. `facing` is of the mesh, for any view. O(triangles) without fillers, else O(triangles log fillers).
+/// \returns whether there were fillers; else the mesh is unchanged.
+[[nodiscard]] bool close_seams(WeldedMesh& mesh, const Buffer<std::int8_t>& facing, const Execution& execution);
+
+/// The properties of a triangle that need no neighbours.
+struct SeenTriangle {
+  /// The unit normal to 2^-22; zero where doubles are not precise enough.
+  glm::vec3 normal;
+  std::uint32_t bits;
+
+  static constexpr int kFacingShift = 15;
+  static constexpr std::uint32_t kOpen = 3u << kFacingShift;  ///< facing() is unknown because of rounding
+  [[nodiscard]] bool is_open() const { return bits >= kOpen; }
+  /// Sight::facing()
+  [[nodiscard]] int facing() const { return int(bits >> kFacingShift) - 1; }
+  /// Bit i: seen along axis i, the triangle certainly turns left (i = 0 to 2) or right (i = 3 to 5). 0 if nothing is
+  /// known.
+  [[nodiscard]] std::uint32_t turns() const { return bits & 63; }
+  /// Bit i: seen along axis i, a walk around the corner passes in this triangle from below the corner to above it.
+  /// Valid where the triangle turns.
+  [[nodiscard]] std::uint32_t climbs(std::uint32_t corner) const { return bits >> (6 + 3 * corner) & 7; }
+};
+
+/// A mesh, and its triangles' properties in a view.
+struct SeenMesh {
+  const WeldedMesh& mesh;
+  Buffer<std::int8_t> facing;  ///< Sight::facing()
+  Buffer<SeenTriangle> triangles;
+};
+
+/// O(triangles).
+[[nodiscard]] SeenMesh see(const WeldedMesh& mesh, const Sight& sight, const Execution& execution);
+
+/// The rounded normal; its length is twice the triangle's area.
+[[nodiscard]] inline glm::dvec3 normal_of(const WeldedMesh& mesh, std::uint32_t triangle) {
+  const glm::uvec3& t = mesh.triangles[triangle];
+  const glm::dvec3 at = mesh.positions[t.x];
+  return glm::cross(mesh.positions[t.y] - at, mesh.positions[t.z] - at);
+}
+
+/// The triangle's corner that is neither a nor b.
+[[nodiscard]] inline std::uint32_t third_of(const glm::uvec3& triangle, std::uint32_t a, std::uint32_t b) {
+  if (triangle.x != a && triangle.x != b) return triangle.x;
+  return triangle.y != a && triangle.y != b ? triangle.y : triangle.z;
+}
+
+/// A triangle, and the index of one of its corners.
+class Corner {
+ public:
+  static constexpr std::size_t most_triangles = std::size_t(1) << 30;
+
+  Corner(std::uint32_t triangle, std::uint32_t k) : number_(triangle << 2 | k) {}
+  [[nodiscard]] std::uint32_t triangle() const { return number_ >> 2; }
+  [[nodiscard]] std::uint32_t k() const { return number_ & 3; }
+  /// The vertices after and before this corner. Uses shifts, because glm's operator branches.
+  [[nodiscard]] std::uint32_t next(const WeldedMesh& mesh) const {
+    return (&mesh.triangles[triangle()].x)[9u >> 2 * k() & 3];
+  }
+  [[nodiscard]] std::uint32_t last(const WeldedMesh& mesh) const {
+    return (&mesh.triangles[triangle()].x)[18u >> 2 * k() & 3];
+  }
+
+ private:
+  std::uint32_t number_;
+};
+
+/// By vertex, the corners of all triangles that have it, in the order of these triangles.
+using CornerTable = Buckets<Corner>;
+
+/// O(triangles). \throws Error limit_exceeded for more than Corner::most_triangles.
+[[nodiscard]] CornerTable corner_table(const WeldedMesh& mesh, const Execution& execution);
+
+/// The arrangement of the triangles at a vertex.
+struct Star {
+  /// Most vertices have at most so many triangles; for more, nothing is found.
+  static constexpr std::size_t most = 16;
+
+  /// Whether every edge at the vertex belongs to two triangles with different third corners that are wound alike.
+  bool is_paired;
+  /// Whether the star is paired and, seen along one of the axes, all triangles turn the same way and go once around the
+  /// vertex: then they lie side by side.
+  bool is_spread;
+  /// For paired stars, bit j: the edge to Corner::last() of corner j leads to a higher vertex and is not plain.
+  std::uint16_t asked;
+};
+
+/// Finds the stars of the vertices from `begin` to `end`. An edge is plain where both triangles face the same way and
+/// the cosine of their angle, in floats, is more than `plain_cosine`.
+using StarsKernel = void (*)(const SeenMesh& seen, const CornerTable& table, float plain_cosine, std::size_t begin,
+                             std::size_t end, Star* stars);
+[[nodiscard]] StarsKernel stars_kernel(Isa isa);
+
+}  // namespace frontmost::lines_detail

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plane of a section is edge-on in views along other axes: the first of these gets the cutting line, even if it is
+// another section. The section takes the cell of the view with the same direction, if that is free, and otherwise a
+// column of its own behind those of all views.
+//
+//    A               A          A cutting line is thin, with long dashes and dots, and has thick ends beyond the cut
+//    |               |          part. Arrows at the ends point in the section's view direction, with its letter behind
+//    v               v          them.
+//    ===- - - . - ===
+#include <algorithm>
+#include <cmath>
+
+#include "frontmost/sheets.h"
+#include "rounds/found_rounds.h"
+#include "sheets/paper.h"
+#include "sheets/planned_view.h"
+
+namespace frontmost::detail {
+namespace {
+
+constexpr double least_spacing = 1.2, most_spacing = 3;  // millimetres between hatch lines
+constexpr double spacing_share = 0.03;                   // as a share of the section's diagonal
+constexpr double thinnest = 0.8;                         // millimetres: thinner parts are solid
+constexpr double name_distance = 5, name_height = 5;     // millimetres above a section
+constexpr int first_own_column = 3;                      // behind those of all views
+
+[[noreturn]] void refuse_section(const SectionView& wanted, const std::string& reason) {
+  throw Error(ErrorCode::bad_argument,
+              "sections " + std::string(view_name(wanted.direction)) + (wanted.at ? "=" + number_text(*wanted.at) : ""),
+              reason);
+}
+
+/// The axis whose direction is nearest to `direction`.
+Axis axis_towards(const glm::dvec3& direction) {
+  int axis = 0;
+  for (int k = 1; k < 3; ++k)
+    if (std::abs(direction[k]) > std::abs(direction[axis])) axis = k;
+  return Axis(direction[axis] > 0 ? axis : axis + 3);
+}
+
+/// By section, the view in which its plane is marked: the first that sees it edge-on, which may be another section.
+std::vector<std::size_t> hosts_of(const std::vector<PlannedView>& views) {
+  std::vector<std::size_t> hosts(views.size(), views.size());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!views[i].section) continue;
+    const auto sees_edge = [&](const PlannedView& view) {
+      return std::abs(glm::dot(view.drawing.view.forward(), views[i].drawing.view.forward())) < 1e-6;
+    };
+    hosts[i] = std::size_t(std::find_if(views.begin(), views.end(), sees_edge) - views.begin());
+  }
+  return hosts;
+}
+
+/// A cutting line in the pixels of its host view.
+struct Trace {
+  glm::dvec2 from{0}, to{0}, looking{0};
+  DrawingBounds box;
+};
+
+Trace trace_in(const PlannedView& host, const PlannedView& section) {
+  const View& camera = host.drawing.view;
+  const glm::dvec3 forward = section.drawing.view.forward();
+  Trace trace;
+  trace.looking = glm::round(glm::dvec2(glm::dot(forward, camera.right()), -glm::dot(forward, camera.up())));
+  trace.box = bounds_of(host.drawing, host.shows_hidden);
+  glm::dvec3 point(0);
+  point[int(section.plane.towards) % 3] = float(section.plane.at);
+  const glm::dvec2 on = on_screen(camera, point);
+  const int across = trace.looking.x != 0 ? 0 : 1;
+  trace.from = trace.box.low;
+  trace.to = trace.box.high;
+  trace.from[across] = trace.to[across] = on[across];
+  return trace;
+}
+
+bool is_empty(const Trace& trace) { return trace.box.is_empty() || !(glm::distance(trace.from, trace.to) > 0); }
+
+constexpr double gap_before = 3, thick_length = 6;   // millimetres beyond the cut part
+constexpr double arrow_place = 6;                    // likewise: in the middle of the thick end
+constexpr double arrow_length = 8, head_length = 4;  // millimetres
+constexpr double letter_distance = 1;                // from the arrow's tail
+
+}  // namespace
+
+std::shared_ptr<const Surfaces> surfaces_of(std::shared_ptr<const Scene> scene, const Execution& execution) {
+  struct Owner {
+    std::shared_ptr<const Scene> scene;
+    Surfaces surfaces;
+  };
+  const std::shared_ptr<const Owner> owner(new Owner{scene, Surfaces(*scene, execution)});
+  return {owner, &owner->surfaces};
+}
+
+CutScene cut_for(const SectionView& wanted, const Surfaces& surfaces, const View& camera, const Execution& execution) {
+  CutScene result;
+  result.plane.towards = axis_towards(-camera.forward());
+  const int axis = int(result.plane.towards) % 3;
+  const Box& box = surfaces.bounds();
+  const double origin = surfaces.scene().origin[axis], low = box.low[axis], high = box.high[axis];
+  result.plane.at = wanted.at ? *wanted.at - origin : (low + high) / 2;
+  result.section = std::make_shared<const Section>(cut(surfaces, result.plane, execution));
+  if (result.section->faces.empty()) {
+    if (!(low <= high)) refuse_section(wanted, "the model has no surface to cut");
+    refuse_section(wanted, "the plane misses the model, which lies from " + std::string(1, "xyz"[axis]) + " = " +
+                               number_text(low + origin) + " to " + number_text(high + origin));
+  }
+  result.surfaces = surfaces_of({result.section, &result.section->scene}, execution);
+  return result;
+}
+
+void place_sections(std::vector<ViewCell>& cells, const std::vector<PlannedView>& views) {
+  int next = first_own_column;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!views[i].section) continue;
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      if (k == i || (views[k].section && k > i)) continue;
+      if (cells[k].column != cells[i].column || cells[k].row != cells[i].row) continue;
+      cells[i].column = next++;
+      cells[i].row = 0;
+      break;
+    }
+  }
+}
+
+void keep_section_room(std::vector<ViewCell>& cells, std::vector<PlannedView>& views) {
+  const std::vector<std::size_t> hosts = hosts_of(views);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!views[i].section) continue;
+    cells[i].room_before.y = std::max(cells[i].room_before.y, name_distance + name_height);
+    if (hosts[i] == views.size()) continue;
+    PlannedView& host = views[hosts[i]];
+    ViewCell& cell = cells[hosts[i]];
+    const Trace trace = trace_in(host, views[i]);
+    if (is_empty(trace)) continue;
+    const int across = trace.looking.x != 0 ? 0 : 1, along = 1 - across;
+    cell.room_before[along] = std::max(
+        cell.room_before[along], cutting_line_room + (along == 1 && host.section ? name_distance + name_height : 0));
+    cell.room_behind[along] = std::max(cell.room_behind[along], cutting_line_room);
+    // Arrows are on the side from which the section is viewed.
+    const bool is_behind = trace.looking[across] < 0;
+    const double size = trace.box.high[across] - trace.box.low[across];
+    const double rest =
+        is_behind ? trace.box.high[across] - trace.from[across] : trace.from[across] - trace.box.low[across];
+    const bool reaches_out = rest < size / 4;
+    double& side = is_behind ? cell.room_behind[across] : cell.room_before[across];
+    if (reaches_out) side = std::max(side, section_arrow_room);
+    const bool is_left = along == 0 || (reaches_out && !is_behind), is_below = along == 1 || (reaches_out && is_behind);
+    if (is_left) host.taken.x = std::max(host.taken.x, along == 0 ? cutting_line_room : section_arrow_room);
+    if (is_below) host.taken.y = std::max(host.taken.y, along == 1 ? cutting_line_room : section_arrow_room);
+  }
+}
+
+void hatch_sections(std::vector<PlannedView>& views, const SheetOptions& options, const Execution& execution) {
+  std::vector<const Section*> sections;
+  for (const PlannedView& view : views)
+    if (view.section) sections.push_back(view.section.get());
+  if (sections.empty()) return;
+  const std::vector<std::uint8_t> styles = hatch_styles(sections);
+  double spacing = least_spacing;
+  for (const PlannedView& view : views) {
+    const DrawingBounds box = bounds_of(view.drawing, false);
+    if (!view.section || box.is_empty()) continue;
+    spacing = std::max(spacing, spacing_share * glm::distance(box.low, box.high) * view.placed.millimetres_per_pixel);
+  }
+  spacing = std::min(spacing, most_spacing);
+  const double pen = LinePens().hatching.width * options.pen.value_or(LinePens().seen.width) / LinePens().seen.width;
+  for (PlannedView& view : views) {
+    if (!view.section) continue;
+    const double millimetres = view.placed.millimetres_per_pixel;
+    const View& camera = view.drawing.view;
+    SectionHatching lines;
+    lines.spacing = std::clamp(spacing / millimetres, 2.0, 5e4);
+    lines.solid_spacing = std::clamp(0.8 * pen / millimetres, 0.5, 1e5);
+    const double pixel = (camera.projection.right - camera.projection.left) / camera.width;
+    lines.thinnest = thinnest / millimetres * pixel;
+    HatchOptions hatching;
+    hatching.sets = section_hatch_sets(*view.section, styles, lines);
+    hatching.tone = section_tone(view.plane);
+    hatching.by_instance = !options.plot;
+    hatching.nearest_first = options.plot;
+    view.placed.hatching = hatch(*view.surfaces, camera, hatching, execution);
+  }
+}
+
+SectionMarks draw_section_marks(std::span<const CuttingLine> lines, std::span<const ViewName> names,
+                                const SectionMarkOptions& options) {
+  if (!(options.text_height >= 0.5 && options.text_height <= 100))
+    throw Error(ErrorCode::bad_argument, "text_height", "must be from 0.5 to 100 millimetres");
+  const Pen& pen = options.thin;
+  const double height = options.text_height;
+  PageGroup thin{"", pen}, thick{"", {2 * pen.width, pen.color}}, heads{"", {pen.width, pen.color}};
+  PageGroup texts{"", text_pen(height)};
+  texts.pen.color = pen.color;
+  SectionMarks marks;
+  const auto draw_end = [&](const CuttingLine& line, const glm::dvec2& end, const glm::dvec2& outwards) {
+    const glm::dvec2 thick_end[] = {end + gap_before * outwards, end + (gap_before + thick_length) * outwards};
+    thick.add(thick_end, false);
+    const glm::dvec2 tip = end + arrow_place * outwards, tail = tip - arrow_length * line.looking;
+    const glm::dvec2 shaft[] = {tail, tip};
+    heads.add(shaft, false);
+    add_arrowhead(heads, tip, line.looking, head_length);
+    const double half = height / 2;
+    const glm::dvec2 letter = tail - (letter_distance + half) * line.looking;
+    add_text(texts, line.letter, letter, {height, 0, TextAlign::centre, TextLine::middle});
+    PageBox box{letter - half, letter + half};
+    for (const glm::dvec2& corner : {thick_end[0], thick_end[1], tail}) {
+      box.low = glm::min(box.low, corner);
+      box.high = glm::max(box.high, corner);
+    }
+    marks.boxes.push_back(box);
+  };
+  for (const CuttingLine& line : lines) {
+    if (!(glm::distance(line.from, line.to) > 0)) throw Error(ErrorCode::bad_argument, "a cutting line has no length");
+    const glm::dvec2 along = glm::normalize(line.to - line.from);
+    const glm::dvec2 ends[] = {line.from - gap_before * along, line.to + gap_before * along};
+    thin.add(ends, false);
+    draw_end(line, line.from, -along);
+    draw_end(line, line.to, along);
+  }
+  for (const ViewName& name : names) {
+    add_text(texts, name.text, name.at, {height, 0, TextAlign::centre, TextLine::bottom});
+    const double half = text_width(name.text, height) / 2;
+    marks.boxes.push_back({name.at - glm::dvec2(half, height), name.at + glm::dvec2(half, 0)});
+  }
+  for (PageGroup* const group : {&thin, &thick, &heads, &texts})
+    if (!group->paths.empty()) marks.layer.groups.push_back(std::move(*group));
+  return marks;
+}
+
+SectionMarks section_marks_of(const std::vector<PlannedView>& views, const Pen& thin) {
+  const std::vector<std::size_t> hosts = hosts_of(views);
+  std::vector<CuttingLine> lines;
+  std::vector<ViewName> names;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const DrawingBounds box = bounds_of(views[i].drawing, false);
+    if (!views[i].section || box.is_empty()) continue;  // the near and far planes may leave nothing of it
+    const glm::dvec2 low = views[i].placed.on_page(box.low), high = views[i].placed.on_page(box.high);
+    bool is_host = false;
+    for (std::size_t k = 0; k < hosts.size(); ++k) is_host = is_host || (views[k].section && hosts[k] == i);
+    const double above = name_distance + (is_host ? cutting_line_room : 0);
+    names.push_back({{(low.x + high.x) / 2, low.y - above}, views[i].name});
+    if (hosts[i] == views.size()) continue;
+    const PlannedView& host = views[hosts[i]];
+    const Trace trace = trace_in(host, views[i]);
+    if (is_empty(trace)) continue;
+    lines.push_back({host.placed.on_page(trace.from), host.placed.on_page(trace.to), trace.looking, views[i].letter});
+  }
+  SectionMarkOptions options;
+  options.thin = thin;
+  options.text_height = name_height;
+  return draw_section_marks(lines, names, options);
+}
+
+}  // namespace frontmost::detail
