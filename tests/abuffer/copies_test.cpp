@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "abuffer/plan/crowd.h"
+#include "abuffer/fragment_pass.h"
 #include "fragment_oracle.h"
 #include "support/cutout_scene.h"
 #include "support/effort.h"

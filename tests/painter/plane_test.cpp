@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "painter/cutting/twice.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 

@@ -8,7 +8,6 @@
 
 #include "painter/painted.h"
 #include "painter/seen/adjacency.h"
-#include "painter/seen/occluder_union.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 

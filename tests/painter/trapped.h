@@ -3,7 +3,7 @@
 #pragma once
 
 #include "frontmost/painter.h"
-#include "painter/traps/trap.h"
+#include "painter/traps/traps.h"
 
 namespace frontmost::test {
 

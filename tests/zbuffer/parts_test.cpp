@@ -7,7 +7,7 @@
 #include "frontmost/zbuffer.h"
 #include "support/oracle.h"
 #include "support/random_scene.h"
-#include "zbuffer/tile/tile_lists.h"
+#include "zbuffer/tile/tile.h"
 #include "zbuffer/triangle_records.h"
 
 namespace frontmost::test {

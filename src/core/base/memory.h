@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstring>
 #include <vector>
 
 #include "frontmost/base.h"
@@ -74,6 +75,15 @@ class Arena {
   detail::Slab* slab_;
   detail::Slab* outer_;
 };
+
+/// The bits of a number as another type of the same size. WebAssembly's compiler has no std::bit_cast.
+template <class To, class From>
+[[nodiscard]] inline To bits_as(const From& from) {
+  static_assert(sizeof(To) == sizeof(From));
+  To to;
+  std::memcpy(&to, &from, sizeof to);
+  return to;
+}
 
 /// Prefetches the cache line of an address that is read soon. Any address is allowed.
 inline void prefetch_line(const void* address) {

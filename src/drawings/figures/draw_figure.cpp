@@ -13,7 +13,7 @@
 #include "figures/side_net.h"
 #include "frontmost/sheets.h"
 #include "frontmost/zbuffer.h"
-#include "painter/traps/trap.h"
+#include "painter/traps/traps.h"
 #include "shade/picture_parts.h"
 #include "shade/prepared_scene.h"
 #include "view/answer.h"

@@ -16,7 +16,7 @@
 #include <tuple>
 #include <vector>
 
-#include "painter/traps/trap.h"
+#include "painter/traps/traps.h"
 
 namespace frontmost::shading {
 

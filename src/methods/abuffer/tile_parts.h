@@ -41,7 +41,20 @@ class TileParts {
   }
 
   /// By pixel of the picture, the beginning of its list; then the end of the last list.
-  [[nodiscard]] Buffer<std::uint64_t> beginnings() const;
+  [[nodiscard]] Buffer<std::uint64_t> beginnings() const {
+    Buffer<std::uint64_t> first(view_.pixel_count() + 1, 0);
+    for (const TilePart<T>& part : parts_)
+      for (int y = 0; y < part.pixels.height; ++y)
+        for (int x = 0; x < part.pixels.width; ++x) {
+          const std::size_t at =
+              std::size_t(part.pixels.y + y) * std::size_t(view_.width) + std::size_t(part.pixels.x + x);
+          const std::size_t p = std::size_t(y) * std::size_t(part.pixels.width) + std::size_t(x);
+          // Lengths are stored one place further on, then summed: parts may come in any order.
+          first[at + 1] = part.begin[p + 1] - part.begin[p];
+        }
+    for (std::size_t i = 0; i < view_.pixel_count(); ++i) first[i + 1] += first[i];
+    return first;
+  }
 
   /// Calls put(place, item) for every item of every part, on all threads; `first` holds the beginnings of the lists.
   /// Frees the memory of the parts one by one.
@@ -58,7 +71,15 @@ class TileParts {
 
  private:
   template <class Put>
-  void place_part(const TilePart<T>& part, const Buffer<std::uint64_t>& first, const Put& put) const;
+  void place_part(const TilePart<T>& part, const Buffer<std::uint64_t>& first, const Put& put) const {
+    const auto width = std::size_t(part.pixels.width);
+    for (std::size_t y = 0; y < std::size_t(part.pixels.height); ++y) {
+      // The lists of a row are neighbours in both arrays.
+      const std::size_t at = (std::size_t(part.pixels.y) + y) * std::size_t(view_.width) + std::size_t(part.pixels.x);
+      std::uint64_t place = first[at];
+      for (std::size_t i = part.begin[y * width]; i < part.begin[(y + 1) * width]; ++i) put(place++, part.items[i]);
+    }
+  }
 
   const View& view_;
   const std::uint64_t most_;
@@ -67,33 +88,5 @@ class TileParts {
   std::uint64_t item_count_ = 0;
   std::vector<TilePart<T>> parts_;
 };
-
-template <class T>
-Buffer<std::uint64_t> TileParts<T>::beginnings() const {
-  Buffer<std::uint64_t> first(view_.pixel_count() + 1, 0);
-  for (const TilePart<T>& part : parts_)
-    for (int y = 0; y < part.pixels.height; ++y)
-      for (int x = 0; x < part.pixels.width; ++x) {
-        const std::size_t at =
-            std::size_t(part.pixels.y + y) * std::size_t(view_.width) + std::size_t(part.pixels.x + x);
-        const std::size_t p = std::size_t(y) * std::size_t(part.pixels.width) + std::size_t(x);
-        // Lengths are stored one place further on, then summed: parts may come in any order.
-        first[at + 1] = part.begin[p + 1] - part.begin[p];
-      }
-  for (std::size_t i = 0; i < view_.pixel_count(); ++i) first[i + 1] += first[i];
-  return first;
-}
-
-template <class T>
-template <class Put>
-void TileParts<T>::place_part(const TilePart<T>& part, const Buffer<std::uint64_t>& first, const Put& put) const {
-  const auto width = std::size_t(part.pixels.width);
-  for (std::size_t y = 0; y < std::size_t(part.pixels.height); ++y) {
-    // The lists of a row are neighbours in both arrays.
-    const std::size_t at = (std::size_t(part.pixels.y) + y) * std::size_t(view_.width) + std::size_t(part.pixels.x);
-    std::uint64_t place = first[at];
-    for (std::size_t i = part.begin[y * width]; i < part.begin[(y + 1) * width]; ++i) put(place++, part.items[i]);
-  }
-}
 
 }  // namespace frontmost::abuffer_detail

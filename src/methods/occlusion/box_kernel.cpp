@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "occlusion/boxes.h"
+#include "occlusion/cells.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "occlusion/box_kernel.cpp"
@@ -222,32 +222,6 @@ namespace frontmost::occlusion_detail {
 FRONTMOST_KERNELS(FindOnScreen);
 FRONTMOST_KERNELS(IsRectCovered);
 FRONTMOST_KERNELS(FindSights);
-
-CellGrid::CellGrid(const View& view, int cell)
-    : transform(view),
-      columns((view.width + cell - 1) / cell),
-      rows((view.height + cell - 1) / cell),
-      cells_per_unit(1.0f / (float(kSubPixels) * float(cell))),
-      margin(2.0f * cells_per_unit) {}
-
-BoxColumns::BoxColumns(std::size_t count) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    low[axis].resize(count + most_lanes, 1.0f);
-    high[axis].resize(count + most_lanes, -1.0f);
-  }
-}
-
-void BoxColumns::set(std::size_t number, const Box& box) {
-  const bool is_empty = box.is_empty();
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    low[axis][number] = is_empty ? 1.0f : box.low[int(axis)];
-    high[axis][number] = is_empty ? -1.0f : box.high[int(axis)];
-  }
-}
-
-Box BoxColumns::get(std::size_t number) const {
-  return {{low[0][number], low[1][number], low[2][number]}, {high[0][number], high[1][number], high[2][number]}};
-}
 
 void find_on_screen(const CellGrid& grid, const BoxColumns& boxes, const ItemRange& which, std::vector<ScreenBox>& out,
                     Isa isa) {

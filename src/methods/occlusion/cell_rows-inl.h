@@ -11,7 +11,7 @@
 
 #include "base/highway-inl.h"
 #include "base/lanes-inl.h"
-#include "occlusion/cover.h"
+#include "occlusion/cells.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::occlusion_detail::HWY_NAMESPACE {

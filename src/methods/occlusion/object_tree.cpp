@@ -78,11 +78,6 @@ ObjectTree::ObjectTree(std::span<const Box> boxes, std::size_t its_most_on_top)
   for (std::uint32_t group = std::uint32_t(objects_.size()); group < first_.back(); ++group) fit(group);
 }
 
-void ObjectTree::move(std::uint32_t object, const Box& box) {
-  boxes_.set(items_[object], box);
-  moved_.push_back(items_[object]);
-}
-
 void ObjectTree::refit() {
   moves_ += moved_.size();
   std::sort(moved_.begin(), moved_.end());
@@ -100,25 +95,6 @@ void ObjectTree::fit(std::uint32_t group) {
   for (std::uint32_t i = items.first; i < items.end(); ++i)
     if (const Box one = boxes_.get(i); !one.is_empty()) box.include(one);
   boxes_.set(group, box);
-}
-
-std::size_t ObjectTree::level_of(std::uint32_t item) const {
-  std::size_t level = 0;
-  while (first_[level + 1] <= item) ++level;
-  return level;
-}
-
-ItemRange ObjectTree::items_of(std::uint32_t item) const {
-  const std::size_t level = level_of(item);
-  const std::uint32_t first = first_[level - 1] + (item - first_[level]) * group_size;
-  return {first, std::min(group_size, first_[level] - first)};
-}
-
-ItemRange ObjectTree::objects_of(std::uint32_t item) const {
-  const std::size_t level = level_of(item);
-  std::uint32_t first = item - first_[level], count = 1;
-  for (std::size_t i = 0; i < level; ++i) first *= group_size, count *= group_size;
-  return {first, std::min(count, std::uint32_t(objects_.size()) - first)};
 }
 
 }  // namespace frontmost::occlusion_detail

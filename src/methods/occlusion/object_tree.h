@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "occlusion/boxes.h"
+#include "occlusion/cells.h"
 
 namespace frontmost::occlusion_detail {
 
@@ -25,7 +25,10 @@ class ObjectTree {
   explicit ObjectTree(std::span<const Box> boxes, std::size_t its_most_on_top = most_on_top);
 
   /// Sets the box of an object. Call refit() after all moves.
-  void move(std::uint32_t object, const Box& box);
+  void move(std::uint32_t object, const Box& box) {
+    boxes_.set(items_[object], box);
+    moved_.push_back(items_[object]);
+  }
   /// Makes the boxes of all groups hold the moved objects. O(moved x levels).
   void refit();
   /// Whether so many objects have moved that a new order may be better.
@@ -38,14 +41,27 @@ class ObjectTree {
   /// Precondition: is_object(item).
   [[nodiscard]] std::uint32_t object(std::uint32_t item) const { return objects_[item]; }
   /// The items of a group. Precondition: not is_object(item).
-  [[nodiscard]] ItemRange items_of(std::uint32_t item) const;
+  [[nodiscard]] ItemRange items_of(std::uint32_t item) const {
+    const std::size_t level = level_of(item);
+    const std::uint32_t first = first_[level - 1] + (item - first_[level]) * group_size;
+    return {first, std::min(group_size, first_[level] - first)};
+  }
   /// The objects at or below the item, as a range of items.
-  [[nodiscard]] ItemRange objects_of(std::uint32_t item) const;
+  [[nodiscard]] ItemRange objects_of(std::uint32_t item) const {
+    const std::size_t level = level_of(item);
+    std::uint32_t first = item - first_[level], count = 1;
+    for (std::size_t i = 0; i < level; ++i) first *= group_size, count *= group_size;
+    return {first, std::min(count, std::uint32_t(objects_.size()) - first)};
+  }
   /// The item that holds all objects. Precondition: there are objects.
   [[nodiscard]] std::uint32_t root() const { return first_.back() - 1; }
 
  private:
-  [[nodiscard]] std::size_t level_of(std::uint32_t item) const;
+  [[nodiscard]] std::size_t level_of(std::uint32_t item) const {
+    std::size_t level = 0;
+    while (first_[level + 1] <= item) ++level;
+    return level;
+  }
   void fit(std::uint32_t group);
 
   std::vector<std::uint32_t> objects_;   ///< by item

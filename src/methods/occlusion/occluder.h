@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cells that an object covers.
+// The cells that an object covers. The ends are the sides that no two of its triangles of one turn share. The number of
+// triangles over a place is the winding number of the ends about it, which changes only across an end:
 //
-// Take triangles that turn the same way on the screen. The ends are the sides that no two of these triangles share. The
-// number of triangles over a place is the winding number of the ends about it, which changes only across an end. So a
-// cell that no end comes near is covered everywhere as often as at any one of its points:
-//
-//     +---+---+---+---+---+
-//     |   | /´|\  |   |   |     reached    the cell's middle lies in a triangle
-//     |   |/  | \ |   |   |     ends       a side without a neighbour comes near the cell
+//     +---+---+---+---+---+     reached    the cell's middle lies in a triangle
+//     |   | /´|\  |   |   |     ends       a side without a neighbour comes near the cell
 //     |  /|   |  \|   |   |
-//     | / |   |   \   |   |     Cells that are reached and have no ends are covered. Sides within the surface are no
-//     +---+---+---+---+---+     ends, however thin the triangles beside them are.
+//     | / |   |   \   |   |     Cells that are reached and have no ends are covered everywhere.
+//     +---+---+---+---+---+
 //
 // Vertices are snapped, which moves ends by less than the margin that they are widened by. Other sides move with both
 // of their triangles. Any triangles may be left out, which only makes more ends.
@@ -19,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "occlusion/boxes.h"
+#include "occlusion/cells.h"
 #include "occlusion/occluder_mesh.h"
 #include "view/clip.h"
 

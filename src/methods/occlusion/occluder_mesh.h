@@ -37,27 +37,24 @@ struct OccluderMesh {
   /// Calls visit(triangle) for the triangles around a corner of a triangle, from neighbour to neighbour, at most
   /// `most_around` each way.
   template <class Visit>
-  void visit_around(std::uint32_t triangle, int corner, const Visit& visit) const;
+  void visit_around(std::uint32_t triangle, int corner, const Visit& visit) const {
+    const std::uint32_t vertex = triangles[triangle][corner];
+    const auto walk = [&](bool forwards) {
+      std::uint32_t t = triangle;
+      int k = corner;
+      for (int step = 0; step < most_around; ++step) {
+        t = neighbours[t][forwards ? k : (k + 2) % 3];
+        if (t == triangle) return true;
+        if (t == no_index) return false;
+        visit(t);
+        k = triangles[t].x == vertex ? 0 : triangles[t].y == vertex ? 1 : 2;
+      }
+      return false;
+    };
+    if (!walk(true)) walk(false);
+  }
   static constexpr int most_around = 32;
 };
-
-template <class Visit>
-void OccluderMesh::visit_around(std::uint32_t triangle, int corner, const Visit& visit) const {
-  const std::uint32_t vertex = triangles[triangle][corner];
-  const auto walk = [&](bool forwards) {
-    std::uint32_t t = triangle;
-    int k = corner;
-    for (int step = 0; step < most_around; ++step) {
-      t = neighbours[t][forwards ? k : (k + 2) % 3];
-      if (t == triangle) return true;
-      if (t == no_index) return false;
-      visit(t);
-      k = triangles[t].x == vertex ? 0 : triangles[t].y == vertex ? 1 : 2;
-    }
-    return false;
-  };
-  if (!walk(true)) walk(false);
-}
 
 /// The occluder mesh of an instance. It has one part, or one for each connected part, or one for each cluster.
 /// O(triangles), or O(triangles log triangles) with several parts.

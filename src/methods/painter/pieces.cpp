@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A piece's corner is stored twice: as doubles with an error bound, and as the planes that meet there. The planes
-// always come from triangles and from the eye, never from computed points. So an exact sign stays a polynomial of the
-// ninth degree in the input, however often a piece was cut.
+// A corner in a cutting plane belongs to both halves. A side between a corner before the plane and one behind it gets a
+// new corner in both halves, the same to the bit. Its place is computed twice, between the ends of its side and as the
+// meeting point of three planes, and the better one is kept, with its bound.
 //
-//    cut by a plane       corners     front  0  back       A corner in the plane belongs to both halves. A side between
-//                         front:      + + 0 (cut)           a corner on one side and one on the other gets a new corner
-//                         back:       (cut) 0 - -           in both, the same to the bit.
-//
-// A new corner's place is computed twice, between the ends of its side and as the meeting point of three planes, and
-// the better one is kept, with its bound. The corner's side of any plane is decided by that place if the bound allows
-// it, and otherwise exactly by the corner's planes.
+// A corner is also stored as the planes that meet there, which always come from triangles and from the eye, never from
+// computed points. So an exact sign stays a polynomial of the ninth degree in the input, however often a piece was cut.
+// The side of a corner is decided by its place if the bound allows it, and otherwise exactly by its planes.
 #include "painter/pieces.h"
 
 #include <algorithm>
@@ -79,12 +75,6 @@ void Pieces::copy_corners(std::uint32_t piece, PaintCorner* corners) const {
     *corners++ = {place(own.corners[i].at), own.sides[i] >= PieceShape::first_cut};
 }
 
-Plane Pieces::edge_plane(const Face& face, std::uint32_t edge) const {
-  const glm::dvec3 p(face.corners[edge]), q(face.corners[edge == 2 ? 0 : edge + 1]);
-  const Leg sight = sight_.is_parallel() ? Leg{sight_.forward()} : Leg{p, sight_.eye()};
-  return {p, {q, p}, sight};
-}
-
 std::array<Plane, 3> Pieces::planes_of(const Face& face, const PieceCorner& corner) const {
   const auto of_side = [&](std::uint32_t side) {
     return side < PieceShape::first_cut ? edge_plane(face, side) : planes_[side - PieceShape::first_cut];
@@ -127,11 +117,6 @@ bool Pieces::keeps_off(std::uint32_t piece, const Plane& plane, int sign, bool& 
   for (const PieceCorner& corner : shapes_[face.shape].corners)
     if (side_of_corner(face, corner, plane) == sign) return false;
   return true;
-}
-
-std::uint32_t Pieces::add_plane(const Plane& plane) {
-  planes_.push_back(plane);
-  return std::uint32_t(planes_.size() - 1);
 }
 
 PieceShape Pieces::shape_of(std::uint32_t piece) const {

@@ -32,9 +32,8 @@ struct Face {
   PrimitiveId id;
   std::uint32_t shape = no_index;  ///< the piece's own outline, in Pieces; no_index: all of the triangle
 
-  [[nodiscard]] Plane plane() const {
-    return Plane::through(glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2]));
-  }
+  [[nodiscard]] glm::dvec3 corner(std::size_t k) const { return glm::dvec3(corners[k]); }
+  [[nodiscard]] Plane plane() const { return Plane::through(corner(0), corner(1), corner(2)); }
 };
 
 /// A corner of a piece: a vertex of its triangle, or the point where two sides meet.
@@ -97,13 +96,20 @@ class Pieces {
   /// triangle is in the plane.
   [[nodiscard]] bool keeps_off(std::uint32_t piece, const Plane& plane, int sign, bool& is_flat) const;
   /// The plane through the eye and an edge of the triangle: positive on the triangle's side.
-  [[nodiscard]] Plane edge_plane(const Face& face, std::uint32_t edge) const;
+  [[nodiscard]] Plane edge_plane(const Face& face, std::uint32_t edge) const {
+    const glm::dvec3 p(face.corners[edge]), q(face.corners[edge == 2 ? 0 : edge + 1]);
+    const Leg sight = sight_.is_parallel() ? Leg{sight_.forward()} : Leg{p, sight_.eye()};
+    return {p, {q, p}, sight};
+  }
 
   struct Halves {
     std::uint32_t front, back;
   };
   /// Stores a plane to cut by. \returns its number.
-  std::uint32_t add_plane(const Plane& plane);
+  std::uint32_t add_plane(const Plane& plane) {
+    planes_.push_back(plane);
+    return std::uint32_t(planes_.size() - 1);
+  }
   /// Cuts a piece; the front half keeps the number. Precondition: sides() of that plane has both().
   Halves cut(std::uint32_t piece, std::uint32_t plane);
 

@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stages of painter(), each a function from pieces to pieces:
+// The stages of painter(), each a function from pieces to pieces. Pieces stay in place in Pieces; stages pass on lists
+// of their numbers, here called `members`.
 //
-//   Surfaces, View
-//        |  gather            the triangles that the view may show, cut at the near and the far plane
-//        |  Copies            of triangles that coincide, all but one are taken out
-//        |  without_hidden    for figures: hidden pieces are left out, pieces that nothing overlaps go first
-//        v
-//     pieces --depth_sort--> groups: of one piece, painted as it is
-//        ^                           of several pieces without an order --part--> two halves, and the pieces within
-//        |                                                                                |        the plane
-//        +--------------------------------------------------------------------------------+
-//        |
-//        |  put_back          copies come back, directly below the one that stayed
-//        v
-//     PaintOrder
-//
-// Pieces stay in place in Pieces. Stages pass on lists of their numbers, here called `members`.
+//   gather           the triangles that the view may show, cut at the near and the far plane, without copies
+//   without_hidden   for figures: hidden pieces are left out, pieces that nothing overlaps go first
+//   depth_sort       groups: of one piece, which is painted as it is, or of several pieces without an order
+//   part             such a group as two halves, which are sorted again, and the pieces within a plane between them
 #pragma once
 
 #include <vector>
@@ -30,32 +20,6 @@ namespace frontmost::painter_detail {
 /// their numbers.
 [[nodiscard]] std::vector<std::uint32_t> gather(const Surfaces& surfaces, const View& view, Pieces& pieces,
                                                 const Execution& execution);
-
-/// Triangles that coincide: exporters write faces twice, and models are placed twice. Of triangles with the same
-/// vertices only the one with the lowest id is ordered and cut. It is on top of the others, which lie wherever it lies.
-class Copies {
- public:
-  /// Takes copies out of `members`, which are in the order of their ids. O(members).
-  Copies(const Pieces& pieces, std::vector<std::uint32_t>& members);
-
-  /// Puts copies back, directly below the pieces of the triangle that stayed, unless an occluder hides them. \throws
-  /// Error limit_exceeded if there are more than `most` pieces then.
-  void put_back(Pieces& pieces, std::vector<std::uint32_t>& members, const Occluders& occluders,
-                std::size_t most) const;
-
- private:
-  struct Copy {
-    PrimitiveId of;
-    std::uint32_t piece;
-  };
-  struct Range {
-    std::vector<Copy>::const_iterator begin, end;
-    [[nodiscard]] std::size_t count() const { return std::size_t(end - begin); }
-  };
-  [[nodiscard]] Range of(PrimitiveId id, const Occluders& occluders) const;
-
-  std::vector<Copy> copies_;  ///< sorted by originals; the copies of each from the lowest to the highest id
-};
 
 /// The pieces of a list that occluders do not hide, in its order.
 struct Unhidden {
@@ -79,7 +43,8 @@ struct Groups {
 [[nodiscard]] Groups depth_sort(const Pieces& pieces, const std::vector<std::uint32_t>& members, bool is_all,
                                 PaintSteps& steps, Poll& poll);
 
-/// Sorts by farthest points, the farthest first, then by id.
+/// Sorts by nearest, or by farthest, points, the farthest first, then by id.
+void sort_by_nearest(const Pieces& pieces, std::vector<std::uint32_t>& members, const Execution& execution);
 void sort_by_farthest(const Pieces& pieces, std::vector<std::uint32_t>& members, const Execution& execution);
 
 /// Pieces behind, in and before a plane, as the eye sees it, to be painted in this order; `within` is in order already.

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Directions of the rays of panoramas, fisheyes and laser scanners, for one pixel or for all.
 //
-// Sines and cosines come from turn(), which gives the same bits on every machine and is exact at quarters. A scanner's
-// ray straight to the right is (1, 0, 0), without the rounding of pi.
-//
 //    panorama   columns are azimuths, rows are elevations
 //    fisheye    the angle from the axis grows with the distance from the middle; beyond the rim there is no ray
 //    lidar      columns are steps, rows are its rings
 //    pattern    one row of directions, as given
 //
-// Places within a pixel are in 1/256 pixel, and their angles still are fractions of integers. So the middle of a pixel
-// has the same bits as without such places.
+// Sines and cosines come from turn(), which gives the same bits on every machine and is exact at quarters. Places
+// within a pixel are in 1/256 pixel, and their angles still are fractions of integers.
 #pragma once
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 // Boxes are stored as columns, so a vector of clusters is tested at once. The same eight corners also give the pixel
 // rectangle and the nearest key, by which clusters are ordered and binned afterwards.
 
-#include "zbuffer/cull.h"
+#include "zbuffer/frame_plan.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "zbuffer/cull_kernel.cpp"
@@ -333,13 +333,6 @@ HWY_AFTER_NAMESPACE();
 namespace frontmost::zbuffer_detail {
 
 FRONTMOST_KERNELS(CullRange);
-
-void CullResult::resize(std::size_t cluster_count) {
-  const std::size_t padded = (cluster_count + Cluster::lanes - 1) / Cluster::lanes * Cluster::lanes;
-  fate.resize(padded);
-  for (auto* side : {&x0, &y0, &x1, &y1}) side->resize(padded);
-  nearest.resize(padded);
-}
 
 void cull_clusters(const CullInput& input, Isa isa, const ClusterRange& range, CullResult& result) {
   kernel_for(CullRangeKernels, isa)(input, range, result);

@@ -12,12 +12,52 @@
 #include <vector>
 
 #include "surfaces/cluster_set.h"
-#include "zbuffer/cull.h"
-#include "zbuffer/record_lists.h"
+#include "view/screen_transform.h"
 #include "zbuffer/tile/tile.h"
 #include "zbuffer/triangle_records.h"
 
 namespace frontmost::zbuffer_detail {
+
+/// A cluster is left out where all eight corners of its box lie outside of one side of the frustum, or where its cone
+/// of normals says that every triangle faces away. Clusters that floats cannot decide are kept.
+enum class ClusterFate : std::uint8_t {
+  culled,  ///< no sample can see it
+  whole,   ///< every vertex can be snapped as it is
+  apart,   ///< some triangle may need clipping: taken apart
+};
+
+/// One entry a cluster, padded to whole vectors. `rect` and `nearest` are valid if the fate is `whole`.
+struct CullResult {
+  std::vector<std::uint8_t> fate;  ///< ClusterFate
+  std::vector<std::int32_t> x0, y0, x1, y1;
+  std::vector<float> nearest;  ///< no key of the cluster is greater
+
+  void resize(std::size_t cluster_count) {
+    const std::size_t padded = (cluster_count + Cluster::lanes - 1) / Cluster::lanes * Cluster::lanes;
+    fate.resize(padded);
+    for (auto* side : {&x0, &y0, &x1, &y1}) side->resize(padded);
+    nearest.resize(padded);
+  }
+  [[nodiscard]] ClusterFate fate_of(std::size_t i) const { return ClusterFate(fate[i]); }
+  [[nodiscard]] PixelRect rect(std::size_t i) const { return {x0[i], y0[i], x1[i], y1[i]}; }
+};
+
+/// The clusters, and the view that they are tested against.
+struct CullInput {
+  const BoxArrays& boxes;
+  const ConeArrays* cones;  ///< null: facing culls triangles only
+  const ScreenTransform& transform;
+  const View& view;
+};
+
+/// Clusters [begin, end); `begin` is a multiple of 16.
+struct ClusterRange {
+  std::size_t begin, end;
+};
+
+/// Decides the fate of each cluster, and never culls a cluster that a sample sees. Each bound from a box corner is
+/// padded by the greatest rounding error of a vertex inside the box.
+void cull_clusters(const CullInput& input, Isa isa, const ClusterRange& range, CullResult& result);
 
 /// The input that all tiles of a frame share. Borrows everything.
 struct FrameInput : Picture {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The z-buffer: plan the frame, then draw its tiles on all threads.
 //
+// The plan leads from clusters to tiles: cull, order roughly front to back, and bin. Order only decides how much the
+// hierarchical depth can hide, never the result. Whole clusters are ordered by 32 slices of depth and keep their memory
+// order within a slice: a full sort hides no more and loses locality.
+//
 // A ZBuffer keeps its planes, its plan and its scratch memory from frame to frame. Tiles that stay empty are not filled
 // again: `blank` tells which tiles of the planes hold nothing. If an error ends a frame, the tiles being drawn count as
 // not blank.
@@ -8,6 +12,7 @@
 #include "frontmost/zbuffer.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <memory>
 #include <vector>
@@ -20,6 +25,108 @@
 #include "zbuffer/triangle_records.h"
 
 namespace frontmost {
+namespace zbuffer_detail {
+namespace {
+
+// A cluster on more tiles than this is cheaper to take apart than to transform again for each tile.
+constexpr int kMaxTilesOfCluster = 16;
+constexpr std::size_t kSlices = 32;
+
+}  // namespace
+
+TileJob FramePlan::job(std::size_t tile, const View& view) const {
+  const PartedList records = records_.of(tile);
+  const PartedList clusters(cluster_lists_.of(tile), [&](std::uint32_t cluster) { return cluster >= first_cutout_; });
+  return {Tile(tile, view), {records.solid, clusters.solid}, {records.cutouts, clusters.cutouts}};
+}
+
+void FramePlan::make(const ClusterSet& set, const PlaceTarget& target, const Execution& execution,
+                     std::size_t most_record_items) {
+  constexpr std::size_t kCullGrain = 4096;
+  culled_.resize(set.clusters.size());
+  const View& view = target.view;
+  const Culling culling = target.facing.culling();
+  const ConeArrays* cones = nullptr;
+  if (culling == Culling::back || culling == Culling::front) {
+    // Cones save between a fortieth and a half of their own cost in each frame, so they pay after some frames.
+    constexpr int kFramesWithout = 8;
+    const std::weak_ptr<const void> identity = set.cones.identity();
+    if (identity.owner_before(last_set_) || last_set_.owner_before(identity)) {
+      last_set_ = identity;
+      frames_by_facing_ = 0;
+    }
+    cones = frames_by_facing_++ < kFramesWithout ? set.cones.made() : &set.cones.get(set, execution);
+  }
+  const CullInput input{set.boxes, cones, target.transform, view};
+  parallel_for(execution, set.clusters.size(), kCullGrain, [&](std::size_t begin, std::size_t end) {
+    cull_clusters(input, execution.isa, {begin, end}, culled_);
+  });
+  first_cutout_ = set.first_cutout;
+  choose_apart(set.clusters.size());
+  take_apart(set, target, execution);
+  records_.plan(view, set.cutouts.get(), most_record_items);
+  order_whole(set.clusters.size());
+  list_clusters(view);
+}
+
+void FramePlan::choose_apart(std::size_t cluster_count) {
+  apart_.clear();
+  for (std::size_t i = 0; i < cluster_count; ++i) {
+    if (culled_.fate_of(i) == ClusterFate::whole && TileRect(culled_.rect(i)).count() > kMaxTilesOfCluster)
+      culled_.fate[i] = static_cast<std::uint8_t>(ClusterFate::apart);
+    if (culled_.fate_of(i) == ClusterFate::apart) apart_.push_back(static_cast<std::uint32_t>(i));
+  }
+}
+
+void FramePlan::take_apart(const ClusterSet& set, const PlaceTarget& target, const Execution& execution) {
+  constexpr std::size_t kGrain = 64;
+  const std::size_t part_count = (apart_.size() + kGrain - 1) / kGrain;
+  if (apart_parts_.size() < part_count) apart_parts_.resize(part_count);
+  parallel_for(execution, apart_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    // Parts belong to chunks, not threads, so the order of records does not depend on the number of threads.
+    std::vector<TriangleRecord>& part = apart_parts_[begin / kGrain];
+    part.clear();
+    for (std::size_t i = begin; i < end; ++i) append_records(target, set, set.clusters[apart_[i]], part);
+  });
+  std::vector<TriangleRecord>& all = records_.records;
+  all.clear();
+  for (std::size_t i = 0; i < part_count; ++i) all.insert(all.end(), apart_parts_[i].begin(), apart_parts_[i].end());
+}
+
+void FramePlan::order_whole(std::size_t cluster_count) {
+  // Slices divide the bits of the key, which grow with its logarithm, so slices get deeper with distance.
+  std::uint32_t least = 0xFFFFFFFFu, greatest = 0;
+  for (std::size_t i = 0; i < cluster_count; ++i) {
+    if (culled_.fate_of(i) != ClusterFate::whole) continue;
+    least = std::min(least, bits_as<std::uint32_t>(culled_.nearest[i]));
+    greatest = std::max(greatest, bits_as<std::uint32_t>(culled_.nearest[i]));
+  }
+  const double scale = greatest > least ? double(kSlices - 1) / double(greatest - least) : 0.0;
+  const auto slice_of = [&](std::size_t i) {
+    return std::size_t(double(greatest - bits_as<std::uint32_t>(culled_.nearest[i])) * scale) +
+           (i < first_cutout_ ? 0 : kSlices);
+  };
+
+  std::array<std::size_t, 2 * kSlices + 1> begin{};
+  for (std::size_t i = 0; i < cluster_count; ++i)
+    if (culled_.fate_of(i) == ClusterFate::whole) ++begin[slice_of(i) + 1];
+  for (std::size_t s = 0; s < 2 * kSlices; ++s) begin[s + 1] += begin[s];
+  order_.resize(begin.back());
+  for (std::size_t i = 0; i < cluster_count; ++i)
+    if (culled_.fate_of(i) == ClusterFate::whole) order_[begin[slice_of(i)]++] = static_cast<std::uint32_t>(i);
+}
+
+void FramePlan::list_clusters(const View& view) {
+  const std::size_t across = Tile::tiles_across(view);
+  cluster_lists_.make({0, Tile::count(view)}, order_.size(), [&](std::size_t i, const auto& add) {
+    const TileRect tiles(culled_.rect(order_[i]));
+    for (int y = tiles.y0; y <= tiles.y1; ++y)
+      for (int x = tiles.x0; x <= tiles.x1; ++x) add(std::size_t(y) * across + std::size_t(x));
+  });
+  for (std::uint32_t& item : cluster_lists_.items) item = order_[item];
+}
+
+}  // namespace zbuffer_detail
 
 using namespace zbuffer_detail;
 
@@ -33,23 +140,21 @@ struct ZBuffer::State {
 
   /// Makes planes for the view, or keeps those of the last frame if they fit. \returns true if their memory was used
   /// before.
-  bool prepare_planes(const View& view);
-};
-
-bool ZBuffer::State::prepare_planes(const View& view) {
-  const View& last = visible.view;
-  const bool fits = visible.primitives.size() == view.sample_count() && visible.keys.size() == view.sample_count();
-  // If memory runs out, planes, their view and `blank` still match each other.
-  if (!fits) {
-    visible = {};
-    visible = {view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(view.sample_count())};
-    blank.clear();
+  bool prepare_planes(const View& view) {
+    const View& last = visible.view;
+    const bool fits = visible.primitives.size() == view.sample_count() && visible.keys.size() == view.sample_count();
+    // If memory runs out, planes, their view and `blank` still match each other.
+    if (!fits) {
+      visible = {};
+      visible = {view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(view.sample_count())};
+      blank.clear();
+    }
+    if (last.width != view.width || last.height != view.height || last.samples != view.samples) blank.clear();
+    if (blank.empty()) blank.assign(Tile::count(view), 0);
+    visible.view = view;
+    return fits;
   }
-  if (last.width != view.width || last.height != view.height || last.samples != view.samples) blank.clear();
-  if (blank.empty()) blank.assign(Tile::count(view), 0);
-  visible.view = view;
-  return fits;
-}
+};
 
 ZBuffer::ZBuffer() : state_(std::make_unique<State>()) {}
 ZBuffer::~ZBuffer() = default;

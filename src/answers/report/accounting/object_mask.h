@@ -7,7 +7,7 @@
 #include "report/accounting/mask.h"
 #include "surfaces/placed_scene.h"
 #include "view/screen_cutout.h"
-#include "zbuffer/place/place_kernel.h"
+#include "zbuffer/place/triangle_batch.h"
 
 namespace frontmost::accounting_detail {
 

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "base/work_limit.h"
-#include "zbuffer/tile/tile_lists.h"
+#include "zbuffer/tile/tile.h"
 
 namespace frontmost {
 namespace {

@@ -1,16 +1,110 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gathers the fragments of one rectangle of pixels, sorts them into lists, and cuts holes out of them.
+// Gathers the fragments of one rectangle of pixels, sorts them into lists, and cuts holes out of them. The private
+// memory of one thread holds them as they arrive and sorted:
 //
-//    gather_tile   fragments in the order of arrival; the fragments of each pixel are counted on the way
-//    sort_lists    lists of pixels, sixteen pixels side by side, nearest first
-//    cut_fragments takes holes out of the masks
+//    counts      pixel 0   1   2  ...                   fragments of each pixel so far
+//    arrived     key | place | triangle | mask          one entry a fragment, in the order of arrival
+//    slots       group 0: slot 0 of 16 pixels, slot 1 of 16 pixels, ... | group 1: ...       after sorting
+//
+// A slot is 64 bits: the bits of the key above the complement of the fragment's number. So integer comparison sorts by
+// key; equal keys are sorted by id afterwards.
 #pragma once
 
 #include <array>
 
-#include "abuffer/gather/tile_scratch.h"
+#include "abuffer/plan/frame_plan.h"
+#include "base/memory.h"
+#include "view/triangle_keys.h"
 
 namespace frontmost::abuffer_detail {
+
+inline constexpr std::size_t kTilePixels = std::size_t(kTileSize) * kTileSize;
+/// Pixels are numbered by blocks of 4 x 4, which are sorted and composited together.
+inline constexpr std::size_t kGroup = 16, kGroups = kTilePixels / kGroup;
+inline constexpr int kBlocksAcross = kTileSize / 4;
+
+/// A fragment's pixel and its rank in the pixel share one word.
+inline constexpr int kRankBits = 20;
+inline constexpr std::uint32_t kMostOfPixel = (1u << kRankBits) - 1;
+
+/// A tile that holds more is divided. At 28 bytes a fragment, and up to 16 for the sorted lists, the limit is 14 MB.
+inline constexpr std::size_t kMostOfTile = std::size_t(1) << 18;
+/// The most fragments that one step of gathering may add before the room is checked again.
+inline constexpr std::size_t kMostAtOnce = kTilePixels + 64;
+
+[[nodiscard]] inline std::uint32_t pixel_number(std::uint32_t x, std::uint32_t y) {
+  return ((y >> 2) * kBlocksAcross + (x >> 2)) * 16 + (y & 3) * 4 + (x & 3);
+}
+
+/// Key planes of the triangles of a tile, as in view/triangle_keys.h. The key at a point is (k0 + dx*gx) + dy*gy from
+/// (x0, y0), in 1/256 pixel from the tile's corner, limited to [low, high]; SteepKeys give the keys of steep triangles.
+/// `slack` bounds the rounding of the difference of two keys of one pixel. `half` bounds the difference of a pixel's
+/// keys from the centre's key.
+struct LocalTriangles {
+  std::size_t count = 0;
+  Buffer<std::int32_t> x0, y0;
+  Buffer<float> k0, gx, gy, low, high, slack, half;
+  Buffer<std::uint32_t> steep;  ///< number in `steep_keys`, or no_index
+  Buffer<PrimitiveId> id;
+  std::vector<SteepKeys> steep_keys;
+
+  void clear() {
+    count = 0;
+    steep_keys.clear();
+  }
+  /// Makes room for `more` triangles.
+  void reserve(std::size_t more);
+  [[nodiscard]] float key_at(std::size_t t, std::int32_t x, std::int32_t y) const {
+    if (steep[t] != no_index) return steep_keys[steep[t]].at(x, y);
+    const float key = (k0[t] + float(x - x0[t]) * gx[t]) + float(y - y0[t]) * gy[t];
+    return std::min(std::max(key, low[t]), high[t]);
+  }
+};
+
+/// Fragments in the order of arrival. Number 0 stands for no fragment: it covers nothing and lies behind everything.
+struct Arrived {
+  static constexpr std::size_t first = 1;
+  std::size_t count = 0, capacity = 0;
+  Buffer<std::uint32_t> key;                  ///< bits of the float
+  Buffer<std::uint32_t> place;                ///< pixel << kRankBits | rank
+  Buffer<std::uint32_t> triangle;             ///< number in LocalTriangles
+  Buffer<std::uint32_t> mask_low, mask_high;  ///< sub-samples 0 to 31 and 32 to 63
+
+  void grow(std::size_t wanted);
+  [[nodiscard]] std::uint64_t mask(std::size_t n) const { return std::uint64_t(mask_high[n]) << 32 | mask_low[n]; }
+  [[nodiscard]] float key_of(std::size_t n) const { return bits_as<float>(key[n]); }
+};
+
+struct GatherScratch {
+  GatherScratch();
+
+  LocalTriangles triangles;
+  Arrived arrived;
+  Buffer<std::uint32_t> counts;      ///< by pixel; the beginnings of the lists once they are sorted
+  Buffer<std::uint32_t> group_base;  ///< by group, in slots; then the end of the last group
+  /// Slot-major: slot s of pixel p of a group is at (base + s) * 16 + p. A slot is key bits << 32 | ~number of the
+  /// fragment, in descending order; 0 is empty.
+  Buffer<std::uint64_t> slots;
+  std::vector<std::uint64_t> run;    ///< equal keys of one pixel
+  Buffer<std::uint32_t> references;  ///< covered (triangle, pixel) pairs of one batch
+
+  [[nodiscard]] std::size_t length(std::size_t group) const { return group_base[group + 1] - group_base[group]; }
+  /// The nearest and the farthest key of a fragment within its pixel.
+  [[nodiscard]] float nearest_of(std::size_t number) const {
+    const std::size_t t = arrived.triangle[number];
+    return std::min(arrived.key_of(number) + triangles.half[t], triangles.high[t]);
+  }
+  [[nodiscard]] float farthest_of(std::size_t number) const {
+    const std::size_t t = arrived.triangle[number];
+    return std::max(arrived.key_of(number) - triangles.half[t], triangles.low[t]);
+  }
+  [[nodiscard]] std::uint64_t* slot(std::size_t group, std::size_t s) {
+    return slots.data() + (group_base[group] + s) * kGroup;
+  }
+  [[nodiscard]] const std::uint64_t* slot(std::size_t group, std::size_t s) const {
+    return slots.data() + (group_base[group] + s) * kGroup;
+  }
+};
 
 /// Places of a pixel's sub-samples, from its top left corner. Every pattern lies on multiples of 1/16 pixel, so edge
 /// functions may be shifted right by 4 before stepping from sample to sample: this is exact, and a step is a multiple

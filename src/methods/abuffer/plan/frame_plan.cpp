@@ -4,8 +4,7 @@
 //                              to be clipped   taken apart, triangle by triangle, and clipped
 //    triangles of the last two are "singles", listed in the tiles that they touch themselves
 //
-// Lists are counted first and then filled, into one array for all tiles. If the lists of singles would be too long,
-// tiles go through all singles instead.
+// If the lists of singles would be too long, tiles go through all singles instead.
 #include "abuffer/plan/frame_plan.h"
 
 #include <algorithm>
@@ -60,19 +59,8 @@ bool misses(const ScreenTriangle& t, int tile_x, int tile_y) {
   return false;
 }
 
-/// Lists of the tiles that `visit(item, add)` names by add(tile), items in their order: counted first, then filled.
-template <class Visit>
-TileNumbers lists_of(std::size_t tile_count, std::size_t item_count, const Visit& visit) {
-  TileNumbers lists;
-  // Filling a list advances its beginning, so beginnings are stored one place further on at first.
-  lists.begin.assign(tile_count + 2, 0);
-  for (std::size_t i = 0; i < item_count; ++i) visit(i, [&](std::size_t tile) { ++lists.begin[tile + 2]; });
-  for (std::size_t tile = 0; tile < tile_count; ++tile) lists.begin[tile + 2] += lists.begin[tile + 1];
-  lists.items.resize(lists.begin[tile_count + 1]);
-  for (std::size_t i = 0; i < item_count; ++i)
-    visit(i, [&](std::size_t tile) { lists.items[lists.begin[tile + 1]++] = static_cast<std::uint32_t>(i); });
-  return lists;
-}
+/// Runs on this thread: a frame may be thinned within a loop that takes all threads.
+const Execution kAlone{.threads = 1};
 
 template <class Add>
 void for_tiles(const TileSpan& rect, int tiles_x, const Add& add) {
@@ -230,20 +218,23 @@ FragmentPlan FragmentPlan::without(std::span<const TriangleNumber> hidden) const
 }
 
 void FragmentPlan::make_lists(const std::vector<bool>& left_out) {
-  cluster_lists_ = lists_of(tile_count(), screen().places.size(), [&](std::size_t i, const auto& add) {
+  const auto list_cluster = [&](std::size_t i, const auto& add) {
     const ClusterPlace& place = screen().places[i];
     if (place.fate == ScreenFate::whole && (left_out.empty() || !left_out[i]))
-      for_tiles(tiles_of(place, transform(), view()), frame_->tiles_x, [&](int, int, std::size_t tile) { add(tile); });
-  });
+      for_tiles(tiles_of(place, transform(), view()), frame_->tiles_x,
+                [&](int, int, std::size_t tile) { add(tile, std::uint32_t(i)); });
+  };
+  cluster_lists_ = TileNumbers(tile_count(), screen().places.size(), list_cluster, kAlone);
   std::size_t items = 0;
   for (const ScreenTriangle& t : singles_) items += tiles_of(t, view()).count();
   if (items > kMostSingleItems) return;
-  single_lists_ = lists_of(tile_count(), singles_.size(), [&](std::size_t i, const auto& add) {
+  const auto list_single = [&](std::size_t i, const auto& add) {
     const ScreenTriangle& t = singles_[i];
     for_tiles(tiles_of(t, view()), frame_->tiles_x, [&](int x, int y, std::size_t tile) {
-      if (!misses(t, x, y)) add(tile);
+      if (!misses(t, x, y)) add(tile, std::uint32_t(i));
     });
-  });
+  };
+  single_lists_.emplace(tile_count(), singles_.size(), list_single, kAlone);
 }
 
 }  // namespace frontmost::abuffer_detail

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/buckets.h"
 #include "surfaces/cluster_set.h"
 #include "view/facing_rule.h"
 #include "view/screen_transform.h"
@@ -59,15 +60,8 @@ struct ScreenTriangle {
 /// Makes the area positive. \returns false if the triangle is culled, or has no area and so covers nothing.
 [[nodiscard]] bool orient(ScreenTriangle& triangle, const FacingRule& facing);
 
-/// A list of numbers for every tile, one after another in one array.
-struct TileNumbers {
-  std::vector<std::size_t> begin;  ///< first item of each tile, then the end of the last tile
-  std::vector<std::uint32_t> items;
-
-  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t tile) const {
-    return std::span(items).subspan(begin[tile], begin[tile + 1] - begin[tile]);
-  }
-};
+/// A list of numbers for every tile.
+using TileNumbers = Buckets<std::uint32_t>;
 
 /// A triangle of a plan: one of a cluster, or a single.
 struct TriangleNumber {
@@ -88,17 +82,27 @@ class FragmentPlan {
   [[nodiscard]] std::size_t tile_count() const { return std::size_t(frame_->tiles_x) * std::size_t(frame_->tiles_y); }
   [[nodiscard]] Rectangle tile(std::size_t number) const;
 
-  [[nodiscard]] std::span<const std::uint32_t> clusters(std::size_t tile) const { return cluster_lists_.of(tile); }
+  [[nodiscard]] std::span<const std::uint32_t> clusters(std::size_t tile) const { return cluster_lists_[tile]; }
   [[nodiscard]] std::span<const ScreenTriangle> singles() const { return singles_; }
   /// The singles of a tile. None if lists were too long to make: then any single may be in the tile.
   [[nodiscard]] std::optional<std::span<const std::uint32_t>> singles(std::size_t tile) const {
     if (!single_lists_) return std::nullopt;
-    return single_lists_->of(tile);
+    return (*single_lists_)[tile];
   }
 
   /// Calls visit(triangle, number) for every triangle that may cover a sample.
   template <class Visit>
-  void for_each(const Visit& visit) const;
+  void for_each(const Visit& visit) const {
+    for (std::uint32_t i = 0; i < singles_.size(); ++i) visit(singles_[i], TriangleNumber{no_index, i});
+    for (std::uint32_t c = 0; c < screen().places.size(); ++c) {
+      if (screen().places[c].fate != ScreenFate::whole) continue;
+      const Cluster& cluster = set().clusters[c];
+      for (std::uint32_t i = 0; i < cluster.triangle_count; ++i) {
+        ScreenTriangle t = snapped(cluster, i);
+        if (is_drawn(t)) visit(t, TriangleNumber{c, i});
+      }
+    }
+  }
   /// Precondition: for_each() visits this number.
   [[nodiscard]] ScreenTriangle triangle(const TriangleNumber& number) const;
   /// Whether a texture may cut holes into the primitive.
@@ -132,18 +136,5 @@ class FragmentPlan {
   TileNumbers cluster_lists_;
   std::optional<TileNumbers> single_lists_;
 };
-
-template <class Visit>
-void FragmentPlan::for_each(const Visit& visit) const {
-  for (std::uint32_t i = 0; i < singles_.size(); ++i) visit(singles_[i], TriangleNumber{no_index, i});
-  for (std::uint32_t c = 0; c < screen().places.size(); ++c) {
-    if (screen().places[c].fate != ScreenFate::whole) continue;
-    const Cluster& cluster = set().clusters[c];
-    for (std::uint32_t i = 0; i < cluster.triangle_count; ++i) {
-      ScreenTriangle t = snapped(cluster, i);
-      if (is_drawn(t)) visit(t, TriangleNumber{c, i});
-    }
-  }
-}
 
 }  // namespace frontmost::abuffer_detail

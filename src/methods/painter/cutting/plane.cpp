@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The side of a point is computed with ever costlier numbers until the answer is certain:
-//
-//    doubles with a bound on their error     nearly always enough
-//    numbers of twice the length (Twice)     for points where three planes meet
-//    expansions, which are never rounded     for points in the plane, or next to it
+// The side of a point is computed with ever costlier numbers until the answer is certain: doubles with a bound on their
+// error, which nearly always suffice; numbers of twice the length (Twice), for points where three planes meet; and
+// expansions, which are never rounded, for points in the plane or next to it.
 //
 // A plane is n.x = d with n = u x v, where u and v are differences of given points: n has degree 2 in the input. The
 // meeting point of three planes is a quotient by Cramer's rule, of degree 7 above and 6 below. Its side of a fourth
@@ -12,8 +10,6 @@
 #include "painter/cutting/plane.h"
 
 #include <algorithm>
-
-#include "painter/cutting/twice.h"
 
 namespace frontmost::painter_detail {
 
@@ -73,21 +69,6 @@ int sign_of(const Expansion& number) { return number.sign(); }
 Bounded bounded_of(const Twice& number) { return number.bounded(); }
 Bounded bounded_of(const Expansion& number) { return {number.rounded(), 0}; }
 
-/// A plane n.x = d, relative to a point.
-template <class Number>
-struct LongPlane {
-  LongVector<Number> n;
-  Number d;
-};
-
-/// The plane through `anchor` along u and v, relative to `centre`.
-template <class Number>
-LongPlane<Number> long_plane(const glm::dvec3& anchor, const Leg& u, const Leg& v, const glm::dvec3& centre) {
-  LongPlane<Number> plane{cross_of(difference_of<Number>(u.to, u.from), difference_of<Number>(v.to, v.from)), {}};
-  plane.d = dot_of(plane.n, difference_of<Number>(anchor, centre));
-  return plane;
-}
-
 /// The meeting point of three planes by Cramer's rule: `times` / determinant, relative to a point of the first plane,
 /// whose d is 0.
 template <class Number>
@@ -113,13 +94,18 @@ Bounded quotient(const Bounded& above, const Bounded& below) {
 }  // namespace
 
 template <class Number>
+LongPlane<Number> Plane::in_full(const glm::dvec3& centre) const {
+  LongPlane<Number> plane{cross_of(difference_of<Number>(u_.to, u_.from), difference_of<Number>(v_.to, v_.from)), {}};
+  plane.d = dot_of(plane.n, difference_of<Number>(anchor_, centre));
+  return plane;
+}
+
+template <class Number>
 int Plane::sign_of_meeting(const std::array<const Plane*, 3>& planes) const {
   const glm::dvec3& centre = planes[0]->anchor_;
-  const auto in_full = [&](const Plane& plane) {
-    return long_plane<Number>(plane.anchor_, plane.u_, plane.v_, centre);
-  };
-  const Meeting<Number> meeting({in_full(*planes[0]), in_full(*planes[1]), in_full(*planes[2])});
-  const LongPlane<Number> asked = in_full(*this);
+  const Meeting<Number> meeting(
+      {planes[0]->in_full<Number>(centre), planes[1]->in_full<Number>(centre), planes[2]->in_full<Number>(centre)});
+  const LongPlane<Number> asked = in_full<Number>(centre);
   const int height = sign_of(dot_of(asked.n, meeting.times) - asked.d * meeting.determinant),
             determinant = sign_of(meeting.determinant);
   return height == 2 || determinant == 2 ? 2 : height * determinant;
@@ -134,10 +120,8 @@ int Plane::side_of_meeting(const std::array<const Plane*, 3>& planes) const {
 template <class Number>
 Approximate Plane::long_meeting(const std::array<const Plane*, 3>& planes) {
   const glm::dvec3& centre = planes[0]->anchor_;
-  const auto in_full = [&](const Plane& plane) {
-    return long_plane<Number>(plane.anchor_, plane.u_, plane.v_, centre);
-  };
-  const Meeting<Number> meeting({in_full(*planes[0]), in_full(*planes[1]), in_full(*planes[2])});
+  const Meeting<Number> meeting(
+      {planes[0]->in_full<Number>(centre), planes[1]->in_full<Number>(centre), planes[2]->in_full<Number>(centre)});
   Approximate point{centre, 0};
   for (int axis = 0; axis < 3; ++axis) {
     const Bounded from_centre = quotient(bounded_of(meeting.times[std::size_t(axis)]), bounded_of(meeting.determinant));

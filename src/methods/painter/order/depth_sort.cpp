@@ -2,27 +2,155 @@
 // Newell's exchange, made to end. A piece P is painted once everything that it covers is painted; covered pieces that
 // are not painted yet go first. This is a depth-first search: if it comes back to a waiting piece, all pieces in
 // between have no order (Tarjan's strongly connected components). Pieces come from far to near, so almost everything
-// that one covers is painted already and needs no test. Neighbours are looked for when a piece's turn comes, so no pair
-// is ever stored.
+// that one covers is painted already. Neighbours are looked for when a piece's turn comes, so no pair is ever stored.
+// The search has its own stack, because chains of covering pieces may be as long as there are pieces.
 //
 //    far                                         near
 //    [painted ......][ P waits -> Q waits -> R ][ not found yet ...]
 //                         ^                |
 //                         +---- covers ----+       R covers P, which is waiting: P, Q and R have no order
-//
-// The search has its own stack, because chains of covering pieces may be as long as there are pieces. Painted pieces at
-// the beginning of a cell are skipped at once, and the search in a cell ends where pieces are wholly nearer.
 #include <algorithm>
 #include <optional>
 #include <unordered_map>
 
-#include "painter/order/by_depth.h"
-#include "painter/order/newell_tests.h"
+#include "base/memory.h"
 #include "painter/order/piece_grid.h"
 #include "painter/stages.h"
+#include "surfaces/radix_sort.h"
 
 namespace frontmost::painter_detail {
 namespace {
+
+/// An integer that rises as depths fall.
+std::uint32_t falling_key(float depth) {
+  const auto bits = bits_as<std::uint32_t>(depth + 0.0f);  // no -0
+  return bits >> 31 ? bits : ~bits & 0x7fffffff;
+}
+
+/// Sorts by a depth of each piece, the greatest first; equal depths by id, the greatest first, then by number. Bits of
+/// depths are turned into integers, so a radix sort of (depth, piece) needs no comparison. Runs of equal depths are
+/// short in most scenes.
+template <class Depth>
+void sort_by_depth(const Pieces& pieces, std::vector<std::uint32_t>& members, const Depth& depth,
+                   const Execution& execution) {
+  constexpr std::size_t few = 2048;  // counting digits does not pay for less
+  Buffer<std::uint64_t> items(members.size());
+  for (std::size_t i = 0; i < items.size(); ++i)
+    items[i] = std::uint64_t(falling_key(depth(members[i]))) << 32 | members[i];
+  if (items.size() < few) {
+    std::sort(items.begin(), items.end());
+  } else {
+    items = radix_sort(std::move(items), 32, execution);
+  }
+  const auto is_before = [&](std::uint64_t a, std::uint64_t b) {
+    const PrimitiveId id_a = pieces.face(std::uint32_t(a)).id, id_b = pieces.face(std::uint32_t(b)).id;
+    return id_a != id_b ? id_a > id_b : std::uint32_t(a) < std::uint32_t(b);
+  };
+  for (std::size_t begin = 0, end; begin < items.size(); begin = end) {
+    for (end = begin + 1; end < items.size() && items[end] >> 32 == items[begin] >> 32;) ++end;
+    if (end > begin + 1) std::sort(items.begin() + begin, items.begin() + end, is_before);
+  }
+  for (std::size_t i = 0; i < items.size(); ++i) members[i] = std::uint32_t(items[i]);
+}
+
+/// One piece, prepared for tests against others, from the cheapest to the dearest test, each of which may decide:
+///
+///    is all of this piece behind the plane of the other?      it cannot cover the other
+///    is all of the other before the plane of this one?        it cannot cover the other
+///    does a side of either separate them on the screen?       they do not overlap
+///    (two whole triangles) which is nearer in the overlap?    by vertices within, then by sides that cross
+///
+/// The first two tests decide most pairs. The fourth test reuses the signs of the third, so no sign is computed twice.
+/// All signs are exact: a pair that is tested in two cells, or from both sides, gets one answer.
+class NewellTests {
+ public:
+  NewellTests(const Pieces& pieces, std::uint32_t piece)
+      : pieces_(pieces), piece_(piece), face_(pieces.face(piece)), plane_(face_.plane()) {}
+
+  [[nodiscard]] const Plane& plane() const { return plane_; }
+  /// Whether the piece covers a point of `other`, by all tests except those of the extents. Also true if one of the two
+  /// was cut and no test decides: they may then have no order.
+  [[nodiscard]] bool covers(std::uint32_t other, PaintSteps& steps) {
+    const Face& face = pieces_.face(other);
+    const Plane other_plane = face.plane();
+    bool is_flat = false;
+    if (pieces_.keeps_off(piece_, other_plane, 1, is_flat) && !is_flat) {
+      ++steps.behind;
+      return false;
+    }
+    if (!is_flat && pieces_.keeps_off(other, plane_, -1, is_flat)) {
+      ++steps.before;
+      return false;
+    }
+    if (is_apart(other)) {
+      ++steps.projections_apart;
+      return false;
+    }
+    ++steps.compared;
+    if (is_flat) return face_.id < face.id;
+    if (pieces_.keeps_off(other, plane_, 1, is_flat) || pieces_.keeps_off(piece_, other_plane, -1, is_flat))
+      return true;
+    if (!pieces_.is_whole(piece_) || !pieces_.is_whole(other)) return true;
+    return is_over(face, other_plane);
+  }
+
+ private:
+  /// turns[k][i]: the side of edge k of one triangle on which vertex i of the other triangle lies.
+  using Turns = std::array<std::array<int, 3>, 3>;
+  static bool is_within(const Turns& turns, std::size_t corner) {
+    return turns[0][corner] >= 0 && turns[1][corner] >= 0 && turns[2][corner] >= 0;
+  }
+
+  /// Convex polygons are apart if and only if an edge of either separates them. For pieces that were cut, only the
+  /// edges of their triangles are tested.
+  [[nodiscard]] bool is_apart(std::uint32_t other) {
+    if (!edges_) edges_.emplace(edges_of(face_));
+    if (is_outside(*edges_, other, other_turns_)) return true;
+    return is_outside(edges_of(pieces_.face(other)), piece_, turns_);
+  }
+  [[nodiscard]] bool is_outside(const std::array<Plane, 3>& edges, std::uint32_t piece, Turns& turns) const {
+    const Face& face = pieces_.face(piece);
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t i = 0; i < 3; ++i) turns[k][i] = edges[k].side(glm::dvec3(face.corners[i]));
+      if (turns[k][0] <= 0 && turns[k][1] <= 0 && turns[k][2] <= 0) return true;
+      bool is_flat = false;
+      if (face.shape != no_index && pieces_.keeps_off(piece, edges[k], 1, is_flat)) return true;
+    }
+    return false;
+  }
+  /// In the overlap of two triangles on the screen, the nearer one changes only along a line. So the corners of the
+  /// overlap tell whether this triangle is nearer anywhere.
+  [[nodiscard]] bool is_over(const Face& other, const Plane& other_plane) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (is_within(turns_, i) && other_plane.side(glm::dvec3(face_.corners[i])) > 0) return true;
+      if (is_within(other_turns_, i) && plane_.side(glm::dvec3(other.corners[i])) < 0) return true;
+    }
+    return crosses_over(other);
+  }
+  /// Whether an edge of this triangle passes before an edge of the other.
+  [[nodiscard]] bool crosses_over(const Face& other) const {
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t next_k = (k + 1) % 3, next_i = (i + 1) % 3;
+        if (other_turns_[k][i] * other_turns_[k][next_i] >= 0 || turns_[i][k] * turns_[i][next_k] >= 0) continue;
+        const glm::dvec3 from(face_.corners[k]), to(face_.corners[next_k]);
+        const glm::dvec3 other_from(other.corners[i]), other_to(other.corners[next_i]);
+        const int order = sign_of_determinant({to, from}, {other_from, from}, {other_to, from});
+        if (order * other_turns_[k][i] < 0) return true;
+      }
+    return false;
+  }
+  [[nodiscard]] std::array<Plane, 3> edges_of(const Face& face) const {
+    return {pieces_.edge_plane(face, 0), pieces_.edge_plane(face, 1), pieces_.edge_plane(face, 2)};
+  }
+
+  const Pieces& pieces_;
+  const std::uint32_t piece_;
+  const Face& face_;
+  const Plane plane_;
+  std::optional<std::array<Plane, 3>> edges_;  ///< made when first needed
+  Turns other_turns_{}, turns_{};              ///< by this piece's edges, and by the other's edges
+};
 
 constexpr std::uint32_t kReportEvery = 1 << 14;
 /// Cells with more pieces have boxes around many pieces at a time.
@@ -200,6 +328,11 @@ class Search {
 };
 
 }  // namespace
+
+void sort_by_nearest(const Pieces& pieces, std::vector<std::uint32_t>& members, const Execution& execution) {
+  sort_by_depth(
+      pieces, members, [&](std::uint32_t piece) { return pieces.extent(piece).nearest; }, execution);
+}
 
 void sort_by_farthest(const Pieces& pieces, std::vector<std::uint32_t>& members, const Execution& execution) {
   sort_by_depth(

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cells are chosen so that a piece is listed about four times and a cell lists about two pieces. Large boxes make that
 // impossible; cells then grow until the lists fit, as more entries would cost more than they save.
-//
-// Boxes in space lie along the plane of one of their pieces. In a stack of parallel sheets, all sheets overlap on the
-// screen, so the grid separates nothing. But every box of 64 sheets is flat, and one test of its nearest corner passes
-// over all of them.
 #include "painter/order/piece_grid.h"
 
 #include <algorithm>
@@ -41,19 +37,12 @@ std::array<glm::dvec3, 3> axes_of(const Face& face) {
 
 PieceGrid::PieceGrid(const std::vector<PolygonExtent>& extents) {
   choose_cells(extents);
-  first_.assign(std::size_t(columns_.x) * std::size_t(columns_.y) + 1, 0);
-  const auto for_each = [&](const auto& visit) {
-    for (std::uint32_t i = 0; i < extents.size(); ++i) {
-      const Range r = range(extents[i]);
-      for (int y = r.first_y; y <= r.last_y; ++y)
-        for (int x = r.first_x; x <= r.last_x; ++x) visit(number(x, y), i);
-    }
+  const auto list = [&](std::size_t i, const auto& add) {
+    const Range r = range(extents[i]);
+    for (int y = r.first_y; y <= r.last_y; ++y)
+      for (int x = r.first_x; x <= r.last_x; ++x) add(number(x, y), std::uint32_t(i));
   };
-  for_each([&](std::size_t cell, std::uint32_t) { ++first_[cell + 1]; });
-  for (std::size_t i = 0; i + 1 < first_.size(); ++i) first_[i + 1] += first_[i];
-  entries_.resize(first_.back());
-  std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-  for_each([&](std::size_t cell, std::uint32_t i) { entries_[next[cell]++] = i; });
+  cells_ = {std::size_t(columns_.x) * std::size_t(columns_.y), extents.size(), list, {.threads = 1}};
 }
 
 /// Chooses square cells, as small as the number of pieces suggests and the size of their boxes allows: a box of w x h

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/buckets.h"
 #include "painter/pieces.h"
 
 namespace frontmost::painter_detail {
@@ -24,7 +25,8 @@ class PieceGrid {
   explicit PieceGrid(const std::vector<PolygonExtent>& extents);
   /// Replaces each place i in the lists by numbers[i].
   void renumber(const std::vector<std::uint32_t>& numbers) {
-    for (std::uint32_t& entry : entries_) entry = numbers[entry];
+    for (std::size_t cell = 0; cell < cells_.count(); ++cell)
+      for (std::uint32_t& entry : cells_[cell]) entry = numbers[entry];
   }
 
   /// The cells that a box touches, from the first to the last on each axis.
@@ -37,9 +39,7 @@ class PieceGrid {
   [[nodiscard]] std::size_t number(int x, int y) const {
     return std::size_t(y) * std::size_t(columns_[0]) + std::size_t(x);
   }
-  [[nodiscard]] std::span<const std::uint32_t> cell(std::size_t number) const {
-    return {entries_.data() + first_[number], first_[number + 1] - first_[number]};
-  }
+  [[nodiscard]] std::span<const std::uint32_t> cell(std::size_t number) const { return cells_[number]; }
   /// In pixels. Cells at the rim of the grid extend to infinity.
   struct Box {
     glm::dvec2 low, high;
@@ -51,7 +51,7 @@ class PieceGrid {
     };
     return {{side(x, 0), side(y, 1)}, {side(x + 1, 0), side(y + 1, 1)}};
   }
-  [[nodiscard]] std::size_t cell_count() const { return first_.size() - 1; }
+  [[nodiscard]] std::size_t cell_count() const { return cells_.count(); }
 
  private:
   void choose_cells(const std::vector<PolygonExtent>& extents);
@@ -63,8 +63,7 @@ class PieceGrid {
 
   glm::vec2 low_{0}, scale_{0};  ///< corner of the grid, and cells a pixel
   glm::ivec2 columns_{1};
-  std::vector<std::size_t> first_;
-  std::vector<std::uint32_t> entries_;
+  Buckets<std::uint32_t> cells_;
 };
 
 /// A list of pieces, in boxes around 64 pieces, around 64 of those boxes, and so on. A box lies along the plane of one

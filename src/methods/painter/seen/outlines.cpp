@@ -4,15 +4,17 @@
 //
 //     ____________________     A part that a cover meets is split along the lines of the cover's sides, one after the
 //    |      kept 1        |    other. The piece outside of a line becomes a part of its own; the piece inside goes on
-//    |--------------------|    to the next line. The piece inside of all lines is hidden.
-//    | kept 2 |  hidden   |
-//    |________|___________|    Convex parts stay convex, so a part needs no structure but its corners.
+//    |--------------------|    to the next line. The piece inside of all lines is hidden. Convex parts stay convex, so
+//    | kept 2 |  hidden   |    a part needs no structure but its corners.
+//    |________|___________|
 #include "painter/seen/outlines.h"
 
 #include <algorithm>
 
 namespace frontmost::painter_detail {
 namespace {
+
+constexpr std::size_t kMostParts = 48;
 
 std::size_t next(std::size_t i, std::size_t count) { return i + 1 == count ? 0 : i + 1; }
 
@@ -27,13 +29,6 @@ bool is_narrow(Outline outline, double width) {
     border += glm::length(q - p);
   }
   return !(std::abs(area) > width * border);
-}
-
-void OutlineClipper::begin(Outline outline) {
-  corners_.clear();
-  parts_.clear();
-  add(outline);
-  is_changed_ = false;
 }
 
 void OutlineClipper::add(Outline outline) {
@@ -128,14 +123,12 @@ bool OutlineClipper::subtract_from(std::size_t part, Outline cover, bool may_spl
   return true;
 }
 
-bool OutlineClipper::subtract(const Cover& cover, bool may_split) {
+bool OutlineClipper::subtract(const Cover& cover) {
   const std::size_t count = parts_.size();
+  const bool may_split = count <= kMostParts;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const Part& part = parts_[i];
-    const bool is_apart = part.low.x >= cover.high.x || cover.low.x >= part.high.x || part.low.y >= cover.high.y ||
-                          cover.low.y >= part.high.y;
-    if (is_apart || !subtract_from(i, cover.outline, may_split)) parts_[kept++] = parts_[i];
+    if (is_apart(parts_[i], cover) || !subtract_from(i, cover.outline, may_split)) parts_[kept++] = parts_[i];
   }
   if (kept == count) return count == 0;
   parts_.erase(parts_.begin() + std::ptrdiff_t(kept), parts_.begin() + std::ptrdiff_t(count));

@@ -22,6 +22,12 @@ struct Cover {
   glm::dvec2 low, high;
 };
 
+/// Whether two boxes have no point in common inside of both.
+template <class A, class B>
+[[nodiscard]] bool is_apart(const A& a, const B& b) {
+  return a.low.x >= b.high.x || b.low.x >= a.high.x || a.low.y >= b.high.y || b.low.y >= a.high.y;
+}
+
 /// Pixels: shorter sides have no direction.
 inline constexpr double shortest_side = 1e-9;
 
@@ -73,15 +79,16 @@ class OutlineClipper {
  public:
   /// Pixels: thinner parts are dropped.
   static constexpr double thin = 1.0 / 1024;
-  /// From this many parts on, parts should not be split any more: only wholly hidden parts are removed.
-  static constexpr std::size_t most_parts = 48;
-  /// Steps that a Poll counts for each part from which a cover is subtracted.
-  static constexpr std::size_t steps_of_part = 1;
 
-  void begin(Outline outline);
-  /// Removes everything within `cover`. Without `may_split` it only removes parts that lie wholly within it. \returns
-  /// true if nothing is left.
-  bool subtract(const Cover& cover, bool may_split = true);
+  void begin(Outline outline) {
+    corners_.clear();
+    parts_.clear();
+    add(outline);
+    is_changed_ = false;
+  }
+  /// Removes everything within `cover`. More than 48 parts are not split any further: only parts that lie wholly within
+  /// `cover` are then removed. O(parts). \returns true if nothing is left.
+  bool subtract(const Cover& cover);
   /// Removes everything outside a box.
   void keep_within(const glm::dvec2& low, const glm::dvec2& high);
 

@@ -6,9 +6,6 @@
 //    place in the order   0   1   2   3   4        painted in this order
 //    first cell           7   2   7   0   2
 //    slot                 3   1   4   0   2        by cell, then by place
-//
-// A polygon that reaches millions of pixels beyond the picture, next to the eye's plane, is cut there first: doubles so
-// far away have no digits left for places in the picture.
 #include "painter/seen/screen_polygons.h"
 
 namespace frontmost::painter_detail {

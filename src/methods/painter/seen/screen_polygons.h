@@ -5,17 +5,19 @@
 //   of painting              |   2 ______|___    earlier polygons under it.
 //                            |    |      |   |
 //                            |    |   3 _|___|_  - clip: the visible part of 1 is 1 without the union of the occluders
-//                            |    |    | |   | |   2 and 3 (occlusion_clipper.h, by outlines.h)
+//                            |    |    | |   | |   2 and 3 (visible_parts.cpp, by outlines.h)
 //                            |____|____|_|   | | - union of occluders: 2 and 3 may together hide a polygon that neither
-//                                 |____|_____| |   of them hides alone (occluder_union.h)
+//                                 |____|_____| |   of them hides alone (OccluderUnion)
 //                                      |_______| - adjacency: polygons of a mesh share sides, so a union is followed
-//                                                  from side to side (adjacency.h). If no side without a neighbour
-//                                                  crosses, nothing begins or ends (unoverlapped.h)
-//
-//   visible_parts.cpp   clips every polygon of an order by the later ones
-//   hidden.cpp          leaves out hidden polygons before there is an order; plane tests tell which of two is before
+//                                                  from side to side. If no side without a neighbour crosses, nothing
+//                                                  begins or ends (adjacency.h)
 #pragma once
 
+#include <atomic>
+#include <type_traits>
+
+#include "base/parallel.h"
+#include "base/pool.h"
 #include "painter/order/piece_grid.h"
 #include "painter/seen/outlines.h"
 
@@ -106,5 +108,41 @@ class ScreenPolygons {
   std::vector<std::uint32_t> slot_of_;
   Buffer<PaintCorner> corners_;
 };
+
+inline constexpr std::size_t slots_per_list = 1024;
+
+/// Calls add(worker, slot, list) for every slot, which adds the results of one polygon to a List. Each thread has a
+/// worker of its own, made by new_worker(). \returns the joined list, by place. `name` names the progress.
+///
+/// A List has add_polygon(other, i), which adds the results of the list `other` for its i-th polygon, and
+/// reserve(lists).
+template <class List, class NewWorker, class Add>
+List list_by_place(const ScreenPolygons& screen, const Execution& execution, const char* name,
+                   const NewWorker& new_worker, const Add& add) {
+  const std::size_t count = screen.count();
+  std::vector<List> lists((count + slots_per_list - 1) / slots_per_list);
+  Pool<typename std::invoke_result_t<NewWorker>::element_type> workers;
+  std::atomic<std::size_t> done{0};
+  parallel_for(execution, count, slots_per_list, [&](std::size_t begin, std::size_t end) {
+    const auto worker = workers.borrow(new_worker);
+    for (std::size_t slot = begin; slot < end; ++slot) add(*worker, slot, lists[begin / slots_per_list]);
+    report_progress(execution, name, double(done += end - begin) / double(count));
+  });
+  List all;
+  all.reserve(lists);
+  for (std::uint32_t place = 0; place < count; ++place) {
+    const std::size_t slot = screen.slot(place);
+    all.add_polygon(lists[slot / slots_per_list], slot % slots_per_list);
+  }
+  return all;
+}
+
+/// Reserves room for the sum of one vector of all lists.
+template <class T, class List>
+void reserve_sum(std::vector<T>& all, const std::vector<List>& lists, std::vector<T> List::*member) {
+  std::size_t sum = 0;
+  for (const List& list : lists) sum += (list.*member).size();
+  all.reserve(sum);
+}
 
 }  // namespace frontmost::painter_detail

@@ -33,6 +33,13 @@ struct alignas(64) RayNode {
   float low[3][kRayLanes], high[3][kRayLanes];
   std::uint32_t child[kRayLanes];
   std::uint32_t count;
+
+  void set_box(std::size_t lane, const Box& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis][lane] = box.low[axis];
+      high[axis][lane] = box.high[axis];
+    }
+  }
 };
 
 /// corner[k][axis][lane], world space, counter-clockwise seen from the front. Unused lanes come last, hold zeros, and
@@ -45,6 +52,12 @@ struct alignas(64) RayLeaf {
     std::array<glm::vec3, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) corners[k] = {corner[k][0][lane], corner[k][1][lane], corner[k][2][lane]};
     return corners;
+  }
+  /// Sets a lane to a triangle of a leaf.
+  void copy(std::size_t lane, const RayLeaf& from, std::size_t from_lane) {
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t axis = 0; axis < 3; ++axis) corner[k][axis][lane] = from.corner[k][axis][from_lane];
+    id[lane] = from.id[from_lane];
   }
 };
 

@@ -3,18 +3,12 @@
 // cast their outlines on it. Up to 64 rays walk the tree together as one rectangle of that plane, above their lowest
 // start.
 //
-// Vectors decide, with a bound on all rounding, which triangles are certainly missed and certainly met. stands_before()
-// decides the rest, mostly neighbours seen through their common edge. So the answers depend neither on the order of
-// rays nor on the instruction set.
-//
-//           light                   rays as points       All rays go the same way, so each is a point (u, v) of the
-//             \   \   \               . . . .            sheared plane with a height d at which it starts. A triangle
-//        tri __\___\                 . /\ .              is met by the points inside its outline whose start lies
-//               \   \   \            ./  \.              below it.
-//          ______\___\___\ points    '----'
-//
-// Rays that have met something take no further part, and a packet ends once all of its rays have. A start that is not
-// valid is lit: nothing stands before it.
+//           light                   rays as points       Each ray is a point (u, v) of the sheared plane with a start
+//             \   \   \               . . . .            at height d. A triangle is met by the points inside its
+//        tri __\___\                 . /\ .              outline whose start lies below it. Vectors decide, with a
+//               \   \   \            ./  \.              bound on all rounding, what is certain; stands_before()
+//          ______\___\___\ points    '----'              decides the rest. So the answers depend neither on the order
+//                                                        of rays nor on the instruction set.
 
 #include <algorithm>
 #include <cmath>
@@ -29,10 +23,12 @@
 #include "base/isa.h"
 // This header must come after Highway's, so it is included in a separate block.
 #include "base/lanes-inl.h"
+#include "raycast/query/ray_axis-inl.h"
 
-#ifndef FRONTMOST_RAYCAST_LIGHT_KERNEL_ONCE_
-#define FRONTMOST_RAYCAST_LIGHT_KERNEL_ONCE_
+HWY_BEFORE_NAMESPACE();
 namespace frontmost::raycast_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
 
 /// The sheared world: u and v lie across the light, d towards it, and the light's rays run along d.
 struct LightAxes {
@@ -52,21 +48,6 @@ struct LightAxes {
 
 /// Rounding bound of one unit in scaled coordinates: six roundings of up to three terms, and as much again.
 constexpr float kShearError = 0x1p-20f;
-
-}  // namespace frontmost::raycast_detail
-#endif
-
-HWY_BEFORE_NAMESPACE();
-namespace frontmost::raycast_detail {
-namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using LF = hn::CappedTag<float, kRayLanes>;
-using LV = hn::Vec<LF>;
-using LM = hn::Mask<LF>;
-constexpr std::size_t kLightLanes = hn::MaxLanes(LF());
-
-HWY_INLINE std::uint32_t LaneBits(LM mask) { return std::uint32_t(frontmost::HWY_NAMESPACE::BitsOf(LF(), mask)); }
 
 class LightPacket {
  public:
@@ -140,10 +121,10 @@ class LightPacket {
       for (std::size_t axis = 0; axis < 3; ++axis) at[axis][i] = float(p[int(axis)]);
     }
     Shear(at);
-    block_count_ = (points_.size() + kLightLanes - 1) / kLightLanes;
+    block_count_ = (points_.size() + kQueryLanes - 1) / kQueryLanes;
     bounds_ = block_[0] = BoundsOf(0);
     for (std::size_t i = 1; i < block_count_; ++i) {
-      const Bounds b = block_[i] = BoundsOf(i * kLightLanes);
+      const Bounds b = block_[i] = BoundsOf(i * kQueryLanes);
       bounds_ = {std::min(bounds_.low_u, b.low_u), std::max(bounds_.high_u, b.high_u),
                  std::min(bounds_.low_v, b.low_v), std::max(bounds_.high_v, b.high_v),
                  std::min(bounds_.low_d, b.low_d), std::max(bounds_.high_d, b.high_d)};
@@ -151,11 +132,11 @@ class LightPacket {
   }
 
   HWY_INLINE void Shear(const float (&at)[3][kLightRays]) {
-    const LF d;
-    LV reach = hn::Zero(d);
-    for (std::size_t i = 0; i < kLightRays; i += kLightLanes) {
-      const LV x = hn::Load(d, at[axes_.u] + i), y = hn::Load(d, at[axes_.v] + i), z = hn::Load(d, at[axes_.d] + i);
-      const LV up = hn::Mul(z, hn::Set(d, axes_.sign));
+    const QF d;
+    QV reach = hn::Zero(d);
+    for (std::size_t i = 0; i < kLightRays; i += kQueryLanes) {
+      const QV x = hn::Load(d, at[axes_.u] + i), y = hn::Load(d, at[axes_.v] + i), z = hn::Load(d, at[axes_.d] + i);
+      const QV up = hn::Mul(z, hn::Set(d, axes_.sign));
       hn::Store(up, d, d_ + i);
       hn::Store(hn::Sub(x, hn::Mul(up, hn::Set(d, axes_.slope_u))), d, u_ + i);
       hn::Store(hn::Sub(y, hn::Mul(up, hn::Set(d, axes_.slope_v))), d, v_ + i);
@@ -168,7 +149,7 @@ class LightPacket {
 
   /// Bounds of one vector of rays.
   [[nodiscard]] HWY_INLINE Bounds BoundsOf(std::size_t first) const {
-    const LF d;
+    const QF d;
     const auto low = [&](const float* x) HWY_ATTR { return hn::GetLane(hn::MinOfLanes(d, hn::Load(d, x + first))); };
     const auto high = [&](const float* x) HWY_ATTR { return hn::GetLane(hn::MaxOfLanes(d, hn::Load(d, x + first))); };
     return {low(u_) - error_,  high(u_) + error_, low(v_) - error_,
@@ -189,8 +170,8 @@ class LightPacket {
     }
   }
 
-  [[nodiscard]] HWY_INLINE LV FromOrigin(const float* from, int axis) const {
-    const LF d;
+  [[nodiscard]] HWY_INLINE QV FromOrigin(const float* from, int axis) const {
+    const QF d;
     return hn::Sub(hn::Mul(hn::Load(d, from), hn::Set(d, scale_)), hn::Set(d, origin_[axis]));
   }
 
@@ -201,28 +182,28 @@ class LightPacket {
   };
 
   /// Boxes whose outlines miss the range of `across`; the boxes reach from low_d to high_d towards the light.
-  [[nodiscard]] HWY_INLINE LM Beside(const RayNode& node, std::size_t first, const Across& across, LV low_d,
-                                     LV high_d) const {
-    const LF d;
-    const LV low = FromOrigin(node.low[across.axis] + first, across.axis);
-    const LV high = FromOrigin(node.high[across.axis] + first, across.axis);
-    const LV a = hn::Mul(low_d, hn::Set(d, across.slope)), b = hn::Mul(high_d, hn::Set(d, across.slope));
-    const LV size = hn::Add(hn::Max(hn::Abs(low), hn::Abs(high)), hn::Max(hn::Abs(low_d), hn::Abs(high_d)));
-    const LV pad = hn::Mul(size, hn::Set(d, kShearError));
-    const LV low_outline = hn::Sub(hn::Sub(low, hn::Max(a, b)), pad);
-    const LV high_outline = hn::Add(hn::Sub(high, hn::Min(a, b)), pad);
+  [[nodiscard]] HWY_INLINE QM Beside(const RayNode& node, std::size_t first, const Across& across, QV low_d,
+                                     QV high_d) const {
+    const QF d;
+    const QV low = FromOrigin(node.low[across.axis] + first, across.axis);
+    const QV high = FromOrigin(node.high[across.axis] + first, across.axis);
+    const QV a = hn::Mul(low_d, hn::Set(d, across.slope)), b = hn::Mul(high_d, hn::Set(d, across.slope));
+    const QV size = hn::Add(hn::Max(hn::Abs(low), hn::Abs(high)), hn::Max(hn::Abs(low_d), hn::Abs(high_d)));
+    const QV pad = hn::Mul(size, hn::Set(d, kShearError));
+    const QV low_outline = hn::Sub(hn::Sub(low, hn::Max(a, b)), pad);
+    const QV high_outline = hn::Add(hn::Sub(high, hn::Min(a, b)), pad);
     return hn::Or(hn::Gt(low_outline, hn::Set(d, across.end)), hn::Lt(high_outline, hn::Set(d, across.begin)));
   }
 
   HWY_INLINE void LookInto(const RayNode& node, std::size_t& count) {
-    const LF d;
+    const QF d;
     const Bounds& b = bounds_;
-    for (std::size_t first = 0; first < node.count; first += kLightLanes) {
-      LV low_d = FromOrigin((axes_.sign > 0 ? node.low : node.high)[axes_.d] + first, axes_.d);
-      LV high_d = FromOrigin((axes_.sign > 0 ? node.high : node.low)[axes_.d] + first, axes_.d);
+    for (std::size_t first = 0; first < node.count; first += kQueryLanes) {
+      QV low_d = FromOrigin((axes_.sign > 0 ? node.low : node.high)[axes_.d] + first, axes_.d);
+      QV high_d = FromOrigin((axes_.sign > 0 ? node.high : node.low)[axes_.d] + first, axes_.d);
       if (axes_.sign < 0) low_d = hn::Neg(low_d), high_d = hn::Neg(high_d);
-      const LV pad = hn::Mul(hn::Max(hn::Abs(low_d), hn::Abs(high_d)), hn::Set(d, kShearError));
-      LM outside = hn::Lt(hn::Add(high_d, pad), hn::Set(d, b.low_d));
+      const QV pad = hn::Mul(hn::Max(hn::Abs(low_d), hn::Abs(high_d)), hn::Set(d, kShearError));
+      QM outside = hn::Lt(hn::Add(high_d, pad), hn::Set(d, b.low_d));
       // Parts below all starts cast no shadow on them.
       low_d = hn::Max(hn::Sub(low_d, pad), hn::Set(d, b.low_d));
       outside = hn::Or(outside, Beside(node, first, {axes_.u, axes_.slope_u, b.low_u, b.high_u}, low_d, high_d));
@@ -230,8 +211,8 @@ class LightPacket {
       // A box with ends at infinities of both signs is visited. The maximum of NaN and a number depends on the
       // processor.
       outside = hn::And(outside, hn::Eq(high_d, high_d));
-      const std::uint32_t used = (1u << std::min(kLightLanes, node.count - first)) - 1;
-      for (std::uint32_t inside = ~LaneBits(outside) & used; inside != 0; inside &= inside - 1)
+      const std::uint32_t used = (1u << std::min(kQueryLanes, node.count - first)) - 1;
+      for (std::uint32_t inside = ~QueryBits(outside) & used; inside != 0; inside &= inside - 1)
         stack_[count++] = node.child[first + hwy::Num0BitsBelowLS1Bit_Nonzero32(inside)];
     }
   }
@@ -239,12 +220,12 @@ class LightPacket {
   /// Sixteen triangles in the sheared plane, and the triangles that each vector of rays may meet.
   struct Sheared {
     alignas(64) float u[3][kRayLanes], v[3][kRayLanes], d[3][kRayLanes], reach[kRayLanes];
-    std::uint32_t beside[kLightRays / kLightLanes];
+    std::uint32_t beside[kLightRays / kQueryLanes];
   };
 
   void MeetLeaf(const RayLeaf& leaf) {
     Sheared sheared;
-    for (std::size_t first = 0; first < kRayLanes && waiting_count_ > 0; first += kLightLanes) {
+    for (std::size_t first = 0; first < kRayLanes && waiting_count_ > 0; first += kQueryLanes) {
       std::uint32_t lanes = Shear(leaf, first, sheared);
       for (; lanes != 0; lanes &= lanes - 1)
         MeetTriangle(leaf, sheared, first, hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
@@ -253,12 +234,12 @@ class LightPacket {
 
   /// \returns the lanes whose outline may hold a ray.
   HWY_INLINE std::uint32_t Shear(const RayLeaf& leaf, std::size_t first, Sheared& to) const {
-    const LF d;
-    LV u[3], v[3], up[3], reach = hn::Zero(d);
+    const QF d;
+    QV u[3], v[3], up[3], reach = hn::Zero(d);
     for (std::size_t k = 0; k < 3; ++k) {
-      const LV x = FromOrigin(leaf.corner[k][axes_.u] + first, axes_.u);
-      const LV y = FromOrigin(leaf.corner[k][axes_.v] + first, axes_.v);
-      const LV z = FromOrigin(leaf.corner[k][axes_.d] + first, axes_.d);
+      const QV x = FromOrigin(leaf.corner[k][axes_.u] + first, axes_.u);
+      const QV y = FromOrigin(leaf.corner[k][axes_.v] + first, axes_.v);
+      const QV z = FromOrigin(leaf.corner[k][axes_.d] + first, axes_.d);
       reach = hn::Max(hn::Max(reach, hn::Abs(x)), hn::Max(hn::Abs(y), hn::Abs(z)));
       up[k] = hn::Mul(z, hn::Set(d, axes_.sign));
       u[k] = hn::Sub(x, hn::Mul(up[k], hn::Set(d, axes_.slope_u)));
@@ -268,27 +249,27 @@ class LightPacket {
       hn::Store(v[k], d, to.v[k] + first);
     }
     hn::Store(reach, d, to.reach + first);
-    const LV pad = hn::Mul(reach, hn::Set(d, kShearError));
-    const LV low_u = hn::Sub(Least(u), pad), high_u = hn::Add(Most(u), pad);
-    const LV low_v = hn::Sub(Least(v), pad), high_v = hn::Add(Most(v), pad), high_d = hn::Add(Most(up), pad);
+    const QV pad = hn::Mul(reach, hn::Set(d, kShearError));
+    const QV low_u = hn::Sub(Least(u), pad), high_u = hn::Add(Most(u), pad);
+    const QV low_v = hn::Sub(Least(v), pad), high_v = hn::Add(Most(v), pad), high_d = hn::Add(Most(up), pad);
     const std::uint32_t used = UsedLanes(leaf, first);
     std::uint32_t any = 0;
     for (std::size_t i = 0; i < block_count_; ++i) {
       const Bounds& b = block_[i];
-      const LM beside_u = hn::Or(hn::Gt(low_u, hn::Set(d, b.high_u)), hn::Lt(high_u, hn::Set(d, b.low_u)));
-      const LM beside_v = hn::Or(hn::Gt(low_v, hn::Set(d, b.high_v)), hn::Lt(high_v, hn::Set(d, b.low_v)));
-      const LM outside = hn::Or(hn::Or(beside_u, beside_v), hn::Lt(high_d, hn::Set(d, b.low_d)));
-      any |= to.beside[i] = ~LaneBits(outside) & used;
+      const QM beside_u = hn::Or(hn::Gt(low_u, hn::Set(d, b.high_u)), hn::Lt(high_u, hn::Set(d, b.low_u)));
+      const QM beside_v = hn::Or(hn::Gt(low_v, hn::Set(d, b.high_v)), hn::Lt(high_v, hn::Set(d, b.low_v)));
+      const QM outside = hn::Or(hn::Or(beside_u, beside_v), hn::Lt(high_d, hn::Set(d, b.low_d)));
+      any |= to.beside[i] = ~QueryBits(outside) & used;
     }
     return any;
   }
 
-  static HWY_INLINE LV Least(const LV (&x)[3]) { return hn::Min(hn::Min(x[0], x[1]), x[2]); }
-  static HWY_INLINE LV Most(const LV (&x)[3]) { return hn::Max(hn::Max(x[0], x[1]), x[2]); }
+  static HWY_INLINE QV Least(const QV (&x)[3]) { return hn::Min(hn::Min(x[0], x[1]), x[2]); }
+  static HWY_INLINE QV Most(const QV (&x)[3]) { return hn::Max(hn::Max(x[0], x[1]), x[2]); }
 
   static HWY_INLINE std::uint32_t UsedLanes(const RayLeaf& leaf, std::size_t first) {
-    const hn::RebindToUnsigned<LF> du;
-    return LaneBits(hn::RebindMask(LF(), hn::Ne(hn::Load(du, leaf.id + first), hn::Set(du, no_primitive))));
+    const QU du;
+    return QueryBits(hn::RebindMask(QF(), hn::Ne(hn::Load(du, leaf.id + first), hn::Set(du, no_primitive))));
   }
 
   /// One triangle, in the form that all rays share.
@@ -328,46 +309,46 @@ class LightPacket {
     const Outline outline = OutlineOf(sheared, lane);
     for (std::size_t block = 0; block < block_count_; ++block) {
       if ((sheared.beside[block] >> index & 1) == 0) continue;
-      const std::size_t first = block * kLightLanes;
+      const std::size_t first = block * kQueryLanes;
       const Answer answer = MeetRays(outline, leaf.id[lane], first);
-      for (std::uint32_t bits = LaneBits(answer.met); bits != 0; bits &= bits - 1)
+      for (std::uint32_t bits = QueryBits(answer.met); bits != 0; bits &= bits - 1)
         Meet(leaf, lane, first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
-      for (std::uint32_t bits = LaneBits(answer.doubtful); bits != 0; bits &= bits - 1)
+      for (std::uint32_t bits = QueryBits(answer.doubtful); bits != 0; bits &= bits - 1)
         Decide(leaf, lane, outline, first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
     }
   }
 
   struct Answer {
-    LM met, doubtful;
+    QM met, doubtful;
   };
 
   HWY_INLINE Answer MeetRays(const Outline& t, PrimitiveId id, std::size_t first) const {
-    const LF d;
-    const hn::RebindToUnsigned<LF> du;
-    const hn::RebindToSigned<LF> di;
+    const QF d;
+    const QU du;
+    const QI di;
     // A ray skips its own triangle. Rays that have met something are in the dark for good, and skip all others.
-    const LM waiting = hn::RebindMask(d, hn::MaskFromVec(hn::Load(di, waiting_ + first)));
-    const LM others = hn::RebindMask(d, hn::Ne(hn::Load(du, ids_ + first), hn::Set(du, id)));
-    const LV height = hn::Load(d, d_ + first);
-    const LM asked = hn::And(hn::And(waiting, others), hn::Le(height, hn::Set(d, t.high_d)));
-    LV u[3], v[3], w[3];
+    const QM waiting = hn::RebindMask(d, hn::MaskFromVec(hn::Load(di, waiting_ + first)));
+    const QM others = hn::RebindMask(d, hn::Ne(hn::Load(du, ids_ + first), hn::Set(du, id)));
+    const QV height = hn::Load(d, d_ + first);
+    const QM asked = hn::And(hn::And(waiting, others), hn::Le(height, hn::Set(d, t.high_d)));
+    QV u[3], v[3], w[3];
     for (int k = 0; k < 3; ++k) {
       u[k] = hn::Sub(hn::Set(d, t.u[k]), hn::Load(d, u_ + first));
       v[k] = hn::Sub(hn::Set(d, t.v[k]), hn::Load(d, v_ + first));
       w[k] = hn::Sub(hn::Set(d, t.d[k]), height);
     }
     const auto turn = [&](int a, int b) HWY_ATTR { return hn::Sub(hn::Mul(u[a], v[b]), hn::Mul(v[a], u[b])); };
-    const LV e[3] = {turn(1, 2), turn(2, 0), turn(0, 1)};
-    const LV least = hn::Min(hn::Min(e[0], e[1]), e[2]), most = hn::Max(hn::Max(e[0], e[1]), e[2]);
-    const LV bound = hn::Set(d, t.edge_error), below = hn::Neg(bound);
-    const LM beside = hn::And(hn::Gt(most, bound), hn::Lt(least, below));
-    const LM left = hn::Gt(least, bound), right = hn::Lt(most, below);
-    const LM inside = hn::Or(left, right), asked_about = hn::AndNot(beside, asked);
+    const QV e[3] = {turn(1, 2), turn(2, 0), turn(0, 1)};
+    const QV least = hn::Min(hn::Min(e[0], e[1]), e[2]), most = hn::Max(hn::Max(e[0], e[1]), e[2]);
+    const QV bound = hn::Set(d, t.edge_error), below = hn::Neg(bound);
+    const QM beside = hn::And(hn::Gt(most, bound), hn::Lt(least, below));
+    const QM left = hn::Gt(least, bound), right = hn::Lt(most, below);
+    const QM inside = hn::Or(left, right), asked_about = hn::AndNot(beside, asked);
     if (t.is_above) return {hn::And(inside, asked_about), hn::AndNot(inside, asked_about)};
-    const LV volume = hn::Add(hn::Add(hn::Mul(e[0], w[0]), hn::Mul(e[1], w[1])), hn::Mul(e[2], w[2]));
-    const LV upwards = hn::IfThenElse(right, hn::Neg(volume), volume);
-    const LV side = hn::Set(d, t.side_error);
-    const LM met = hn::And(inside, hn::Gt(upwards, side)), under = hn::And(inside, hn::Lt(upwards, hn::Neg(side)));
+    const QV volume = hn::Add(hn::Add(hn::Mul(e[0], w[0]), hn::Mul(e[1], w[1])), hn::Mul(e[2], w[2]));
+    const QV upwards = hn::IfThenElse(right, hn::Neg(volume), volume);
+    const QV side = hn::Set(d, t.side_error);
+    const QM met = hn::And(inside, hn::Gt(upwards, side)), under = hn::And(inside, hn::Lt(upwards, hn::Neg(side)));
     return {hn::And(met, asked_about), hn::AndNot(hn::Or(met, under), asked_about)};
   }
 
@@ -417,7 +398,7 @@ class LightPacket {
   std::uint64_t decided_ = 0;
   float scale_ = 1, error_ = 0, reach_ = 0;
   glm::vec3 origin_{0};
-  Bounds bounds_{}, block_[kLightRays / kLightLanes];  ///< bounds of all rays, and of each vector
+  Bounds bounds_{}, block_[kLightRays / kQueryLanes];  ///< bounds of all rays, and of each vector
   std::size_t block_count_ = 0;
 };
 
@@ -442,8 +423,7 @@ FRONTMOST_KERNELS(FindLit);
 std::uint64_t find_lit(const RayTree& tree, std::span<const TrianglePoint> points, const LightAim& light,
                        std::span<std::uint8_t> answers, Isa isa) {
   const glm::vec3& to_light = light.to_light;
-  const bool is_direction =
-      std::isfinite(to_light.x) && std::isfinite(to_light.y) && std::isfinite(to_light.z) && to_light != glm::vec3(0);
+  const bool is_direction = is_finite(to_light) && to_light != glm::vec3(0);
   if (tree.root != no_index && is_direction) return kernel_for(FindLitKernels, isa)(tree, points, light, answers);
   std::fill_n(answers.data(), answers.size(), std::uint8_t(1));
   return 0;

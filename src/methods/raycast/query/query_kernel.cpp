@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <optional>
 
 #include "raycast/query/queries.h"
@@ -33,8 +32,6 @@ struct Entry {
   float t;
   std::uint32_t child;
 };
-
-HWY_INLINE std::uint32_t QueryBits(QM mask) { return std::uint32_t(frontmost::HWY_NAMESPACE::BitsOf(QF(), mask)); }
 
 class QueryWalker {
  public:
@@ -106,20 +103,6 @@ class QueryWalker {
     return beside;
   }
 
-  /// How many of `count` are greater than number i, or equal and before it. Bits of floats from 0 on are ordered as the
-  /// floats are, even if they overflow to NaN.
-  static HWY_INLINE std::size_t RankOf(const std::int32_t* at, std::size_t count, std::size_t i) {
-    const QI d;
-    const auto own = hn::Set(d, at[i]);
-    std::size_t rank = 0;
-    for (std::size_t first = 0; first < count; first += kQueryLanes) {
-      const auto others = hn::Load(d, at + first);
-      const auto used = hn::FirstN(d, count - first), before = hn::FirstN(d, i > first ? i - first : 0);
-      rank += hn::CountTrue(d, hn::And(used, hn::Or(hn::Gt(others, own), hn::And(before, hn::Eq(others, own)))));
-    }
-    return rank;
-  }
-
   /// Pushes the children that the ray enters, the nearest last. \returns how many.
   std::size_t LookInto(const RayNode& node, Entry* top) const {
     const QF d;
@@ -147,11 +130,7 @@ class QueryWalker {
       entered.Store(hn::Load(du, node.child + first), child + count);
       count += entered.count();
     }
-    for (std::size_t i = 0; i < count; ++i) {
-      Entry& entry = top[RankOf(at, count, i)];
-      std::memcpy(&entry.t, &at[i], sizeof entry.t);
-      entry.child = child[i];
-    }
+    for (std::size_t i = 0; i < count; ++i) top[RankOf(at, count, i)] = {bits_as<float>(at[i]), child[i]};
     return count;
   }
 

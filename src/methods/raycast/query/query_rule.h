@@ -7,12 +7,7 @@
 //             / |         The line from o along d passes through the triangle, edges included, if it turns to the same
 //    o ------/--|---> d   side about all three edges: the signs of det(d, b - o, c - o), det(d, c - o, a - o) and
 //           a---b         det(d, a - o, b - o) agree. The triangle is before o if the sign of det(a - o, b - o, c - o)
-//                         agrees with them.
-//
-// Differences of floats are kept as exact sums of two doubles. A determinant is computed in doubles first, and without
-// any rounding if its sign is still uncertain.
-//
-// J. Shewchuk. Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates. 1997.
+//                         agrees with them. Differences of floats are kept as exact sums of two doubles.
 #pragma once
 
 #include <array>

@@ -19,6 +19,7 @@
 
 #include "base/compactor-inl.h"
 #include "base/highway-inl.h"
+#include "base/lanes-inl.h"
 #include "raycast/query/queries.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -34,6 +35,22 @@ using QU = hn::RebindToUnsigned<QF>;
 using QV = hn::Vec<QF>;
 using QM = hn::Mask<QF>;
 constexpr std::size_t kQueryLanes = hn::MaxLanes(QF());
+
+HWY_INLINE std::uint32_t QueryBits(QM mask) { return std::uint32_t(frontmost::HWY_NAMESPACE::BitsOf(QF(), mask)); }
+
+/// How many of `count` are greater than number i, or equal and before it. Bits of floats from 0 on are ordered as the
+/// floats are, even if they overflow to NaN.
+HWY_INLINE std::size_t RankOf(const std::int32_t* at, std::size_t count, std::size_t i) {
+  const QI d;
+  const auto own = hn::Set(d, at[i]);
+  std::size_t rank = 0;
+  for (std::size_t first = 0; first < count; first += kQueryLanes) {
+    const auto others = hn::Load(d, at + first);
+    const auto used = hn::FirstN(d, count - first), before = hn::FirstN(d, i > first ? i - first : 0);
+    rank += hn::CountTrue(d, hn::And(used, hn::Or(hn::Gt(others, own), hn::And(before, hn::Eq(others, own)))));
+  }
+  return rank;
+}
 
 /// Triangles that the ray's line certainly passes `beside`, and triangles that it certainly passes `inside`. If the
 /// line meets a triangle at all, it does so between the places `from` and `to`.

@@ -2,17 +2,13 @@
 // The one definition of what a ray through a sample meets, in plain scalar code. Kernels are faster ways to the same
 // bits.
 //
-// Corners are homogeneous screen positions (view/screen_transform.h) of the triangle's vertices. For the ray through
-// sample (sx, sy), sheared so that the ray is the axis, a corner lies at (x - sx*w, y - sy*w). The position is rounded,
-// but it is the same for every triangle with this vertex. The ray meets the triangle if the origin is inside the three
-// sheared corners, edges included; the signs of the three 2x2 determinants are exact.
-//
-// The test says nothing if the eye lies in the triangle's plane, on a vertex or an edge for instance: all sheared
-// corners then lie on one line through the origin, but for rounding. Whether a triangle is seen edge-on is decided
-// exactly, on world coordinates. An edge-on triangle covers nothing.
-//
 // S. Woop, C. Benthin, I. Wald. Watertight Ray/Triangle Intersection. Journal of Computer Graphics Techniques 2(1),
 // 2013; here the determinants are never rounded.
+//
+// Corners are homogeneous screen positions (view/screen_transform.h), rounded, and the same for every triangle with
+// this vertex. Sheared so that the ray through (sx, sy) is the axis, a corner lies at (x - sx*w, y - sy*w). The ray
+// meets the triangle if the origin is inside the three sheared corners, edges included. Whether a triangle is seen
+// edge-on, and so covers nothing, is decided exactly, on world coordinates.
 #pragma once
 
 #include <algorithm>

@@ -10,13 +10,12 @@
 #include "raycast/tile/tile_kernel.h"
 
 #include <algorithm>
-#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raycast/tile/tile_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-#include "raycast/tile/triangle_queue-inl.h"
+#include "raycast/tile/triangles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::raycast_detail {
@@ -158,9 +157,7 @@ class TileCaster {
       if (waiting_ > 0) frame_.tree.prefetch(std::uint32_t(scratch_.stack[waiting_ - 1]));
       // Refreshes every few leaves: visiting a hidden leaf costs less than looking for it.
       if (!(child & kLeafBit) || (++leaves_met_ & 3) == 0) buffer_.Refresh();
-      float key;
-      std::memcpy(&key, &bits, sizeof key);
-      if (key < buffer_.tile_farthest()) continue;
+      if (bits_as<float>(bits) < buffer_.tile_farthest()) continue;
       if (child & kLeafBit) {
         MeetLeaf(frame_.tree.leaf(child));
       } else {
@@ -168,8 +165,6 @@ class TileCaster {
       }
     }
   }
-
-  // -- leaves -----------------------------------------------------------------------------------------------------
 
   [[nodiscard]] HWY_INLINE VF Row(const std::array<float, 3>& row, float offset, const VF (&delta)[3]) const {
     const DF d;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures by rays: casts the rays of one tile together, and follows rays that went into a hole.
+// Pictures by rays: casts the rays of one tile together.
 //
 //    boxes and leaves, nearest first --> triangles --few pixels--> queue, many at a time --+--> keys and ids
 //                                            |                                             |    of the tile
@@ -46,9 +46,5 @@ struct RayTileScratch {
 
 /// Fills the pixels of tile (x, y), counted in tiles, of every sample plane.
 void cast_tile(const RayTileInput& frame, int x, int y, RayTileScratch& scratch, Isa isa);
-
-/// For a Visible that takes triangles with holes for whole: a triangle with a hole at the sample is replaced by the
-/// next hit of its ray. O(samples), and O(log n) and more for each ray that goes on.
-void pass_holes(const RayTree& tree, Visible& visible, const Execution& execution);
 
 }  // namespace frontmost::raycast_detail

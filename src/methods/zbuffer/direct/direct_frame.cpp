@@ -10,15 +10,14 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstring>
 #include <memory>
 #include <optional>
 
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "view/answer.h"
-#include "zbuffer/place/place_kernel.h"
-#include "zbuffer/record_lists.h"
+#include "zbuffer/place/triangle_batch.h"
+#include "zbuffer/triangle_records.h"
 
 namespace frontmost::zbuffer_detail {
 namespace {
@@ -45,10 +44,9 @@ struct Near {
   std::uint32_t slice, batch;
 
   Near() = default;
-  Near(float key, std::size_t number) : batch(std::uint32_t(number)) {
-    std::memcpy(&slice, &key, sizeof slice);
-    slice >>= 22;  // the exponent and one bit of the fraction
-  }
+  Near(float key, std::size_t number)
+      : slice(bits_as<std::uint32_t>(key) >> 22),  // the exponent and one bit of the fraction
+        batch(std::uint32_t(number)) {}
 };
 
 class DirectFrame {
@@ -147,8 +145,7 @@ class DirectFrame {
         common_part({vertices.low.x >> 8, vertices.low.y >> 8, vertices.high.x >> 8, vertices.high.y >> 8},
                     {0, 0, view.width - 1, view.height - 1});
     if (rect.is_empty()) return false;
-    float nearest;
-    std::memcpy(&nearest, &vertices.nearest, sizeof nearest);
+    const auto nearest = bits_as<float>(vertices.nearest);
     const std::size_t across = Tile::tiles_across(view);
     for (int y = rect.y0 / kBlockSize; y <= rect.y1 / kBlockSize; ++y)
       for (int x = rect.x0 / kBlockSize; x <= rect.x1 / kBlockSize; ++x) {

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places triangles into batches: vertices, pixel rectangles and facing, many at a time.
-//
-//    vertices     each once, snapped to 1/256 pixel, or marked if it cannot be snapped
-//    triangles    vertices gathered --> bounds, facing, samples between them?
-//                 small and whole:   oriented, and appended to the columns of the batch
-//                 anything else:     its number goes to `apart`, and it is clipped by itself
-//
-// A triangle that has no sample between its bounds is left out at once.
+// Places triangles into batches: vertices, pixel rectangles and facing, many at a time. Small triangles that can be
+// snapped whole are oriented, and appended to the columns of the batch. The numbers of all others go to `apart`, and
+// they are clipped one by one. A triangle that has no sample between its bounds is left out at once.
 
-#include "zbuffer/place/place_kernel.h"
+#include "zbuffer/place/triangle_batch.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "zbuffer/place/place_kernel.cpp"

@@ -14,7 +14,7 @@
 
 #include "base/parallel.h"
 #include "base/pool.h"
-#include "zbuffer/place/place_kernel.h"
+#include "zbuffer/place/triangle_batch.h"
 
 namespace frontmost::zbuffer_detail {
 
@@ -45,7 +45,26 @@ class OrderedBatch {
   /// Visits all triangles that may touch a tile, in order of ids: calls visit_runs(runs) for small triangles of the
   /// columns and visit_single(triangle) for singles.
   template <class VisitRuns, class VisitSingle>
-  void visit_tile(const Tile& tile, const VisitRuns& visit_runs, const VisitSingle& visit_single) const;
+  void visit_tile(const Tile& tile, const VisitRuns& visit_runs, const VisitSingle& visit_single) const {
+    const std::span<const TileRun> runs = small_.in_tile(tile.column(), tile.row());
+    const std::span<const std::uint32_t> singles = singles_in(tile);
+    if (singles.empty()) return visit_runs(runs);
+    std::size_t next = 0;
+    for (TileRun run : runs) {
+      for (; next < singles.size() && run.count > 0; ++next) {
+        const SingleTriangle& single = singles_[singles[next]];
+        const PrimitiveId* const ids = small_.columns().id + run.first;
+        const auto before = std::uint16_t(std::lower_bound(ids, ids + run.count, single.record.id) - ids);
+        if (before == run.count) break;
+        const TileRun part{run.first, before};
+        visit_runs(std::span(&part, 1));
+        visit_single(single);
+        run = {std::uint16_t(run.first + before), std::uint16_t(run.count - before)};
+      }
+      visit_runs(std::span<const TileRun>(&run, 1));
+    }
+    for (; next < singles.size(); ++next) visit_single(singles_[singles[next]]);
+  }
 
  private:
   void append_single(const PlaceTarget& target, const ClippedPolygon& polygon, PrimitiveId id);
@@ -58,28 +77,6 @@ class OrderedBatch {
   std::vector<SingleTriangle> singles_;
   TileLists lists_;  // lists of singles_
 };
-
-template <class VisitRuns, class VisitSingle>
-void OrderedBatch::visit_tile(const Tile& tile, const VisitRuns& visit_runs, const VisitSingle& visit_single) const {
-  const std::span<const TileRun> runs = small_.in_tile(tile.column(), tile.row());
-  const std::span<const std::uint32_t> singles = singles_in(tile);
-  if (singles.empty()) return visit_runs(runs);
-  std::size_t next = 0;
-  for (TileRun run : runs) {
-    for (; next < singles.size() && run.count > 0; ++next) {
-      const SingleTriangle& single = singles_[singles[next]];
-      const PrimitiveId* const ids = small_.columns().id + run.first;
-      const auto before = std::uint16_t(std::lower_bound(ids, ids + run.count, single.record.id) - ids);
-      if (before == run.count) break;
-      const TileRun part{run.first, before};
-      visit_runs(std::span(&part, 1));
-      visit_single(single);
-      run = {std::uint16_t(run.first + before), std::uint16_t(run.count - before)};
-    }
-    visit_runs(std::span<const TileRun>(&run, 1));
-  }
-  for (; next < singles.size(); ++next) visit_single(singles_[singles[next]]);
-}
 
 /// The parts of the scene's ranges that lie within `range`, in order.
 [[nodiscard]] std::vector<MeshRange> ranges_within(const PlacedScene& placed, const PrimitiveRange& range);

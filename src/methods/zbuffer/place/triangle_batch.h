@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // A batch: some two thousand consecutive triangles of the scene, placed on the screen and sorted into tiles.
 //
+//   triangles of the scene
+//     -> snap_vertices()      every vertex once
+//     -> place_triangles()    small triangles into the batch, the numbers of the others into `apart`
+//     -> polygon_of()         one of the others, clipped if needed
+//
 // Neighbours in a file are mostly neighbours on the screen, too, so most tiles of a batch hold long runs of its
 // columns. Otherwise the batch is merely in more tiles.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "surfaces/placed_scene.h"
-#include "zbuffer/tile/tile_lists.h"
+#include "view/clip.h"
 #include "zbuffer/triangle_records.h"
 
 namespace frontmost::zbuffer_detail {
@@ -56,7 +62,21 @@ class TriangleBatch {
   [[nodiscard]] TriangleRecord record(std::size_t i) const;
   /// Moves the triangles for which `is_out(id)` holds to another batch, which is empty.
   template <class IsOut>
-  void extract(const IsOut& is_out, TriangleBatch& out);
+  void extract(const IsOut& is_out, TriangleBatch& out) {
+    std::size_t kept = 0;
+    out.rect = rect;
+    out.nearest = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const BatchColumns& c = columns();
+      if (!is_out(c.id[i])) {
+        c.copy_triangle(i, columns(), kept++);
+        continue;
+      }
+      c.copy_triangle(i, out.columns(), out.count++);
+      for (const auto& key : c.key) out.nearest = std::max(out.nearest, key[i]);
+    }
+    count = kept;
+  }
 
   /// Groups triangles by tile if neighbours are strewn over the picture, as in a soup. Loses their order. `spare` takes
   /// the place of the columns.
@@ -91,21 +111,44 @@ struct BatchSource {
 /// Joins consecutive ranges into batches: most scenes have a few large instances, some many small ones.
 [[nodiscard]] std::vector<BatchSource> batch_sources(std::span<const MeshRange> ranges);
 
-template <class IsOut>
-void TriangleBatch::extract(const IsOut& is_out, TriangleBatch& out) {
-  std::size_t kept = 0;
-  out.rect = rect;
-  out.nearest = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const BatchColumns& c = columns();
-    if (!is_out(c.id[i])) {
-      c.copy_triangle(i, columns(), kept++);
-      continue;
-    }
-    c.copy_triangle(i, out.columns(), out.count++);
-    for (const auto& key : c.key) out.nearest = std::max(out.nearest, key[i]);
+/// Mask of out codes: set bits in the key of a vertex that cannot be snapped, a negative float, name the planes of the
+/// clip volume that the vertex is certainly outside of. A triangle is not seen if all its vertices share a bit.
+inline constexpr std::int32_t kOutside = 63;
+
+/// Vertices on the screen, and their bounds.
+struct SnappedVertices {
+  std::vector<std::int32_t> x, y;  ///< from the image's top left
+  std::vector<float> key;          ///< less than 0 if the vertex cannot be snapped as it is
+
+  bool all_plain = true;       ///< every vertex can be snapped as it is; if false, the next three mean nothing
+  glm::ivec2 low{0}, high{0};  ///< bounds on the screen
+  std::int32_t nearest = 0;    ///< bits of the greatest key
+  std::int32_t common = -1;    ///< bits that all keys have in common
+
+  void make_room(std::size_t count) {
+    if (x.size() >= count) return;
+    x.resize(count);
+    y.resize(count);
+    key.resize(count);
   }
-  count = kept;
-}
+};
+
+/// Memory for placing, one a thread.
+struct PlaceScratch : WorldScratch {
+  SnappedVertices vertices;
+  std::vector<std::uint32_t> apart;
+};
+
+/// Puts the vertices on the screen.
+void snap_vertices(const PlaceTarget& target, std::span<const glm::vec3> positions, SnappedVertices& vertices);
+
+/// Appends triangles that may cover a sample to the batch, in their order. Appends the numbers of triangles that are
+/// drawn one by one to `apart`: large ones, and ones that may need clipping. Precondition: the columns have room.
+void place_triangles(const PlaceTarget& target, const WorldTriangles& triangles, const SnappedVertices& vertices,
+                     TriangleBatch& batch, std::vector<std::uint32_t>& apart);
+
+/// One of the triangles, clipped if it cannot be snapped whole. Has no corners if a vertex is not finite.
+[[nodiscard]] ClippedPolygon polygon_of(const PlaceTarget& target, const WorldTriangles& triangles,
+                                        const SnappedVertices& vertices, std::size_t triangle);
 
 }  // namespace frontmost::zbuffer_detail

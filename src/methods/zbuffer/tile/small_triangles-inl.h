@@ -124,7 +124,7 @@ class SmallTriangles {
     for (int k = 0; k < 3; ++k) {
       record.x[k] = queue_.x[k][lane];
       record.y[k] = queue_.y[k][lane];
-      std::memcpy(&record.key[k], &queue_.key[k][lane], sizeof(float));
+      record.key[k] = bits_as<float>(queue_.key[k][lane]);
     }
     record.id = queue_.id[lane];
     return record;

@@ -17,11 +17,9 @@
 #endif
 
 #include <algorithm>
-#include <cstring>
 
 #include "base/highway-inl.h"
 #include "hwy/cache_control.h"
-#include "zbuffer/cull.h"
 #include "zbuffer/packet-inl.h"
 #include "zbuffer/tile/tile.h"
 
@@ -91,25 +89,18 @@ class LeastKey {
 
   /// False if some key is no greater than `key`; in rare cases also if all are greater.
   [[nodiscard]] HWY_INLINE bool IsAbove(float key) const {
-    const auto limit = hn::BitCast(D(), hn::Set(DWI(), std::int64_t(std::uint64_t(BitsOfKey(key)) << 32 | kLowHalf)));
+    const auto limit =
+        hn::BitCast(D(), hn::Set(DWI(), std::int64_t(std::uint64_t(bits_as<std::uint32_t>(key)) << 32 | kLowHalf)));
     return hn::AllTrue(D(), hn::Gt(least_, limit));
   }
   [[nodiscard]] float key() const {
     HWY_ALIGN_MAX std::int32_t halves[2 * hn::MaxLanes(DWI())];
     hn::Store(hn::BitCast(DWI(), least_), DWI(), reinterpret_cast<std::int64_t*>(halves));
     for (std::size_t i = 3; i < 2 * hn::Lanes(DWI()); i += 2) halves[1] = HWY_MIN(halves[1], halves[i]);
-    float key;
-    std::memcpy(&key, &halves[1], sizeof key);
-    return key;
+    return bits_as<float>(halves[1]);
   }
 
  private:
-  static HWY_INLINE std::uint32_t BitsOfKey(float key) {
-    std::uint32_t bits;
-    std::memcpy(&bits, &key, sizeof bits);
-    return bits;
-  }
-
   hn::Vec<D> least_;
 };
 
@@ -185,8 +176,6 @@ class TileBuffer {
   TileBuffer(const Picture& picture, const Tile& tile, TileScratch& scratch)
       : picture_(picture), tile_(tile), words_(scratch.words.data()), bounds_(scratch.bounds[0]) {}
 
-  [[nodiscard]] static HWY_INLINE std::uint64_t BlockBit(int bx, int by) { return std::uint64_t(1) << (by * 8 + bx); }
-
   /// The blocks that a rectangle of pixels touches. Precondition: not empty, within the tile.
   [[nodiscard]] static HWY_INLINE std::uint64_t BlocksOf(const PixelRect& rect) {
     constexpr std::uint64_t kFirstColumn = 0x0101010101010101u;
@@ -237,8 +226,6 @@ class TileBuffer {
     Refresh();
     std::copy_n(bounds_.farthest, BlockBounds::count, farthest);
   }
-
-  // -- hierarchical depth -------------------------------------------------------------------------------------------
 
   [[nodiscard]] HWY_INLINE BlockBounds& bounds() const { return bounds_; }
 
@@ -297,8 +284,6 @@ class TileBuffer {
     return true;
   }
 
-  // -- holes --------------------------------------------------------------------------------------------------------
-
   /// From this call on, triangles that are drawn have holes.
   void MindHoles(TileHoles& holes) { holes_ = &holes; }
   [[nodiscard]] HWY_INLINE bool minds_holes() const { return holes_ != nullptr; }
@@ -323,8 +308,6 @@ class TileBuffer {
       least.Fold(hn::Load(d, kept));
     }
   }
-
-  // -- the way out --------------------------------------------------------------------------------------------------
 
   void WriteOut() const {
     for (std::size_t s = 0; s < picture_.samples.size(); ++s)
@@ -365,11 +348,8 @@ class TileBuffer {
   void ReadRow(std::size_t sample, int y) {
     const std::size_t at = PlaceOf(sample, y);
     std::uint64_t* row = Row(sample, y);
-    for (std::size_t x = 0; x < std::size_t(tile_.width); ++x) {
-      std::uint32_t bits;
-      std::memcpy(&bits, picture_.keys + at + x, sizeof bits);
-      row[x] = std::uint64_t(bits) << 32 | ~picture_.primitives[at + x];
-    }
+    for (std::size_t x = 0; x < std::size_t(tile_.width); ++x)
+      row[x] = std::uint64_t(bits_as<std::uint32_t>(picture_.keys[at + x])) << 32 | ~picture_.primitives[at + x];
   }
 
   void WriteRow(std::size_t sample, int y) const {
@@ -396,8 +376,7 @@ class TileBuffer {
 #endif
     for (; x < width; ++x) {
       primitives[x] = ~std::uint32_t(row[x]);
-      const std::uint32_t bits = std::uint32_t(row[x] >> 32);
-      std::memcpy(keys + x, &bits, sizeof bits);
+      keys[x] = bits_as<float>(std::uint32_t(row[x] >> 32));
     }
   }
 

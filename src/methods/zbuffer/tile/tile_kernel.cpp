@@ -6,10 +6,7 @@
 // Coordinates are relative to the tile, in 1/256 pixel. A sample is covered if E >= 0 for three edge functions, biased
 // by the top-left rule (y down, area positive: an edge is left if it goes up, top if it is level and goes right).
 // Pixels are 256 units apart, so an edge value may be shifted right by 8 before stepping: a step is then -dy or dx, and
-// the sign is still exact.
-//
-// view/triangle_keys.h defines the key at a sample. Every path evaluates exactly this definition, so all agree to the
-// bit.
+// the sign is still exact. Every path evaluates keys exactly as view/triangle_keys.h defines them.
 
 #include "zbuffer/frame_plan.h"
 
@@ -68,7 +65,7 @@ class TilePainter {
       for (int k = 0; k < 3; ++k) {
         record.x[k] = vertices_.x[numbers[k]];
         record.y[k] = vertices_.y[numbers[k]];
-        std::memcpy(&record.key[k], &vertices_.key[numbers[k]], sizeof(float));
+        record.key[k] = bits_as<float>(vertices_.key[numbers[k]]);
       }
       if (orient(record, frame_.facing)) large_.DrawOnce(record);
     });

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traps: strips along the sides of polygons that reach under polygons that are painted later.
-//
-// A viewer blends the rim of every polygon with the pixels below, so the background shows in a pixel that two
-// neighbours share. The printing trade's remedy is trapping: the polygon that is painted first is made larger, under
-// its neighbours.
+// Traps: strips along the sides of polygons that reach under polygons that are painted later. A viewer blends the rim
+// of every polygon with the pixels below, so the background shows in a pixel that two neighbours share. The printing
+// trade's remedy is trapping: the polygon that is painted first is made larger, under its neighbours.
 //
 //                       knot 1 ________ knot 2
 //      around `from`         /          \            A knot lies `along` pixels from the beginning of the side, and
@@ -59,9 +57,18 @@ struct TrapList {
     return {knots.data() + trap.first_knot, trap.knot_count};
   }
   /// Sets `corners` to the corners of a polygon, which has this outline.
-  void set_corners(std::size_t polygon, std::span<const glm::dvec2> outline, std::vector<TrappedCorner>& corners) const;
+  void set_corners(std::size_t polygon, std::span<const glm::dvec2> outline,
+                   std::vector<TrappedCorner>& corners) const {
+    corners.clear();
+    for (const glm::dvec2& at : outline) corners.push_back({at});
+    const std::span<const Trap> own = of(polygon);
+    for (const Trap& trap : own) corners[trap.side].trap = std::uint32_t(&trap - traps.data());
+  }
   /// Reserves room for the contents of all lists.
-  void reserve(const std::vector<TrapList>& lists);
+  void reserve(const std::vector<TrapList>& lists) {
+    reserve_sum(traps, lists, &TrapList::traps);
+    reserve_sum(knots, lists, &TrapList::knots);
+  }
   /// Adds the strips of a polygon of another list as those of the next polygon of this list.
   void add_polygon(const TrapList& other, std::size_t polygon);
 };
