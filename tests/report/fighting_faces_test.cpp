@@ -7,8 +7,7 @@
 
 #include "frontmost/precision.h"
 #include "frontmost/zbuffer.h"
-#include "report/fights/face_pairs.h"
-#include "report/fights/risk.h"
+#include "report/fights/faces_at_risk.h"
 #include "support/costly_meshes.h"
 #include "support/effort.h"
 #include "support/random_scene.h"

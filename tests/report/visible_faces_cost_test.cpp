@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "frontmost/report.h"
-#include "report/faces/cells.h"
+#include "report/faces/viewed_faces.h"
 #include "support/costly_meshes.h"
 #include "support/effort.h"
 #include "support/refusal.h"
@@ -76,13 +76,10 @@ TEST(CostOfVisibleFaces, TooMuchIsRefusedAndSaysWhere) {
   const Scene scene = scene_of(slivers_through_point(2000));
   const Surfaces surfaces(scene);
   const View view = parallel_view({0, 0, 10});
-  using namespace faces_detail;
-  const ViewedFaces screen = viewed_faces(surfaces, view, sides_of_meshes(scene, {}), {});
+  const std::vector<EdgeNeighbours> sides = faces_detail::sides_of_meshes(scene, {});
   for (const int threads : {1, 4})
     EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded,
-                         [&] {
-                           (void)seen_parts({surfaces, screen, AreaRule(view), 1 << 22}, view, {.threads = threads});
-                         }),
+                         [&] { (void)faces_detail::find_faces(surfaces, view, sides, 1 << 22, {.threads = threads}); }),
               "visible faces: too many faces lie over each other to be cut by each other: most of them, 2000, in the "
               "pixels from 0,0 to 32,32, among them face 0 of object 0; leave out what lies there many times");
 }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "surfaces/cones.h"
 
 #include <gtest/gtest.h>
 

@@ -3,12 +3,12 @@
 // whatever the methods made of it, is compared with the samples that differ, to find a surface that rules an answer
 // out.
 //
-//   samples   --ids differ--> Contest: two claims --every triangle over them--> is a claim impossible?
+//   samples   --ids differ--> DifferingSample: two claims --every triangle over them--> is a claim ruled out?
 //                                                                                    neither: edge or depth
 //                                                                                    one:     unexplained
 //
 // All triangles must be compared. Differing samples are therefore kept in cells of 16 x 16 pixels, in which a triangle
-// finds the samples that it may cover. The two triangles of a contest come first. A triangle is skipped in a cell if it
+// finds the samples that it may cover. The two triangles of a sample come first. A triangle is skipped in a cell if it
 // misses the cell, or is everywhere in it farther than the farthest remaining claim.
 #include <algorithm>
 #include <atomic>
@@ -18,6 +18,7 @@
 
 #include "base/parallel.h"
 #include "frontmost/precision.h"
+#include "geometry/buckets.h"
 #include "report/sample_square.h"
 #include "surfaces/cluster_set.h"
 #include "view/facing_rule.h"
@@ -27,7 +28,7 @@
 namespace frontmost {
 namespace {
 
-constexpr std::size_t kRowGrain = 8, kTriangleGrain = 256, kContestGrain = 1024;
+constexpr std::size_t kRowGrain = 8, kTriangleGrain = 256, kSampleGrain = 1024;
 // Side of the cells of differing samples, in pixels.
 constexpr int kCell = 16;
 
@@ -117,42 +118,39 @@ struct Claim {
 };
 
 /// A sample where the answers differ, with the claims of both.
-struct Contest {
-  std::size_t sample;
+struct DifferingSample {
+  std::size_t number;
   SampleSquare square;
   std::array<Claim, 2> claims;
 };
 
-/// For both claims of every contest: true if the scene rules the claim out. Values only change from false to true.
-using Verdicts = std::vector<std::array<std::atomic<bool>, 2>>;
+/// For both claims of every sample: true if the scene rules the claim out. Values only change from false to true.
+using RuledOut = std::vector<std::array<std::atomic<bool>, 2>>;
 
 /// The samples that differ, by their position.
-class ContestMap {
+class DifferenceMap {
  public:
-  ContestMap(const Question& question, const std::vector<Contest>& contests, const Verdicts& impossible)
+  DifferenceMap(const Question& question, const std::vector<DifferingSample>& samples, const RuledOut& ruled_out,
+                const Execution& execution)
       : question_(question),
         view_(question.view),
         columns_((view_.width + kCell - 1) / kCell),
-        rows_((view_.height + kCell - 1) / kCell) {
-    starts_.assign(std::size_t(columns_) * std::size_t(rows_) + 1, 0);
-    for (const Contest& contest : contests) ++starts_[cell_of(contest) + 1];
-    for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
-    numbers_.resize(contests.size());
-    std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
-    farthest_.assign(starts_.size() - 1, std::numeric_limits<double>::infinity());
+        rows_((view_.height + kCell - 1) / kCell),
+        numbers_(
+            std::size_t(columns_) * std::size_t(rows_), samples.size(),
+            [&](std::size_t i, const auto& add) { add(cell_of(samples[i]), i); }, execution),
+        farthest_(numbers_.count(), std::numeric_limits<double>::infinity()) {
     squares_.reserve(farthest_.size());
     for (int y = 0; y < rows_; ++y)
       for (int x = 0; x < columns_; ++x)
         squares_.emplace_back(question.rays, glm::ivec2(x, y) * kCell, glm::ivec2(x, y) * kCell + (kCell - 1));
-    for (std::size_t i = 0; i < contests.size(); ++i) {
-      const std::size_t cell = cell_of(contests[i]);
-      numbers_[next[cell]++] = i;
+    for (std::size_t i = 0; i < samples.size(); ++i)
       for (std::size_t k = 0; k < 2; ++k)
-        if (!impossible[i][k]) farthest_[cell] = std::min(farthest_[cell], contests[i].claims[k].nearness);
-    }
+        if (double& farthest = farthest_[cell_of(samples[i])]; !ruled_out[i][k])
+          farthest = std::min(farthest, samples[i].claims[k].nearness);
   }
 
-  /// Visits the contests in the cells that a triangle and its rectangle of the screen, in pixels, meet. Skips cells
+  /// Visits the samples in the cells that a triangle and its rectangle of the screen, in pixels, meet. Skips cells
   /// where the triangle is behind all claims.
   template <class Visit>
   void in_rect(const glm::dvec2& low, const glm::dvec2& high, const std::array<glm::vec3, 3>& corners,
@@ -164,26 +162,26 @@ class ContestMap {
     for (int y = cell(low.y, rows_); y <= last_y; ++y)
       for (int x = cell(low.x, columns_); x <= last_x; ++x) {
         const std::size_t c = std::size_t(y) * std::size_t(columns_) + std::size_t(x);
-        if (starts_[c] == starts_[c + 1]) continue;
+        if (numbers_[c].empty()) continue;
         if (!triangle) triangle.emplace(corners, question_.rays);
         if (triangle->nearness(squares_[c]).greatest.high < farthest_[c]) continue;
         if (triangle->meeting(squares_[c]) == LineMeeting::misses) continue;
-        for (std::size_t i = starts_[c]; i < starts_[c + 1]; ++i) visit(numbers_[i], *triangle);
+        for (const std::size_t number : numbers_[c]) visit(number, *triangle);
       }
   }
 
  private:
-  [[nodiscard]] std::size_t cell_of(const Contest& contest) const {
-    const std::size_t pixel = contest.sample % view_.pixel_count(), width = std::size_t(view_.width);
+  [[nodiscard]] std::size_t cell_of(const DifferingSample& sample) const {
+    const std::size_t pixel = sample.number % view_.pixel_count(), width = std::size_t(view_.width);
     return pixel / width / kCell * std::size_t(columns_) + pixel % width / kCell;
   }
 
   const Question& question_;
   const View& view_;
   int columns_, rows_;
-  std::vector<std::size_t> starts_, numbers_;
-  std::vector<double> farthest_;       ///< by cell: nearness of the farthest of the remaining claims
-  std::vector<SampleSquare> squares_;  ///< by cell, around the squares of all of its samples
+  const Buckets<std::size_t> numbers_;  ///< of samples that differ, by cell
+  std::vector<double> farthest_;        ///< by cell: nearness of the farthest of the remaining claims
+  std::vector<SampleSquare> squares_;   ///< by cell, around the squares of all of its samples
 };
 
 /// A rectangle of the screen, in pixels, around the visible part of a triangle.
@@ -191,99 +189,86 @@ struct ScreenRect {
   glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
 };
 
-class ScreenRects {
- public:
-  explicit ScreenRects(const View& view)
-      : view_(view), eye_from_world_(glm::inverse(view.world_from_eye)), clip_(view.projection.clip) {}
-
-  [[nodiscard]] ScreenRect of(const std::array<glm::vec3, 3>& corners) const {
-    std::array<glm::dvec3, 3> c;
-    for (std::size_t i = 0; i < 3; ++i) c[i] = glm::dvec3(eye_from_world_ * glm::dvec4(corners[i], 1));
-    ScreenRect rect;
-    const double near = -0.99 * clip_.near;  // with a margin: keys decide at the plane itself
-    for (std::size_t i = 0; i < 3; ++i) {
-      const glm::dvec3 &a = c[i], &b = c[(i + 1) % 3];
-      if (view_.projection.orthographic || a.z <= near) include(a, rect);
-      if (!view_.projection.orthographic && (a.z <= near) != (b.z <= near))
-        include(a + (near - a.z) / (b.z - a.z) * (b - a), rect);
-    }
-    // A margin of one pixel, many times what doubles and the squares need.
-    return {rect.low - 1.0, rect.high + 1.0};
-  }
-
- private:
-  void include(const glm::dvec3& at, ScreenRect& rect) const {
-    const Projection& p = view_.projection;
+ScreenRect rect_of(const std::array<glm::vec3, 3>& corners, const View& view, const glm::dmat4& eye_from_world) {
+  const Projection& p = view.projection;
+  std::array<glm::dvec3, 3> c;
+  for (std::size_t i = 0; i < 3; ++i) c[i] = glm::dvec3(eye_from_world * glm::dvec4(corners[i], 1));
+  ScreenRect rect;
+  const auto include = [&](const glm::dvec3& at) {
     const double scale = p.orthographic ? 1 : -1 / at.z;
-    const glm::dvec2 place((at.x * scale - p.left) / (p.right - p.left) * view_.width,
-                           (p.top - at.y * scale) / (p.top - p.bottom) * view_.height);
+    const glm::dvec2 place((at.x * scale - p.left) / (p.right - p.left) * view.width,
+                           (p.top - at.y * scale) / (p.top - p.bottom) * view.height);
     rect.low = glm::min(rect.low, place);
     rect.high = glm::max(rect.high, place);
+  };
+  const double near = -0.99 * p.clip.near;  // with a margin: keys decide at the plane itself
+  for (std::size_t i = 0; i < 3; ++i) {
+    const glm::dvec3 &a = c[i], &b = c[(i + 1) % 3];
+    if (p.orthographic || a.z <= near) include(a);
+    if (!p.orthographic && (a.z <= near) != (b.z <= near)) include(a + (near - a.z) / (b.z - a.z) * (b - a));
   }
+  // A margin of one pixel, many times what doubles and the squares need.
+  return {rect.low - 1.0, rect.high + 1.0};
+}
 
-  const View& view_;
-  glm::dmat4 eye_from_world_;
-  ClipDistances clip_;
-};
-
-/// Rules out claims of a contest that triangle `id` contradicts, if the triangle surely covers the sample.
-void testify(const Question& question, PrimitiveId id, const ViewedTriangle& triangle, const Contest& contest,
-             std::array<std::atomic<bool>, 2>& impossible) {
+/// Rules out claims of a sample that triangle `id` contradicts, if the triangle surely covers the sample.
+void rule_out_by(const Question& question, PrimitiveId id, const ViewedTriangle& triangle,
+                 const DifferingSample& sample, std::array<std::atomic<bool>, 2>& ruled_out) {
   const auto is_open = [&](std::size_t i) {
-    return contest.claims[i].id != id && !impossible[i].load(std::memory_order_relaxed);
+    return sample.claims[i].id != id && !ruled_out[i].load(std::memory_order_relaxed);
   };
   if (!is_open(0) && !is_open(1)) return;
-  const double nearness = triangle.nearness(contest.square).least.high;
+  const double nearness = triangle.nearness(sample.square).least.high;
   bool is_there = false;
   for (std::size_t i = 0; i < 2; ++i) {
-    const Claim& claim = contest.claims[i];
+    const Claim& claim = sample.claims[i];
     if (!is_open(i) || nearness < claim.nearness) continue;
-    is_there = is_there || question.meeting(triangle, id, contest.square, contest.sample) == LineMeeting::contains;
+    is_there = is_there || question.meeting(triangle, id, sample.square, sample.number) == LineMeeting::contains;
     if (!is_there) return;
-    if (!claim.triangle || is_surely_nearer(triangle, *claim.triangle, contest.square))
-      impossible[i].store(true, std::memory_order_relaxed);
+    if (!claim.triangle || is_surely_nearer(triangle, *claim.triangle, sample.square))
+      ruled_out[i].store(true, std::memory_order_relaxed);
   }
 }
 
-void hear_all_triangles(const Question& question, const std::vector<Contest>& contests, Verdicts& impossible,
-                        const Execution& execution) {
-  if (contests.empty()) return;
-  parallel_for(execution, contests.size(), kContestGrain, [&](std::size_t begin, std::size_t end) {
+void compare_all_triangles(const Question& question, const std::vector<DifferingSample>& samples, RuledOut& ruled_out,
+                           const Execution& execution) {
+  if (samples.empty()) return;
+  parallel_for(execution, samples.size(), kSampleGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      for (const Claim& claim : contests[i].claims)
-        if (claim.triangle) testify(question, claim.id, *claim.triangle, contests[i], impossible[i]);
+      for (const Claim& claim : samples[i].claims)
+        if (claim.triangle) rule_out_by(question, claim.id, *claim.triangle, samples[i], ruled_out[i]);
   });
-  const ContestMap map(question, contests, impossible);
-  const ScreenRects rects(question.view);
+  const DifferenceMap map(question, samples, ruled_out, execution);
+  const glm::dmat4 eye_from_world = glm::inverse(question.view.world_from_eye);
   parallel_for(execution, question.surfaces.primitive_count(), kTriangleGrain, [&](std::size_t begin, std::size_t end) {
     for (auto id = PrimitiveId(begin); id < end; ++id) {
       const std::array<glm::vec3, 3> corners = question.surfaces.corners(id);
       if (!are_finite(corners)) continue;
-      const ScreenRect rect = rects.of(corners);
+      const ScreenRect rect = rect_of(corners, question.view, eye_from_world);
       map.in_rect(rect.low, rect.high, corners, [&](std::size_t number, const ViewedTriangle& triangle) {
-        testify(question, id, triangle, contests[number], impossible[number]);
+        rule_out_by(question, id, triangle, samples[number], ruled_out[number]);
       });
     }
   });
 }
 
-Contest contest_at(const Question& question, std::size_t sample, PrimitiveId a, PrimitiveId b) {
-  Contest contest{sample, question.square(sample), {Claim{a, {}}, Claim{b, {}}}};
-  for (Claim& claim : contest.claims) {
+DifferingSample differing_sample(const Question& question, std::size_t number, PrimitiveId a, PrimitiveId b) {
+  DifferingSample sample{number, question.square(number), {Claim{a, {}}, Claim{b, {}}}};
+  for (Claim& claim : sample.claims) {
     if (claim.id == no_primitive) continue;
     claim.triangle = question.triangle(claim.id);
-    if (claim.triangle) claim.nearness = claim.triangle->nearness(contest.square).greatest.low;
+    if (claim.triangle) claim.nearness = claim.triangle->nearness(sample.square).greatest.low;
     claim.meeting =
-        claim.triangle ? question.meeting(*claim.triangle, claim.id, contest.square, sample) : LineMeeting::misses;
+        claim.triangle ? question.meeting(*claim.triangle, claim.id, sample.square, number) : LineMeeting::misses;
   }
-  return contest;
+  return sample;
 }
 
-Difference verdict(const Contest& contest, const std::array<std::atomic<bool>, 2>& impossible) {
+Difference verdict(const DifferingSample& sample, const std::array<std::atomic<bool>, 2>& ruled_out) {
   bool all_contain = true;
   for (std::size_t i = 0; i < 2; ++i) {
-    const Claim& claim = contest.claims[i];
-    if (impossible[i] || claim.meeting == LineMeeting::misses) return Difference::unexplained;
+    const Claim& claim = sample.claims[i];
+    if (ruled_out[i] || claim.meeting == LineMeeting::misses) return Difference::unexplained;
     all_contain = all_contain && claim.meeting == LineMeeting::contains && claim.id != no_primitive;
   }
   return all_contain ? Difference::depth : Difference::edge;
@@ -309,13 +294,13 @@ void look_at_samples(const Question& question, const Visible& a, const Visible& 
   });
 }
 
-std::vector<Contest> contests_of(const Question& question, const Visible& a, const Visible& b,
-                                 const Agreement& result) {
-  std::vector<Contest> contests;
+std::vector<DifferingSample> differing_samples(const Question& question, const Visible& a, const Visible& b,
+                                               const Agreement& result) {
+  std::vector<DifferingSample> samples;
   for (std::size_t i = 0; i < result.differences.size(); ++i)
     if (result.differences[i] == Difference::edge)
-      contests.push_back(contest_at(question, i, a.primitives[i], b.primitives[i]));
-  return contests;
+      samples.push_back(differing_sample(question, i, a.primitives[i], b.primitives[i]));
+  return samples;
 }
 
 void check_views(const Visible& a, const Visible& b) {
@@ -355,11 +340,11 @@ Agreement check_agreement(const Surfaces& surfaces, const Visible& a, const Visi
                           sample_offsets(a.view.samples),
                           FacingRule(a.view.culling, placed_scene(surfaces).sides.get())};
   look_at_samples(question, a, b, execution, result);
-  const std::vector<Contest> contests = contests_of(question, a, b, result);
-  Verdicts impossible(contests.size());
-  hear_all_triangles(question, contests, impossible, execution);
-  for (std::size_t i = 0; i < contests.size(); ++i)
-    result.differences[contests[i].sample] = verdict(contests[i], impossible[i]);
+  const std::vector<DifferingSample> samples = differing_samples(question, a, b, result);
+  RuledOut ruled_out(samples.size());
+  compare_all_triangles(question, samples, ruled_out, execution);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    result.differences[samples[i].number] = verdict(samples[i], ruled_out[i]);
   for (const Difference difference : result.differences) ++result.counts[std::size_t(difference)];
   return result;
 }

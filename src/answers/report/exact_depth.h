@@ -2,7 +2,7 @@
 // The depth of a triangle's plane at a sample: first by bounds, then exactly where bounds do not decide.
 //
 //   BoundedPlane   doubles, with a bound of their error       |----[ depth ]----|
-//   ExactDepth     a fraction of two expansions, compared by multiplication, never divided
+//   exact_depth()  a fraction of two expansions, compared by multiplication, never divided
 //
 // Two planes are compared by their bounds first. Bounds overlap at few samples of a picture, where the fractions
 // decide; exact comparison therefore costs little more than doubles.
@@ -57,33 +57,26 @@ class BoundedPlane {
   }
 
  private:
-  /// The depth without the limits of the corners. \returns false if nothing is known.
-  bool find_depth(const SampleRay& ray, DepthBounds& bounds) const;
-
   glm::dvec3 corner_;
   BoundedNormal normal_;
   DepthBounds limits_low_, limits_high_;  // depths of the nearest and of the farthest corner
 };
 
-/// Whether two triangles lie in exactly one common plane. False if it is open whether either has an area.
-[[nodiscard]] bool share_a_plane(const std::array<glm::vec3, 3>& a, const std::array<glm::vec3, 3>& b);
-/// Whether all corners have exactly the same depth. Every point of the triangle then has that depth.
-[[nodiscard]] bool has_one_depth(const std::array<glm::vec3, 3>& corners, const SampleRays& rays);
+/// Whether all vertices of both triangles lie exactly in one plane.
+[[nodiscard]] bool lie_in_one_plane(const std::array<glm::vec3, 3>& a, const std::array<glm::vec3, 3>& b);
 
-/// A depth as a fraction.
-class ExactDepth {
- public:
-  ExactDepth(const std::array<glm::vec3, 3>& corners, const SampleRays& rays, const SampleRay& ray);
+/// A fraction with a positive denominator.
+struct Fraction {
+  Expansion numerator, denominator;
 
-  /// -1 when `a` is nearer than `b`, 0 when they are equal.
-  [[nodiscard]] friend int compare(const ExactDepth& a, const ExactDepth& b) {
-    return (a.numerator_ * b.denominator_ - b.numerator_ * a.denominator_).sign();
+  /// The sign of this minus `other`.
+  [[nodiscard]] int compare(const Fraction& other) const {
+    return (numerator * other.denominator - other.numerator * denominator).sign();
   }
-
- private:
-  void limit(const Expansion& bound, int side);
-
-  Expansion numerator_, denominator_;  // the denominator is positive
 };
+
+/// The depth of a triangle's plane at a ray, limited to the range of its corners.
+[[nodiscard]] Fraction exact_depth(const std::array<glm::vec3, 3>& corners, const SampleRays& rays,
+                                   const SampleRay& ray);
 
 }  // namespace frontmost

@@ -1,13 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts of a scene, mesh by mesh and object by object; and likely units of files that state none.
+// Counts of a scene, mesh by mesh and object by object; and likely units of files that state none. The topology of a
+// mesh is found by sorting and joining, in parallel:
+//
+//   positions --equal--> one number for each point
+//   half-edges --by their two points--> groups: one is a boundary, two are joined, more are not manifold
+//   joined triangles --union-find--> shells; joined corners --union-find--> pieces
+//
+// Sets are named by their least member, so no result depends on the order of threads.
+// The genus follows from Euler's formula if the mesh is closed and every edge has two triangles.
 #include "frontmost/report.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
+#include <utility>
 
+#include "base/orientation.h"
 #include "base/parallel.h"
-#include "report/mesh_topology.h"
+#include "geometry/buckets.h"
+#include "geometry/disjoint_sets.h"
+#include "geometry/places.h"
 
 namespace frontmost {
 namespace {
@@ -21,26 +34,200 @@ void add(Oddities& sum, const Oddities& odd) {
   sum.inconsistent_edges += odd.inconsistent_edges;
 }
 
+constexpr std::size_t kMaxTriangles = std::size_t(1) << 29;  // leaves a free bit beside a half-edge's number
+constexpr std::size_t kGrain = std::size_t(1) << 14;
+constexpr std::uint32_t kUnpaired = no_index;
+
+/// A half-edge among those with the same lower point.
+struct HalfEdge {
+  std::uint32_t upper;   ///< the other point
+  std::uint32_t marked;  ///< number of the half-edge; the highest bit is set where it leads to the lower point
+
+  static constexpr std::uint32_t backward = 1u << 31;
+  [[nodiscard]] std::uint32_t number() const { return marked & ~backward; }
+  friend bool operator<(const HalfEdge& a, const HalfEdge& b) {
+    return a.upper != b.upper ? a.upper < b.upper : a.number() < b.number();
+  }
+  [[nodiscard]] bool is_same(const HalfEdge& other) const { return upper == other.upper; }
+};
+
+/// The two greater points of a triangle, among the triangles with the same least point.
+struct UpperPoints {
+  std::uint32_t middle, last;
+
+  friend auto operator<=>(const UpperPoints&, const UpperPoints&) = default;
+  [[nodiscard]] bool is_same(const UpperPoints& other) const { return *this == other; }
+};
+
+/// Calls visit(group, sums) for each group of equal items of a bucket, from several threads, and adds all `sums` to
+/// `all`.
+template <class Item, class Visit>
+void for_each_group(Buckets<Item>& buckets, const Execution& execution, Oddities& all, const Visit& visit) {
+  std::mutex mutex;
+  parallel_for(execution, buckets.count(), kGrain, [&](std::size_t begin, std::size_t end) {
+    Oddities sums;
+    for (std::size_t bucket = begin; bucket < end; ++bucket) {
+      const std::span<Item> items = buckets[bucket];
+      std::sort(items.begin(), items.end());
+      for (auto first = items.begin(); first != items.end();) {
+        const auto last = std::find_if(first, items.end(), [&](const Item& item) { return !item.is_same(*first); });
+        visit(std::span<const Item>(first, last), sums);
+        first = last;
+      }
+    }
+    const std::lock_guard lock(mutex);
+    add(all, sums);
+  });
+}
+
+/// The mesh after welding. Half-edge 3 * triangle + k runs from corner k to the next one.
+class MeshTopology {
+ public:
+  MeshTopology(const Mesh& mesh, const Execution& execution)
+      : mesh_(mesh),
+        execution_(execution),
+        corners_(mesh.triangles.size()),
+        kinds_(mesh.triangles.size()),
+        triangle_sets_(mesh.triangles.size()),
+        corner_sets_(mesh.positions.size()) {
+    const Buffer<std::uint32_t> first = first_at_place(mesh.positions, execution);
+    parallel_for(execution, corners_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        const glm::uvec3& c = mesh.triangles[t];
+        corners_[t] = {first[c.x], first[c.y], first[c.z]};
+        kinds_[t] = kind_of(corners_[t]);
+        if (kinds_[t] == Kind::non_finite) continue;
+        corner_sets_.join(corners_[t].x, corners_[t].y);
+        corner_sets_.join(corners_[t].x, corners_[t].z);
+      }
+    });
+  }
+
+  /// Sets the counts of a report. \returns the different positions of finite triangles.
+  [[nodiscard]] std::vector<glm::vec3> examine(MeshReport& report) {
+    Oddities& odd = report.odd;
+    std::uint64_t surface = 0;  // number of triangles with three different corners
+    for (const Kind kind : kinds_) {
+      odd.non_finite_triangles += kind == Kind::non_finite;
+      odd.degenerate_triangles += kind == Kind::repeated || kind == Kind::flat;
+      surface += has_edges(kind);
+    }
+    count_duplicates(odd);
+    join_edges(odd);
+    for (std::uint32_t t = 0; t < kinds_.size(); ++t)
+      report.shells += has_edges(kinds_[t]) && triangle_sets_.is_leader(t);
+    report.closed = surface > 0 && odd.boundary_edges == 0;
+    if (report.closed && odd.non_manifold_edges == 0 && odd.inconsistent_edges == 0) {
+      // Euler: sum over shells of 2 - 2 genus = vertices - edges + triangles.
+      const auto euler = std::int64_t(count_fans()) - std::int64_t(surface * 3 / 2) + std::int64_t(surface);
+      report.genus = std::uint64_t(std::int64_t(report.shells) - euler / 2);
+    }
+    return collect_points(report);
+  }
+
+ private:
+  enum class Kind : std::uint8_t { proper, flat, repeated, non_finite };
+  static bool has_edges(Kind kind) { return kind == Kind::proper || kind == Kind::flat; }
+
+  [[nodiscard]] Kind kind_of(const glm::uvec3& c) const {
+    const glm::vec3 &a = mesh_.positions[c.x], &b = mesh_.positions[c.y], &d = mesh_.positions[c.z];
+    if (!is_finite(a) || !is_finite(b) || !is_finite(d)) return Kind::non_finite;
+    if (c.x == c.y || c.y == c.z || c.z == c.x) return Kind::repeated;
+    return are_collinear(a, b, d) ? Kind::flat : Kind::proper;
+  }
+
+  void count_duplicates(Oddities& odd) const {
+    const auto list = [&](std::size_t t, const auto& add) {
+      if (kinds_[t] == Kind::non_finite) return;
+      glm::uvec3 c = corners_[t];
+      if (c.x > c.y) std::swap(c.x, c.y);
+      if (c.y > c.z) std::swap(c.y, c.z);
+      if (c.x > c.y) std::swap(c.x, c.y);
+      add(c.x, UpperPoints{c.y, c.z});
+    };
+    Buckets<UpperPoints> triangles(mesh_.positions.size(), corners_.size(), list, execution_);
+    for_each_group(triangles, execution_, odd, [](std::span<const UpperPoints> same, Oddities& counts) {
+      counts.duplicate_triangles += same.size() - 1;
+    });
+  }
+
+  // Counts edges by their number of triangles, joins the triangles of each edge, and pairs opposite half-edges.
+  void join_edges(Oddities& odd) {
+    twins_.assign(3 * corners_.size(), kUnpaired);
+    const auto list = [&](std::size_t t, const auto& add) {
+      if (!has_edges(kinds_[t])) return;
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t from = corners_[t][k], to = corners_[t][(k + 1) % 3],
+                            half_edge = 3 * std::uint32_t(t) + std::uint32_t(k);
+        add(std::min(from, to), HalfEdge{std::max(from, to), half_edge | (from < to ? 0 : HalfEdge::backward)});
+      }
+    };
+    Buckets<HalfEdge> edges(mesh_.positions.size(), corners_.size(), list, execution_);
+    for_each_group(edges, execution_, odd, [&](std::span<const HalfEdge> edge, Oddities& counts) {
+      for (std::size_t i = 1; i < edge.size(); ++i) triangle_sets_.join(edge[0].number() / 3, edge[i].number() / 3);
+      counts.boundary_edges += edge.size() == 1;
+      counts.non_manifold_edges += edge.size() > 2;
+      if (edge.size() != 2) return;
+      if (((edge[0].marked ^ edge[1].marked) & HalfEdge::backward) == 0) {
+        ++counts.inconsistent_edges;
+      } else {
+        twins_[edge[0].number()] = edge[1].number();
+        twins_[edge[1].number()] = edge[0].number();
+      }
+    });
+  }
+
+  // The number of fans of triangles around vertices. A vertex has one fan, unless two fans touch in a point; the
+  // surface passes that point twice, and counting it once would turn it into a handle. Precondition: every half-edge
+  // has its twin.
+  [[nodiscard]] std::uint64_t count_fans() const {
+    std::uint64_t fans = 0;
+    std::vector<bool> seen(twins_.size(), false);
+    for (std::uint32_t start = 0; start < twins_.size(); ++start) {
+      if (seen[start] || twins_[start] == kUnpaired) continue;
+      ++fans;
+      // The previous half-edge in its triangle ends where this one starts, so its twin starts there, too.
+      for (std::uint32_t h = start; !seen[h]; h = twins_[h % 3 == 0 ? h + 2 : h - 1]) seen[h] = true;
+    }
+    return fans;
+  }
+
+  [[nodiscard]] std::vector<glm::vec3> collect_points(MeshReport& report) const {
+    std::vector<glm::vec3> points;
+    std::vector<bool> used(mesh_.positions.size(), false);
+    for (std::size_t t = 0; t < corners_.size(); ++t) {
+      if (kinds_[t] == Kind::non_finite) continue;
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t corner = corners_[t][k];
+        if (used[corner]) continue;
+        used[corner] = true;
+        points.push_back(mesh_.positions[corner]);
+        report.pieces += corner_sets_.is_leader(corner);
+      }
+    }
+    return points;
+  }
+
+  const Mesh& mesh_;
+  const Execution& execution_;
+  std::vector<glm::uvec3> corners_;
+  std::vector<Kind> kinds_;
+  DisjointSets<> triangle_sets_, corner_sets_;
+  std::vector<std::uint32_t> twins_;
+};
+
 // Number of triangles of each material, in the order of material numbers.
-std::vector<MaterialUse> materials_of(const Mesh& mesh, std::size_t material_count) {
+std::vector<MaterialUse> materials_of(const Mesh& mesh) {
   if (mesh.triangles.empty()) return {};
   if (mesh.material_ids.size() <= 1) return {{mesh.material_of(0), mesh.triangles.size()}};
-  // Scenes usually have few materials, so counting beats sorting, unless the scene has more materials than the mesh
-  // triangles.
+  std::map<std::uint32_t, std::uint64_t> counts;  // no_index, the greatest number, comes last
+  std::uint64_t* count = nullptr;
+  for (std::size_t i = 0; i < mesh.material_ids.size(); ++i) {
+    if (i == 0 || mesh.material_ids[i] != mesh.material_ids[i - 1]) count = &counts[mesh.material_ids[i]];
+    ++*count;
+  }
   std::vector<MaterialUse> uses;
-  if (material_count <= mesh.material_ids.size()) {
-    std::vector<std::uint64_t> counts(material_count + 1, 0);
-    for (const std::uint32_t id : mesh.material_ids) ++counts[id == no_index ? material_count : id];
-    for (std::size_t i = 0; i <= material_count; ++i)
-      if (counts[i] > 0) uses.push_back({i == material_count ? no_index : std::uint32_t(i), counts[i]});
-    return uses;
-  }
-  std::vector<std::uint32_t> sorted = mesh.material_ids;
-  std::sort(sorted.begin(), sorted.end());
-  for (const std::uint32_t id : sorted) {
-    if (uses.empty() || uses.back().material != id) uses.push_back({id, 0});
-    ++uses.back().triangles;
-  }
+  for (const auto& [material, triangles] : counts) uses.push_back({material, triangles});
   return uses;
 }
 
@@ -52,22 +239,21 @@ std::uint64_t face_count(const Mesh& mesh) {
   return faces;
 }
 
-MeshReport report_mesh(const Mesh& mesh, const Topology& topology, std::size_t material_count) {
+/// Reports a mesh. Sets `points` to the different positions of finite triangles. Precondition: indices are in range.
+MeshReport report_mesh(const Mesh& mesh, const Execution& execution, std::vector<glm::vec3>& points) {
+  if (mesh.triangles.size() > kMaxTriangles)
+    throw Error(ErrorCode::limit_exceeded, "mesh " + mesh.name, "more than 536870912 triangles to examine");
   MeshReport report;
+  points = MeshTopology(mesh, execution).examine(report);
   report.name = mesh.name;
   report.triangles = mesh.triangles.size();
   report.vertices = mesh.positions.size();
-  report.positions = topology.points.size();
+  report.positions = points.size();
   report.faces = face_count(mesh);
   report.has_normals = !mesh.normals.empty();
   report.has_texcoords = !mesh.texcoords.empty();
   report.has_colors = !mesh.colors.empty();
-  report.materials = materials_of(mesh, material_count);
-  report.odd = topology.odd;
-  report.pieces = topology.pieces;
-  report.shells = topology.shells;
-  report.closed = topology.closed;
-  report.genus = topology.genus;
+  report.materials = materials_of(mesh);
   return report;
 }
 
@@ -143,43 +329,26 @@ glm::dvec3 unit(const glm::dvec4& v) {
 }
 
 CameraReport report_camera(const Camera& camera) {
-  CameraReport report;
-  report.name = camera.name;
-  report.position = glm::dvec3(camera.world_from_eye[3]);
-  report.direction = unit(-camera.world_from_eye[2]);
-  report.up = unit(camera.world_from_eye[1]);
-  report.orthographic = camera.orthographic;
-  report.vertical = camera.vertical;
-  return report;
+  const glm::dmat4& pose = camera.world_from_eye;
+  return {camera.name, glm::dvec3(pose[3]), unit(-pose[2]), unit(pose[1]), camera.orthographic, camera.vertical};
 }
 
 LightReport report_light(const Light& light) {
-  LightReport report;
-  report.name = light.name;
-  report.kind = light.kind;
-  report.position = glm::dvec3(light.world_from_light[3]);
-  report.direction = unit(-light.world_from_light[2]);
-  report.color = light.color;
-  report.intensity = light.intensity;
-  report.range = light.range;
-  report.inner_cone = light.inner_cone;
-  report.outer_cone = light.outer_cone;
-  return report;
+  const glm::dmat4& pose = light.world_from_light;
+  return {light.name,      light.kind,  glm::dvec3(pose[3]), unit(-pose[2]),  light.color,
+          light.intensity, light.range, light.inner_cone,    light.outer_cone};
 }
 
 // Objects of one mesh need its points. Meshes are examined one after the other, so only one mesh's points are in
 // memory.
-void report_objects(const Scene& scene, const std::vector<std::uint32_t>& instances, const Topology& topology,
-                    const Execution& execution, SceneReport& report) {
+void report_objects(const Scene& scene, const std::vector<std::uint32_t>& instances,
+                    const std::vector<glm::vec3>& points, const Execution& execution, SceneReport& report) {
   for (const std::uint32_t i : instances) {
     const Instance& instance = scene.instances[i];
     const MeshReport& mesh = report.meshes[instance.mesh];
-    report.objects[i] = {instance.name,
-                         instance.mesh,
-                         mesh.triangles,
-                         bounds_of(topology.points, instance.world_from_mesh, execution),
-                         0,
-                         std::nullopt};
+    report.objects[i] = {
+        instance.name, instance.mesh, mesh.triangles, bounds_of(points, instance.world_from_mesh, execution), 0,
+        std::nullopt};
     const Measures measures =
         measures_of(scene.meshes[instance.mesh], instance.world_from_mesh, report.objects[i].bounds, execution);
     report.area += report.objects[i].area = measures.area;
@@ -214,12 +383,12 @@ SceneReport inspect(const Scene& scene, const Execution& execution) {
   report.objects.resize(scene.instances.size());
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     report_progress(execution, "inspect", double(m) / double(scene.meshes.size()));
-    const Topology topology = examine(scene.meshes[m], execution);
-    report.meshes.push_back(report_mesh(scene.meshes[m], topology, scene.materials.size()));
+    std::vector<glm::vec3> points;
+    report.meshes.push_back(report_mesh(scene.meshes[m], execution, points));
     report.stored_triangles += report.meshes[m].triangles;
     report.vertices += report.meshes[m].vertices;
-    add(report.odd, topology.odd);
-    report_objects(scene, instances[m], topology, execution, report);
+    add(report.odd, report.meshes[m].odd);
+    report_objects(scene, instances[m], points, execution, report);
   }
   report.rounding = rounding_within(report.bounds);
   return report;

@@ -155,18 +155,8 @@ NearnessRange ViewedTriangle::nearness(const SampleSquare& square) const {
   return range;
 }
 
-/// A nearness as a fraction with a positive denominator.
-struct ViewedTriangle::Fraction {
-  Expansion numerator, denominator;
-
-  /// The sign of this minus `other`.
-  [[nodiscard]] int compare(const Fraction& other) const {
-    return (numerator * other.denominator - other.numerator * denominator).sign();
-  }
-};
-
 /// The nearness of the nearest (extreme 1) or farthest (-1) corner, limited to the planes.
-ViewedTriangle::Fraction ViewedTriangle::exact_limit(int extreme) const {
+Fraction ViewedTriangle::exact_limit(int extreme) const {
   Expansion depth;
   for (std::size_t i = 0; i < 3; ++i) {
     const Expansion here = dot(exact(rays_->forward()), difference(corners_[i], rays_->eye()));
@@ -178,7 +168,7 @@ ViewedTriangle::Fraction ViewedTriangle::exact_limit(int extreme) const {
   return rays_->is_orthographic() ? Fraction{-depth, Expansion(1)} : Fraction{Expansion(1), depth};
 }
 
-ViewedTriangle::Fraction ViewedTriangle::exact_nearness(const SampleRay& ray, int extreme) const {
+Fraction ViewedTriangle::exact_nearness(const SampleRay& ray, int extreme) const {
   const ExactVector normal = cross(difference(corners_[1], corners_[0]), difference(corners_[2], corners_[0]));
   const Expansion along = dot(normal, difference(corners_[0], ray.origin)), across = dot(normal, exact(ray.direction));
   Fraction value = rays_->is_orthographic() ? Fraction{-along, across} : Fraction{across, along};
@@ -187,8 +177,7 @@ ViewedTriangle::Fraction ViewedTriangle::exact_nearness(const SampleRay& ray, in
   return value;
 }
 
-ViewedTriangle::Fraction ViewedTriangle::exact_extreme(const ViewedTriangle& triangle, const SampleSquare& square,
-                                                       int extreme) {
+Fraction ViewedTriangle::exact_extreme(const ViewedTriangle& triangle, const SampleSquare& square, int extreme) {
   Fraction best = triangle.exact_nearness(square.corners[0], extreme);
   for (std::size_t i = 1; i < 4; ++i) {
     const Fraction here = triangle.exact_nearness(square.corners[i], extreme);

@@ -50,7 +50,6 @@ class ViewedTriangle {
   friend bool is_surely_nearer(const ViewedTriangle& a, const ViewedTriangle& b, const SampleSquare& square);
 
  private:
-  struct Fraction;
   [[nodiscard]] bool is_separated(const SampleSquare& square) const;
   [[nodiscard]] bool is_inside(const SampleRay& ray) const;
   [[nodiscard]] int edge_side(std::size_t edge, const SampleRay& ray) const;

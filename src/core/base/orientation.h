@@ -33,4 +33,11 @@ namespace detail {
   return detail::exact_orientation(a, b, c);
 }
 
+/// Whether the area of a triangle in space is exactly zero, for its floats as they are. Precondition: the floats are
+/// finite.
+[[nodiscard]] inline bool are_collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+  return orientation({a.x, a.y}, {b.x, b.y}, {c.x, c.y}) == 0 && orientation({a.y, a.z}, {b.y, b.z}, {c.y, c.z}) == 0 &&
+         orientation({a.z, a.x}, {b.z, b.x}, {c.z, c.x}) == 0;
+}
+
 }  // namespace frontmost

@@ -58,8 +58,10 @@ class Buckets {
   [[nodiscard]] std::size_t byte_count() const {
     return first_.size() * sizeof(first_[0]) + items_.size() * sizeof(Item);
   }
-  [[nodiscard]] std::span<const Item> operator[](std::size_t bucket) const {
-    return {items_.data() + first_[bucket], first_[bucket + 1] - first_[bucket]};
+  [[nodiscard]] std::span<const Item> operator[](std::size_t bucket) const { return in(bucket, bucket + 1); }
+  /// The items of buckets [begin, end), one bucket after another.
+  [[nodiscard]] std::span<const Item> in(std::size_t begin, std::size_t end) const {
+    return {items_.data() + first_[begin], first_[end] - first_[begin]};
   }
   /// The items of a bucket, which may be reordered or changed.
   [[nodiscard]] std::span<Item> operator[](std::size_t bucket) {

@@ -8,9 +8,6 @@
 namespace frontmost {
 namespace {
 
-/// Whether a material may have holes. In other alpha modes, alpha either blends or is ignored.
-bool may_cut(const Material& m) { return m.alpha == Material::Alpha::mask; }
-
 CutoutPattern pattern_of(const Scene& scene, const Material& material) {
   CutoutPattern pattern;
   pattern.alpha = material.base_color.a;
@@ -31,16 +28,12 @@ CutoutPattern pattern_of(const Scene& scene, const Material& material) {
 }
 
 /// The values of a triangle's vertices, or `none` if the mesh has no such attribute.
-template <class T, class Value>
-std::array<Value, 3> corner_values(const Mesh& mesh, const Attribute<T>* attribute, std::uint32_t triangle,
-                                   const Value& none, Value (*part)(const T&)) {
+template <class T>
+std::array<T, 3> corner_values(const Mesh& mesh, const Attribute<T>* attribute, std::uint32_t triangle, const T& none) {
   if (!attribute || attribute->empty()) return {none, none, none};
   const glm::uvec3& corners = mesh.corners(*attribute, triangle);
-  return {part(attribute->values[corners.x]), part(attribute->values[corners.y]), part(attribute->values[corners.z])};
+  return {attribute->values[corners.x], attribute->values[corners.y], attribute->values[corners.z]};
 }
-
-glm::vec2 whole(const glm::vec2& v) { return v; }
-float alpha_of(const glm::vec4& color) { return color.a; }
 
 float mix(float a, float b, float t) { return a + (b - a) * t; }
 
@@ -94,7 +87,8 @@ std::shared_ptr<Cutouts> Cutouts::of(const Scene& scene, const std::vector<Primi
   cutouts->patterns_ = std::make_shared<std::vector<CutoutPattern>>();
   bool any = false;
   for (const Material& material : scene.materials) {
-    const bool cuts = may_cut(material);
+    // In other alpha modes, alpha either blends or is ignored.
+    const bool cuts = material.alpha == Material::Alpha::mask;
     cutouts->cuts_.push_back(cuts);
     cutouts->patterns_->push_back(cuts ? pattern_of(scene, material) : CutoutPattern{});
     any = any || cuts;
@@ -123,8 +117,9 @@ void Cutouts::add_mesh(const Scene& scene, const Instance& instance, PrimitiveId
     const std::uint32_t set = scene.materials[material].base_color_texture.set;
     CutoutTriangle triangle;
     for (std::size_t k = 0; k < 3; ++k) triangle.corner[k] = world(mesh.positions[mesh.triangles[t][int(k)]]);
-    triangle.texcoord = corner_values(mesh, mesh.texcoord_set(set), t, glm::vec2(0), whole);
-    triangle.alpha = corner_values(mesh, &mesh.colors, t, 1.0f, alpha_of);
+    triangle.texcoord = corner_values(mesh, mesh.texcoord_set(set), t, glm::vec2(0));
+    const std::array<glm::vec4, 3> colors = corner_values(mesh, &mesh.colors, t, glm::vec4(1));
+    triangle.alpha = {colors[0].a, colors[1].a, colors[2].a};
     triangle.pattern = &(*patterns_)[material];
     words_[(first + t) / 64].bits |= std::uint64_t(1) << ((first + t) % 64);
     triangles_.push_back(triangle);

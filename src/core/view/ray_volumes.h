@@ -53,8 +53,27 @@ struct RayVolumes {
   glm::dvec3 value, step_x, step_y;
 };
 
-/// The volumes at screen position (x, y), in pixels, of a triangle with vertices in world axes relative to the eye.
-[[nodiscard]] RayVolumes ray_volumes(const ScreenRays& rays, const std::array<glm::dvec3, 3>& corners, double x,
-                                     double y);
+/// The volumes at screen position (x, y), in pixels, of a triangle with vertices in world axes relative to the eye: six
+/// times the volumes that the ray spans with the sides. In perspective the ray's direction changes from pixel to pixel;
+/// in parallel projection its start does.
+///
+///           a
+///          /.\           The ray d from the eye meets the triangle a b c at weights in the ratio of
+///         / d \          d . (b x c)  :  d . (c x a)  :  d . (a x b)
+///        b-----c
+[[nodiscard]] inline RayVolumes ray_volumes(const ScreenRays& rays, const std::array<glm::dvec3, 3>& corners, double x,
+                                            double y) {
+  const glm::dvec3 ray = rays.at(x, y);
+  RayVolumes v{};
+  for (int k = 0; k < 3; ++k) {
+    const glm::dvec3 &p = corners[std::size_t((k + 1) % 3)], &q = corners[std::size_t((k + 2) % 3)];
+    // A start that moves changes the product by the area that it sweeps along the side from p to q.
+    const glm::dvec3 side = rays.is_parallel() ? glm::cross(rays.forward(), q - p) : glm::cross(p, q);
+    v.value[k] = rays.is_parallel() ? glm::dot(glm::cross(p - ray, q - ray), rays.forward()) : glm::dot(side, ray);
+    v.step_x[k] = glm::dot(side, rays.step_x());
+    v.step_y[k] = glm::dot(side, rays.step_y());
+  }
+  return v;
+}
 
 }  // namespace frontmost

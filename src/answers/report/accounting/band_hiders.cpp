@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/accounting/band_hiders.h"
-
+// All hiding pairs of objects. The picture is divided into bands of rows; in each band the nearest keys of every object
+// are compared with those of all others.
+//
+//    band       32 rows of the picture
+//    column     64 pixels of a band: each object there has a word for each row, and its keys
+//
+// In most columns one of two objects lies wholly in front of the other. The common bits of their words are then
+// counted, without comparing keys.
 #include <algorithm>
 #include <bit>
 #include <memory>
 
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "report/accounting/object_mask.h"
 #include "view/triangle_keys.h"
 
 namespace frontmost::accounting_detail {
@@ -55,8 +62,8 @@ class BandHiders {
       : scene_(scene),
         canvas_(canvas),
         objects_(objects),
-        first_(first_ranges(scene)),
-        target_(canvas.transform, canvas.view, scene.sides.get(), isa),
+        isa_(isa),
+        placer_(scene, canvas, isa),
         plane_(std::size_t(canvas.view.width) * kBandRows, kNotCovered),
         columns_(std::size_t(canvas.view.width + kWordPixels - 1) / kWordPixels),
         fronts_(std::size_t(kBandRows) * kWordPixels) {}
@@ -86,27 +93,15 @@ class BandHiders {
 
  private:
   void add_object(std::uint32_t object, const PixelRect& rect) {
-    for (std::size_t i = first_[object]; i < first_[object + 1]; ++i) draw_range(scene_.ranges[i], rect);
+    for (const MeshRange& range : ranges_of(scene_, object))
+      placer_.visit(range, [&](const TriangleRecord& record) { draw(record, rect); });
     for (int word = rect.x0 / kWordPixels; word <= rect.x1 / kWordPixels; ++word) add_piece(object, word, rect);
     for (int y = rect.y0; y <= rect.y1; ++y) std::fill(key_at(rect.x0, y), key_at(rect.x1, y) + 1, kNotCovered);
   }
 
-  void draw_range(const MeshRange& range, const PixelRect& rect) {
-    const WorldTriangles triangles = world_triangles(scene_, range, target_.isa, scratch_);
-    snap_vertices(target_, triangles.positions, scratch_.vertices);
-    scratch_.apart.clear();
-    batch_.clear();
-    place_triangles(target_, triangles, scratch_.vertices, batch_, scratch_.apart);
-    for (std::size_t i = 0; i < batch_.count; ++i) draw(batch_.record(i), rect);
-    records_.clear();
-    for (const std::uint32_t i : scratch_.apart)
-      append_polygon(target_, polygon_of(target_, triangles, scratch_.vertices, i), triangles.first_id + i, records_);
-    for (const TriangleRecord& record : records_) draw(record, rect);
-  }
-
   void draw(const TriangleRecord& record, const PixelRect& rect) {
     const MaskPlane plane{nullptr, 0, canvas_.view.width, canvas_.view.height, 0, offset_};
-    find_spans(plane, record, spans_, target_.isa);
+    find_spans(plane, record, spans_, isa_);
     std::optional<ScreenCutout> cutout;
     if (scene_.cutouts && scene_.cutouts->has(record.id)) cutout.emplace((*scene_.cutouts)[record.id], canvas_.rays);
     const KeyPlane gentle(record);
@@ -178,9 +173,9 @@ class BandHiders {
         const std::span<const std::uint64_t> of_a = words_from(a, y0, y1), of_b = words_from(b, y0, y1);
         std::uint64_t hidden_b = 0, hidden_a = 0;
         if (a.farthest >= b.nearest)
-          hidden_b = count_common(of_a, of_b, target_.isa);
+          hidden_b = count_common(of_a, of_b, isa_);
         else if (b.farthest > a.nearest)
-          hidden_a = count_common(of_a, of_b, target_.isa);
+          hidden_a = count_common(of_a, of_b, isa_);
         else
           for (int y = y0; y <= y1; ++y) {
             const float *const keys_a = keys_from(a, y), *const keys_b = keys_from(b, y);
@@ -233,16 +228,13 @@ class BandHiders {
   const PlacedScene& scene_;
   const ObjectCanvas& canvas_;
   std::span<const ObjectAccount> objects_;
-  std::vector<std::size_t> first_;
-  PlaceTarget target_;
+  Isa isa_;
+  RecordPlacer placer_;
   Buffer<float> plane_;  // nearest keys of one object in the band
   std::vector<std::vector<HiderPiece>> columns_;
   std::vector<std::uint64_t> words_;
   std::vector<float> keys_;
   std::vector<FrontTwo> fronts_;
-  TriangleBatch batch_;
-  PlaceScratch scratch_;
-  std::vector<TriangleRecord> records_;
   RowSpans spans_;
   glm::ivec2 offset_{0};
   PixelRect band_{0, 0, -1, -1};

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "frontmost/report.h"
+#include "geometry/buckets.h"
 
 namespace frontmost {
 namespace {
@@ -15,16 +16,12 @@ namespace {
 class CycleSearch {
  public:
   CycleSearch(std::size_t count, std::span<const HiddenSamples> pairs)
-      : first_(count + 1, 0),
-        hidden_(pairs.size()),
+      : hidden_(count, pairs.size(), [&](std::size_t i, const auto& add) { add(pairs[i].hider, pairs[i].object); },
+                {.threads = 1}),
+        next_(count, 0),
         numbers_(count, 0),
         lowest_(count, 0),
         component_(count, no_index) {
-    for (const HiddenSamples& pair : pairs) ++first_[pair.hider + 1];
-    for (std::size_t i = 0; i < count; ++i) first_[i + 1] += first_[i];
-    next_.assign(first_.begin(), first_.end() - 1);
-    for (const HiddenSamples& pair : pairs) hidden_[next_[pair.hider]++] = pair.object;
-    next_.assign(first_.begin(), first_.end() - 1);
     for (std::uint32_t object = 0; object < count; ++object)
       if (numbers_[object] == 0) search(object);
   }
@@ -37,8 +34,8 @@ class CycleSearch {
     // Components hide only those that were completed before them.
     for (std::size_t from = component_count_; from-- > 0;)
       for (const std::uint32_t object : members[from])
-        for (std::size_t k = first_[object]; k < first_[object + 1]; ++k) {
-          const std::uint32_t to = component_[hidden_[k]];
+        for (const std::uint32_t hidden : hidden_[object]) {
+          const std::uint32_t to = component_[hidden];
           if (to != from) ranks[to] = std::max(ranks[to], ranks[from] + 1);
         }
     for (const std::uint32_t component : component_) result.ranks.push_back(ranks[component]);
@@ -54,8 +51,8 @@ class CycleSearch {
     enter(root, way);
     while (!way.empty()) {
       const std::uint32_t object = way.back();
-      if (next_[object] < first_[object + 1]) {
-        const std::uint32_t to = hidden_[next_[object]++];
+      if (next_[object] < hidden_[object].size()) {
+        const std::uint32_t to = hidden_[object][next_[object]++];
         if (numbers_[to] == 0)
           enter(to, way);
         else if (component_[to] == no_index)
@@ -84,8 +81,8 @@ class CycleSearch {
     ++component_count_;
   }
 
-  std::vector<std::size_t> first_, next_;  // by object: index into `hidden_`
-  std::vector<std::uint32_t> hidden_;      // hidden objects, by hider
+  const Buckets<std::uint32_t> hidden_;  // hidden objects, by hider
+  std::vector<std::size_t> next_;        // by object: number of its hidden objects that were visited
   std::vector<std::uint32_t> numbers_, lowest_, component_, open_;
   std::uint32_t entered_ = 0, component_count_ = 0;
 };

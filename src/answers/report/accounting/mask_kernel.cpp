@@ -12,7 +12,7 @@
 // 2^-33 away from any integer. A product with a reciprocal is wrong by less than 2^-36 for pixels of any canvas.
 // Rounding up therefore finds the same integer as exact arithmetic.
 
-#include "report/accounting/mask.h"
+#include "report/accounting/object_mask.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "report/accounting/mask_kernel.cpp"

@@ -17,7 +17,6 @@ using namespace zbuffer_detail;
 namespace {
 
 constexpr int kLargestCanvas = 2 * kGuardBand / kSubPixels;  // pixels; triangles are clipped beyond
-constexpr PixelRect kNoPixels{1 << 30, 1 << 30, -1, -1};
 
 int margin_of(int size, double scale) { return int(std::min((scale - 1) / 2 * size, (kLargestCanvas - size) / 2.0)); }
 
@@ -64,11 +63,12 @@ ObjectCanvas::ObjectCanvas(const View& picture, const PixelRect& part)
   view.height = frame.y1 + 1;
 }
 
-std::vector<std::size_t> first_ranges(const PlacedScene& scene) {
-  std::vector<std::size_t> first(scene.instance_bounds.size() + 1, 0);
-  for (const MeshRange& range : scene.ranges) ++first[range.instance + 1];
-  for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
-  return first;
+std::span<const MeshRange> ranges_of(const PlacedScene& scene, std::uint32_t object) {
+  const auto range_at = [&](std::uint32_t instance) {
+    return std::partition_point(scene.ranges.begin(), scene.ranges.end(),
+                                [&](const MeshRange& range) { return range.instance < instance; });
+  };
+  return {range_at(object), range_at(object + 1)};
 }
 
 ObjectMask::ObjectMask(const PlacedScene& scene, const ObjectCanvas& canvas, Isa isa)
@@ -86,7 +86,8 @@ ObjectMask::ObjectMask(const PlacedScene& scene, const ObjectCanvas& canvas, Isa
   }
 }
 
-void ObjectMask::draw(std::span<const MeshRange> ranges) {
+void ObjectMask::draw(std::uint32_t object) {
+  const std::span<const MeshRange> ranges = ranges_of(scene_, object);
   clear();
   if (is_strewn(ranges))
     draw_at_once(ranges);
@@ -151,7 +152,7 @@ void ObjectMask::draw_triangles(const WorldTriangles& triangles) {
 }
 
 void ObjectMask::draw_small() {
-  touch(batch_.rect);
+  touched_ = around(touched_, batch_.rect);
   if (scene_.cutouts) {
     cutout_batch_.clear();
     batch_.extract([&](PrimitiveId id) { return scene_.cutouts->has(id); }, cutout_batch_);
@@ -161,7 +162,7 @@ void ObjectMask::draw_small() {
 }
 
 void ObjectMask::draw_large(const TriangleRecord& record) {
-  touch(pixel_rect(record, canvas_.view.width, canvas_.view.height));
+  touched_ = around(touched_, pixel_rect(record, canvas_.view.width, canvas_.view.height));
   if (scene_.cutouts && scene_.cutouts->has(record.id)) {
     cutouts_.push_back(record);
     return;
@@ -186,11 +187,6 @@ void ObjectMask::draw_cutout(const TriangleRecord& record) {
       }
     }
   }
-}
-
-void ObjectMask::touch(const PixelRect& rect) {
-  touched_ = {std::min(touched_.x0, rect.x0), std::min(touched_.y0, rect.y0), std::max(touched_.x1, rect.x1),
-              std::max(touched_.y1, rect.y1)};
 }
 
 }  // namespace frontmost::accounting_detail

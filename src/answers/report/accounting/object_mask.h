@@ -1,15 +1,150 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawing one object alone: its triangles are placed as in the z-buffer and marked on the canvas.
+// The samples that an object covers if it is drawn alone, and the objects that a picture shows there.
+//
+//    row y     | word 0: pixels 0 ... 63 | word 1: 64 ... 127 | ...       the lowest bit is the leftmost pixel
+//    mask          1111111111111111111      111111                        a bit for each sample of the canvas
+//    runs          aaaaaaabbbbbbbbbb        bb                            of samples that see the same object; a run
+//                                                                         never leaves its word
+//
+// The planes of a mask are as large as the canvas and are used for one object after another. Only the part that an
+// object touched is read and cleared again, so small objects cost little.
 #pragma once
 
+#include <algorithm>
+#include <span>
 #include <vector>
 
-#include "report/accounting/mask.h"
+#include "frontmost/report.h"
 #include "surfaces/placed_scene.h"
 #include "view/screen_cutout.h"
 #include "zbuffer/place/triangle_batch.h"
 
 namespace frontmost::accounting_detail {
+
+using zbuffer_detail::BatchColumns;
+using zbuffer_detail::PixelRect;
+using zbuffer_detail::TriangleRecord;
+
+/// Number of pixels in a word of the canvas.
+inline constexpr int kWordPixels = 64;
+
+/// A rectangle without pixels; around() of it and another one is the other one.
+inline constexpr PixelRect kNoPixels{1 << 30, 1 << 30, -1, -1};
+/// The smallest rectangle around two others.
+[[nodiscard]] inline PixelRect around(const PixelRect& a, const PixelRect& b) {
+  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+}
+
+/// Pixels [first, last] of a word that see the same object.
+struct SeenRun {
+  std::uint32_t object;  ///< no_index: no object
+  std::uint8_t first, last;
+
+  [[nodiscard]] std::uint64_t bits() const { return ~std::uint64_t(0) >> (63 - (last - first)) << first; }
+};
+
+/// Runs of some rows of the picture, for one sample number.
+class SeenRows {
+ public:
+  /// The runs of a row and a word. Words are counted from the first one that has pixels of the picture.
+  [[nodiscard]] std::span<const SeenRun> in(std::size_t row, std::size_t word) const {
+    const std::size_t at = row * words_across_ + word;
+    return std::span(runs_).subspan(begin_[at], begin_[at + 1] - begin_[at]);
+  }
+
+  // Building: from left to right, row by row.
+
+  explicit SeenRows(std::size_t words_across) : words_across_(words_across), begin_{0} {}
+  /// Appends pixels [x0, x1), counted from the first pixel of the first word, that see an object, or none.
+  void append(int x0, int x1, std::uint32_t object) {
+    while (x0 < x1) {
+      const int word = x0 / kWordPixels, end = std::min(x1, (word + 1) * kWordPixels);
+      runs_.push_back({object, std::uint8_t(x0 % kWordPixels), std::uint8_t(end - 1 - word * kWordPixels)});
+      if (end == (word + 1) * kWordPixels) close_words(row_count_ * words_across_ + std::size_t(word) + 1);
+      x0 = end;
+    }
+  }
+  void end_row() { close_words(++row_count_ * words_across_); }
+
+ private:
+  void close_words(std::size_t count) {
+    if (begin_.size() <= count) begin_.resize(count + 1, std::uint32_t(runs_.size()));
+  }
+
+  std::size_t words_across_, row_count_ = 0;  // closed rows
+  std::vector<std::uint32_t> begin_;          // by row and word, and the end of the last closed one
+  std::vector<SeenRun> runs_;
+};
+
+/// The objects that a picture shows.
+struct SeenObjects {
+  static constexpr int rows_in_band = 32;
+
+  glm::ivec2 margin{0};         ///< of the canvas around the picture
+  std::vector<SeenRows> bands;  ///< by sample number, then from top to bottom
+  std::size_t bands_in_sample = 0;
+
+  /// The runs of a row and a word of the canvas. Preconditions: the row is in the picture, and the word has pixels of
+  /// the picture.
+  [[nodiscard]] std::span<const SeenRun> in(std::size_t sample, int y, int word) const {
+    const int row = y - margin.y;
+    return bands[sample * bands_in_sample + std::size_t(row / rows_in_band)].in(
+        std::size_t(row % rows_in_band), std::size_t(word - margin.x / kWordPixels));
+  }
+};
+
+/// The samples at the beginning of a row that see the same object.
+struct SeenSpan {
+  std::size_t end = 0;
+  float nearest = 0;  ///< the greatest key
+};
+
+/// The number of ids at the beginning that lie in [first, first + count). `keys` has as many elements as `ids`.
+[[nodiscard]] SeenSpan find_seen_span(std::span<const PrimitiveId> ids, const float* keys, PrimitiveId first,
+                                      std::uint32_t count, Isa isa);
+
+/// The bits of one sample number in all pixels of the canvas. Borrows the words; `stride` words make a row.
+struct MaskPlane {
+  std::uint64_t* words;
+  std::size_t stride;
+  int width, height;   ///< pixels
+  std::size_t number;  ///< of the sample within its pixel
+  glm::ivec2 place;    ///< of the sample within its pixel, in 1/256 pixel
+
+  [[nodiscard]] std::uint64_t* row(int y) const { return words + std::size_t(y) * stride; }
+};
+
+/// Pixels [begin[i], end[i]) of row first + i; none where end <= begin.
+struct RowSpans {
+  int first = 0, count = 0;
+  std::vector<std::int32_t> begin, end;
+};
+
+/// The number of marked samples in a rectangle, and the smallest rectangle around them; empty if none is marked.
+struct MarkedSamples {
+  std::uint64_t count = 0;
+  PixelRect rect{0, 0, -1, -1};
+};
+
+/// Number of samples by object. Few objects at a time are counted, and `met` lists them.
+struct SampleCounts {
+  std::vector<std::uint32_t> of_object;
+  std::vector<std::uint32_t> met;  ///< objects whose count is not 0
+};
+
+/// Marks the samples that the first `count` triangles of a batch cover. Corners are relative to the canvas' top left.
+void mark_triangles(const MaskPlane& plane, const BatchColumns& columns, std::size_t count, Isa isa);
+/// Finds the span of each row that a triangle of any size covers.
+void find_spans(const MaskPlane& plane, const TriangleRecord& record, RowSpans& spans, Isa isa);
+/// Marks the spans.
+void mark_spans(const MaskPlane& plane, const RowSpans& spans, Isa isa);
+
+/// Counts the marked samples in a rectangle of the plane.
+[[nodiscard]] MarkedSamples count_marked(const MaskPlane& plane, const PixelRect& rect, Isa isa);
+/// Number of bits that two lists of words have in common. Precondition: both have the same length.
+[[nodiscard]] std::uint64_t count_common(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b, Isa isa);
+/// Adds to the count of every object the samples that see it and are marked, within a part of the picture.
+void count_seen(const MaskPlane& plane, const PixelRect& rect, const SeenObjects& seen, SampleCounts& counts, Isa isa);
 
 /// The picture and its surroundings. Vertices have the picture's positions, to the bit, shifted by the margin.
 struct ObjectCanvas {
@@ -26,16 +161,46 @@ struct ObjectCanvas {
   ObjectCanvas(const View& picture, const PixelRect& part);
 };
 
-/// Index of the first range of each instance, and the number of all ranges.
-[[nodiscard]] std::vector<std::size_t> first_ranges(const PlacedScene& scene);
+/// The ranges of an object's triangles.
+[[nodiscard]] std::span<const MeshRange> ranges_of(const PlacedScene& scene, std::uint32_t object);
+
+/// Places the triangles of one range after another as the z-buffer does. For one thread; borrows the scene and the
+/// canvas.
+class RecordPlacer {
+ public:
+  RecordPlacer(const PlacedScene& scene, const ObjectCanvas& canvas, Isa isa)
+      : scene_(scene), target_(canvas.transform, canvas.view, scene.sides.get(), isa) {}
+
+  /// Calls visit(record) for the triangles on the canvas, and for the parts of clipped ones.
+  template <class Visit>
+  void visit(const MeshRange& range, const Visit& visit) {
+    const WorldTriangles triangles = world_triangles(scene_, range, target_.isa, scratch_);
+    snap_vertices(target_, triangles.positions, scratch_.vertices);
+    scratch_.apart.clear();
+    batch_.clear();
+    place_triangles(target_, triangles, scratch_.vertices, batch_, scratch_.apart);
+    for (std::size_t i = 0; i < batch_.count; ++i) visit(batch_.record(i));
+    records_.clear();
+    for (const std::uint32_t i : scratch_.apart)
+      append_polygon(target_, polygon_of(target_, triangles, scratch_.vertices, i), triangles.first_id + i, records_);
+    for (const TriangleRecord& record : records_) visit(record);
+  }
+
+ private:
+  const PlacedScene& scene_;
+  zbuffer_detail::PlaceTarget target_;
+  zbuffer_detail::PlaceScratch scratch_;
+  zbuffer_detail::TriangleBatch batch_;
+  std::vector<TriangleRecord> records_;
+};
 
 /// Draws the mask of one object after another. For one thread; borrows everything.
 class ObjectMask {
  public:
   ObjectMask(const PlacedScene& scene, const ObjectCanvas& canvas, Isa isa);
 
-  /// Marks what the object of these ranges covers. Replaces the mask of the object before.
-  void draw(std::span<const MeshRange> ranges);
+  /// Marks what the object covers. Replaces the mask of the object before.
+  void draw(std::uint32_t object);
 
   /// One plane for each sample number.
   [[nodiscard]] std::span<const MaskPlane> planes() const { return planes_; }
@@ -54,7 +219,6 @@ class ObjectMask {
   void draw_small();
   void draw_large(const TriangleRecord& record);
   void draw_cutout(const TriangleRecord& record);
-  void touch(const PixelRect& rect);
 
   const PlacedScene& scene_;
   const ObjectCanvas& canvas_;
@@ -68,5 +232,16 @@ class ObjectMask {
   PixelRect touched_;
   bool is_cut_by_near_ = false;
 };
+
+/// Pairs of objects, ordered by object, then by hider, each pair once.
+struct HiderLists {
+  std::vector<HiddenSamples> any;   ///< by every object in front of it
+  std::vector<HiddenSamples> only;  ///< by a single object: samples that appear when it is removed
+};
+
+/// All hiding pairs of objects. `canvas` has no margin; `objects[i].in_frame` holds all that object i covers in the
+/// picture. O(bands * triangles in them + covered samples + pairs of objects in a column).
+[[nodiscard]] HiderLists find_all_hiders(const PlacedScene& scene, const ObjectCanvas& canvas,
+                                         std::span<const ObjectAccount> objects, const Execution& execution);
 
 }  // namespace frontmost::accounting_detail

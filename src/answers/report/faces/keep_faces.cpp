@@ -1,75 +1,59 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scene with some triangles of another one. Every object gets its own mesh, which holds only the kept triangles.
-#include <algorithm>
+#include <utility>
 
 #include "frontmost/report.h"
 
 namespace frontmost {
 namespace {
 
-/// Selects kept values from a numbered list and renumbers them in their order.
-class KeptValues {
- public:
-  explicit KeptValues(std::size_t count) : number_(count, no_index) {}
-
-  void keep(const glm::uvec3& corners) {
-    for (int k = 0; k < 3; ++k) number_[corners[k]] = 0;
-  }
-  /// Assigns the new numbers. Call after the last keep().
-  void count() {
-    std::uint32_t next = 0;
-    for (std::uint32_t& number : number_)
-      if (number != no_index) number = next++;
-    count_ = next;
-  }
-  [[nodiscard]] glm::uvec3 renumbered(const glm::uvec3& corners) const {
-    return {number_[corners.x], number_[corners.y], number_[corners.z]};
-  }
-  template <class T>
-  [[nodiscard]] std::vector<T> of(const std::vector<T>& values) const {
-    std::vector<T> kept;
-    kept.reserve(count_);
-    for (std::size_t i = 0; i < number_.size(); ++i)
-      if (number_[i] != no_index) kept.push_back(values[i]);
-    return kept;
-  }
-
- private:
-  std::vector<std::uint32_t> number_;
-  std::size_t count_ = 0;
+/// Kept triangles, with new numbers for their corners.
+struct KeptCorners {
+  std::vector<glm::uvec3> triangles;
+  std::vector<std::uint32_t> values;  ///< the old numbers, ascending, by new number
 };
 
-KeptValues kept_values(std::size_t count, const std::vector<glm::uvec3>& corners,
-                       std::span<const std::uint32_t> triangles) {
-  KeptValues kept(count);
-  for (const std::uint32_t triangle : triangles) kept.keep(corners[triangle]);
-  kept.count();
+KeptCorners kept_corners(std::size_t value_count, const std::vector<glm::uvec3>& corners,
+                         std::span<const std::uint32_t> triangles) {
+  std::vector<std::uint32_t> numbers(value_count, no_index);
+  for (const std::uint32_t triangle : triangles)
+    for (int k = 0; k < 3; ++k) numbers[corners[triangle][k]] = 0;
+  KeptCorners kept;
+  for (std::uint32_t i = 0; i < numbers.size(); ++i) {
+    if (numbers[i] == no_index) continue;
+    numbers[i] = std::uint32_t(kept.values.size());
+    kept.values.push_back(i);
+  }
+  for (const std::uint32_t triangle : triangles) {
+    const glm::uvec3& c = corners[triangle];
+    kept.triangles.emplace_back(numbers[c.x], numbers[c.y], numbers[c.z]);
+  }
   return kept;
 }
 
-std::vector<glm::uvec3> kept_corners(const KeptValues& kept, const std::vector<glm::uvec3>& corners,
-                                     std::span<const std::uint32_t> triangles) {
-  std::vector<glm::uvec3> result;
-  result.reserve(triangles.size());
-  for (const std::uint32_t triangle : triangles) result.push_back(kept.renumbered(corners[triangle]));
-  return result;
+template <class T>
+std::vector<T> kept_values(const std::vector<T>& all, const KeptCorners& kept) {
+  std::vector<T> values;
+  values.reserve(kept.values.size());
+  for (const std::uint32_t i : kept.values) values.push_back(all[i]);
+  return values;
 }
 
 template <class T>
-Attribute<T> kept_attribute(const Attribute<T>& all, const KeptValues& positions,
+Attribute<T> kept_attribute(const Attribute<T>& all, const KeptCorners& positions,
                             std::span<const std::uint32_t> triangles) {
   if (all.empty()) return {};
-  if (all.triangles.empty()) return {positions.of(all.values), {}};
-  const KeptValues kept = kept_values(all.values.size(), all.triangles, triangles);
-  return {kept.of(all.values), kept_corners(kept, all.triangles, triangles)};
+  if (all.triangles.empty()) return {kept_values(all.values, positions), {}};
+  KeptCorners kept = kept_corners(all.values.size(), all.triangles, triangles);
+  return {kept_values(all.values, kept), std::move(kept.triangles)};
 }
 
 Mesh kept_mesh(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
-  const KeptValues positions = kept_values(mesh.positions.size(), mesh.triangles, triangles);
+  const KeptCorners positions = kept_corners(mesh.positions.size(), mesh.triangles, triangles);
   Mesh kept;
   kept.name = mesh.name;
-  kept.positions = positions.of(mesh.positions);
-  kept.triangles = kept_corners(positions, mesh.triangles, triangles);
+  kept.positions = kept_values(mesh.positions, positions);
+  kept.triangles = positions.triangles;
   kept.normals = kept_attribute(mesh.normals, positions, triangles);
   kept.texcoords = kept_attribute(mesh.texcoords, positions, triangles);
   for (const Attribute<glm::vec2>& set : mesh.further_texcoords)

@@ -6,11 +6,25 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "geometry/places.h"
 #include "surfaces/placed_scene.h"
 #include "view/facing_rule.h"
 
 namespace frontmost::faces_detail {
 namespace {
+
+EdgeNeighbours mesh_sides(const Mesh& mesh, const Execution& execution) {
+  constexpr std::size_t kTrianglesAtOnce = 8192;
+  const Buffer<std::uint32_t> first = first_at_place(mesh.positions, execution);
+  std::vector<glm::uvec3> triangles(mesh.triangles.size());
+  parallel_for(execution, triangles.size(), kTrianglesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const glm::uvec3& c = mesh.triangles[t];
+      triangles[t] = {first[c.x], first[c.y], first[c.z]};
+    }
+  });
+  return {triangles, mesh.positions.size(), execution};
+}
 
 /// Triangles that extend farther beyond the picture than this, in pixels, are clipped, so that doubles keep positions
 /// exact within the picture.
@@ -296,6 +310,17 @@ void find_endings(const PlacedScene& placed, const std::vector<EdgeNeighbours>& 
 }
 
 }  // namespace
+
+std::vector<EdgeNeighbours> sides_of_meshes(const Scene& scene, const Execution& execution) {
+  std::vector<bool> is_placed(scene.meshes.size(), false);
+  for (const Instance& instance : scene.instances) is_placed[instance.mesh] = true;
+  std::vector<EdgeNeighbours> sides(scene.meshes.size());
+  parallel_for(execution, scene.meshes.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t m = begin; m < end; ++m)
+      if (is_placed[m]) sides[m] = mesh_sides(scene.meshes[m], execution);
+  });
+  return sides;
+}
 
 ViewedFaces viewed_faces(const Surfaces& surfaces, const View& view, const std::vector<EdgeNeighbours>& sides,
                          const Execution& execution) {

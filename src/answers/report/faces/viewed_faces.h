@@ -8,17 +8,29 @@
 //      c     c     c
 #pragma once
 
+#include <algorithm>
+#include <glm/glm.hpp>
 #include <vector>
 
-#include "frontmost/view.h"
-#include "report/faces/measures.h"
-#include "report/faces/mesh_sides.h"
+#include "frontmost/report.h"
+#include "geometry/edge_neighbours.h"
 
 namespace frontmost::faces_detail {
 
 /// Width in pixels, 2^-30, below which parts are not told apart from their neighbours. Doubles are exact to about 2^-38
 /// pixel.
 inline constexpr double kNarrow = 1.0 / (1 << 30);
+
+/// A place in the picture, in pixels, and the key of the surface there: affine over the screen, greater for nearer.
+struct ScreenPoint {
+  double x, y, key;
+};
+
+struct Range {
+  double low, high;
+};
+
+[[nodiscard]] inline Range range_of(double a, double b, double c) { return {std::min({a, b, c}), std::max({a, b, c})}; }
 
 /// A rectangle of the picture, in pixels.
 struct CellBox {
@@ -42,9 +54,19 @@ struct ViewedFaces {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
+/// The triangles beyond the sides of the triangles of each mesh that has an instance. Vertices at one place are one,
+/// whatever their numbers. \throws Error limit_exceeded for more than EdgeNeighbours::most_triangles.
+[[nodiscard]] std::vector<EdgeNeighbours> sides_of_meshes(const Scene& scene, const Execution& execution);
+
 /// The faces that are at least partly within the picture, between near and far, wider than kNarrow, and not culled.
 /// `sides` is by mesh.
 [[nodiscard]] ViewedFaces viewed_faces(const Surfaces& surfaces, const View& view,
                                        const std::vector<EdgeNeighbours>& sides, const Execution& execution);
+
+/// The visible faces by id, ascending. `sides` is by mesh. O(faces + cells in which surfaces end). \throws Error
+/// limit_exceeded for more than `most_steps` steps of about ten nanoseconds, and 64 more for each face of the view.
+[[nodiscard]] std::vector<VisibleFace> find_faces(const Surfaces& surfaces, const View& view,
+                                                  const std::vector<EdgeNeighbours>& sides, std::uint64_t most_steps,
+                                                  const Execution& execution);
 
 }  // namespace frontmost::faces_detail

@@ -1,14 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
+// Why each object is seen, or is not, and what would show it.
+//
 //   Accounting --samples have the last word--> seen, hidden --probes--> what to take away
 //   Surfaces ----places of triangles---------> the others ---remedy--> what to change in the view
+//
+// Objects in front of a hidden object are found at a few samples of it, the probes:
+//
+//    eye  ------ A ------ B -----[hidden]----- C        A and B have to be removed for this sample, C does not
+//
+// The front-most object is not enough: without A the same sample may see B. All triangles are therefore placed once
+// more, as in the z-buffer, and tested at these samples alone.
 #include <algorithm>
+#include <bit>
+#include <span>
 
 #include "base/parallel.h"
+#include "base/pool.h"
 #include "frontmost/report.h"
 #include "frontmost/zbuffer.h"
-#include "report/why/lone_object.h"
-#include "report/why/probes.h"
-#include "report/why/remedy.h"
+#include "geometry/buckets.h"
+#include "report/accounting/object_mask.h"
+#include "report/why/places.h"
 #include "view/answer.h"
 
 namespace frontmost {
@@ -16,6 +28,144 @@ namespace frontmost {
 using namespace why_detail;
 
 namespace {
+
+using namespace accounting_detail;
+using namespace zbuffer_detail;
+
+/// A sample that an object covers.
+struct SampleProbe {
+  std::uint32_t object;
+  int x, y, sample;
+};
+
+constexpr std::uint64_t kProbesOfObject = 4;
+
+/// Adds samples of a mask, at even steps from the first marked one to the last.
+void choose_marked(const ObjectMask& mask, std::uint32_t object, std::vector<SampleProbe>& probes) {
+  const PixelRect& rect = mask.touched();
+  const auto visit_words = [&](const auto& visit) {
+    for (const MaskPlane& plane : mask.planes())
+      for (int y = rect.y0; y <= rect.y1; ++y)
+        for (int word = rect.x0 / kWordPixels; word <= rect.x1 / kWordPixels; ++word)
+          if (const std::uint64_t bits = plane.row(y)[word]) visit(plane, y, word * kWordPixels, bits);
+  };
+  std::uint64_t total = 0;
+  visit_words([&](const MaskPlane&, int, int, std::uint64_t bits) { total += std::uint64_t(std::popcount(bits)); });
+  const std::uint64_t count = std::min(total, kProbesOfObject);
+  std::uint64_t passed = 0, chosen = 0;
+  visit_words([&](const MaskPlane& plane, int y, int x, std::uint64_t bits) {
+    for (; chosen < count; ++chosen) {
+      const std::uint64_t rank = total * (2 * chosen + 1) / (2 * count);
+      if (rank >= passed + std::uint64_t(std::popcount(bits))) break;
+      std::uint64_t rest = bits;
+      for (std::uint64_t i = passed; i < rank; ++i) rest &= rest - 1;
+      probes.push_back({object, x + std::countr_zero(rest), y, int(plane.number)});
+    }
+    passed += std::uint64_t(std::popcount(bits));
+  });
+}
+
+/// The probes, by squares of pixels.
+class ProbeGrid {
+ public:
+  ProbeGrid(const std::vector<SampleProbe>& probes, const View& view)
+      : across_(std::size_t(view.width) / kSide + 1),
+        numbers_(across_ * (std::size_t(view.height) / kSide + 1), probes.size(),
+                 [&](std::size_t i, const auto& add) {
+                   add(std::size_t(probes[i].y) / kSide * across_ + std::size_t(probes[i].x) / kSide, std::uint32_t(i));
+                 },
+                 {.threads = 1}) {}
+
+  /// Calls visit(number) for the probes in all squares that a rectangle touches.
+  template <class Visit>
+  void visit(const PixelRect& rect, const Visit& visit) const {
+    const std::size_t left = std::size_t(rect.x0) / kSide, end = std::size_t(rect.x1) / kSide + 1;
+    for (std::size_t row = std::size_t(rect.y0) / kSide; row <= std::size_t(rect.y1) / kSide; ++row)
+      for (const std::uint32_t number : numbers_.in(row * across_ + left, row * across_ + end)) visit(number);
+  }
+
+ private:
+  static constexpr std::size_t kSide = 8;
+
+  std::size_t across_;
+  const Buckets<std::uint32_t> numbers_;
+};
+
+/// A triangle at a probe.
+struct ProbeHit {
+  std::uint32_t probe, object;
+  float key;
+  PrimitiveId id;
+
+  [[nodiscard]] bool is_before(const ProbeHit& other) const {
+    return key != other.key ? key > other.key : id < other.id;
+  }
+};
+
+/// Tests a triangle of an object at the probes.
+void cast(const TriangleRecord& record, std::uint32_t object, const PlacedScene& scene, const ObjectCanvas& canvas,
+          const std::vector<SampleProbe>& probes, const ProbeGrid& grid, std::vector<ProbeHit>& hits) {
+  const View& view = canvas.view;
+  grid.visit(pixel_rect(record, view.width, view.height), [&](std::uint32_t number) {
+    const SampleProbe& probe = probes[number];
+    const glm::ivec2 offset = sample_offsets(view.samples)[std::size_t(probe.sample)];
+    visit_covered(record, {probe.x, probe.y, probe.x, probe.y}, offset, [&](int, int) {
+      const int x = probe.x * kSubPixels + offset.x, y = probe.y * kSubPixels + offset.y;
+      const bool may_be_hole = scene.cutouts && scene.cutouts->has(record.id);
+      if (may_be_hole && ScreenCutout((*scene.cutouts)[record.id], canvas.rays).is_hole(x, y)) return;
+      hits.push_back({number, object, TriangleKeys(record).at(x, y), record.id});
+    });
+  });
+}
+
+/// Chooses a few samples of each object, spread over the part of the picture that it covers. `canvas` has no margin.
+std::vector<SampleProbe> choose_probes(const PlacedScene& scene, const ObjectCanvas& canvas,
+                                       std::span<const std::uint32_t> objects, const Execution& execution) {
+  constexpr std::size_t kObjectsAtOnce = 64;
+  std::vector<std::vector<SampleProbe>> parts((objects.size() + kObjectsAtOnce - 1) / kObjectsAtOnce);
+  Pool<ObjectMask> masks;
+  parallel_for(execution, objects.size(), kObjectsAtOnce, [&](std::size_t begin, std::size_t end) {
+    const auto mask = masks.borrow([&] { return std::make_unique<ObjectMask>(scene, canvas, execution.isa); });
+    for (std::size_t i = begin; i < end; ++i) {
+      mask->draw(objects[i]);
+      if (!mask->touched().is_empty()) choose_marked(*mask, objects[i], parts[begin / kObjectsAtOnce]);
+    }
+  });
+  std::vector<SampleProbe> probes;
+  for (const std::vector<SampleProbe>& part : parts) probes.insert(probes.end(), part.begin(), part.end());
+  return probes;
+}
+
+/// The objects in front of each probe's own object, ascending, by probe.
+std::vector<std::vector<std::uint32_t>> find_before(const PlacedScene& scene, const ObjectCanvas& canvas,
+                                                    const std::vector<SampleProbe>& probes,
+                                                    const Execution& execution) {
+  constexpr std::size_t kRangesAtOnce = 16;
+  const ProbeGrid grid(probes, canvas.view);
+  std::vector<std::vector<ProbeHit>> parts((scene.ranges.size() + kRangesAtOnce - 1) / kRangesAtOnce);
+  Pool<RecordPlacer> placers;
+  parallel_for(execution, scene.ranges.size(), kRangesAtOnce, [&](std::size_t begin, std::size_t end) {
+    const auto placer = placers.borrow([&] { return std::make_unique<RecordPlacer>(scene, canvas, execution.isa); });
+    for (std::size_t i = begin; i < end; ++i)
+      placer->visit(scene.ranges[i], [&](const TriangleRecord& record) {
+        cast(record, scene.ranges[i].instance, scene, canvas, probes, grid, parts[begin / kRangesAtOnce]);
+      });
+  });
+  constexpr ProbeHit kNothing{0, no_index, -1, no_primitive};
+  std::vector<ProbeHit> own(probes.size(), kNothing);
+  for (const std::vector<ProbeHit>& part : parts)
+    for (const ProbeHit& hit : part)
+      if (hit.object == probes[hit.probe].object && hit.is_before(own[hit.probe])) own[hit.probe] = hit;
+  std::vector<std::vector<std::uint32_t>> before(probes.size());
+  for (const std::vector<ProbeHit>& part : parts)  // in the order of objects, so the lists ascend
+    for (const ProbeHit& hit : part) {
+      std::vector<std::uint32_t>& objects = before[hit.probe];
+      if (hit.object != probes[hit.probe].object && hit.is_before(own[hit.probe]) &&
+          (objects.empty() || objects.back() != hit.object))
+        objects.push_back(hit.object);
+    }
+  return before;
+}
 
 /// The last reason of any of the object's triangles.
 SightReason reason_of(const TrianglePlaces& triangles) {
@@ -42,8 +192,6 @@ class Explainer {
     parallel_for(execution_, objects.size(), kObjectsAtOnce, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) all[i] = explain_by_view(objects[i], places[objects[i]]);
     });
-    for (Explanation& explanation : all)
-      if (!explanation.hiders.empty()) sort_hiders(explanation);
     find_what_to_take_away(all);
     return all;
   }
@@ -98,9 +246,6 @@ class Explainer {
     auto pair = std::lower_bound(all.begin(), all.end(), why.object, is_before);
     for (; pair != all.end() && pair->object == why.object; ++pair)
       why.hiders.push_back({pair->hider, double(pair->count) / double(account.in_frame.count)});
-  }
-
-  static void sort_hiders(Explanation& why) {
     std::stable_sort(why.hiders.begin(), why.hiders.end(),
                      [](const HiderShare& a, const HiderShare& b) { return a.share > b.share; });
   }

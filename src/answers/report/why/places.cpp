@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Each triangle is counted at one place: behind the eye, before near, beyond far, beside the picture, turned away, or
+// in view. Boxes that surely lie in view are counted without looking at each of their triangles.
 #include "report/why/places.h"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "base/parallel.h"
 #include "base/pool.h"
@@ -10,6 +13,120 @@
 
 namespace frontmost::why_detail {
 namespace {
+
+/// The planes of the viewing volume, used as bits. The sides come before near and far.
+enum Plane : std::uint8_t { kLeft, kRight, kAbove, kBelow, kNear, kFar, kPlaneCount };
+
+/// Distances from the planes, positive inside, linear over space.
+using PlaneDistances = std::array<double, kPlaneCount>;
+
+struct FrustumPoint {
+  PointAhead at;
+  PlaneDistances inside;
+};
+
+/// A convex polygon, at most a triangle cut by six planes.
+struct FrustumPolygon {
+  std::array<FrustumPoint, 3 + kPlaneCount> corners;
+  std::size_t count = 0;
+
+  [[nodiscard]] std::span<const FrustumPoint> all() const { return std::span(corners).first(count); }
+  [[nodiscard]] bool is_outside(Plane plane) const {
+    return std::all_of(all().begin(), all().end(), [&](const FrustumPoint& p) { return p.inside[plane] < 0; });
+  }
+  /// Cuts off the part outside a plane.
+  void cut(Plane plane) {
+    FrustumPolygon kept;
+    for (std::size_t i = 0; i < count; ++i) {
+      const FrustumPoint &a = corners[i], &b = corners[i + 1 == count ? 0 : i + 1];
+      const double from = a.inside[plane], to = b.inside[plane];
+      if (from >= 0) kept.corners[kept.count++] = a;
+      if ((from < 0) == (to < 0)) continue;
+      const double t = from / (from - to);
+      FrustumPoint& p = kept.corners[kept.count++];
+      p.at = a.at + (b.at - a.at) * t;
+      for (std::size_t k = 0; k < kPlaneCount; ++k) p.inside[k] = a.inside[k] + (b.inside[k] - a.inside[k]) * t;
+      p.inside[plane] = 0;
+    }
+    *this = kept;
+  }
+};
+
+/// The viewing volume, in doubles.
+class Frustum {
+ public:
+  explicit Frustum(const View& view)
+      : eye_(view.eye()),
+        right_(view.right()),
+        up_(view.up()),
+        forward_(view.forward()),
+        projection_(view.projection),
+        pixels_across_(view.width / (projection_.right - projection_.left)),
+        pixels_down_(view.height / (projection_.top - projection_.bottom)) {}
+
+  [[nodiscard]] bool is_orthographic() const { return projection_.orthographic; }
+  [[nodiscard]] FrustumPoint see(const glm::vec3& world) const {
+    const glm::dvec3 p = glm::dvec3(world) - eye_;
+    const PointAhead at(glm::dot(right_, p), glm::dot(up_, p), glm::dot(forward_, p));
+    const Projection& f = projection_;
+    const double unit = f.orthographic ? 1 : at.z;
+    // Every point is inside an infinite far plane.
+    const double before_far = std::isinf(f.clip.far) ? 1 : f.clip.far - at.z;
+    return {at,
+            {at.x - f.left * unit, f.right * unit - at.x, f.top * unit - at.y, at.y - f.bottom * unit,
+             at.z - f.clip.near, before_far}};
+  }
+
+  /// Whether a box surely lies inside all planes.
+  [[nodiscard]] bool surely_holds(const Box& box) const {
+    if (box.is_empty()) return true;
+    // Distances are linear, so the corners decide. The rounding of see() is far less than this share of its summands.
+    constexpr double kRounding = 1e-12;
+    for (int k = 0; k < 8; ++k) {
+      const glm::vec3 corner(k & 1 ? box.high.x : box.low.x, k & 2 ? box.high.y : box.low.y,
+                             k & 4 ? box.high.z : box.low.z);
+      const FrustumPoint p = see(corner);
+      const glm::dvec3 reach = glm::abs(glm::dvec3(corner)) + glm::abs(eye_);
+      const Projection& f = projection_;
+      const double across = std::max({std::abs(f.left), std::abs(f.right), std::abs(f.top), std::abs(f.bottom), 1.0});
+      const double far = std::isinf(f.clip.far) ? 0 : f.clip.far;
+      const double slack = kRounding * ((reach.x + reach.y + reach.z) * (1 + across) + across + f.clip.near + far);
+      const bool is_inside = std::all_of(p.inside.begin(), p.inside.end(), [&](double d) { return d > slack; });
+      if (!is_inside) return false;
+    }
+    return true;
+  }
+
+  /// The position in pixels from the picture's top left corner. Precondition: the point is in front of the eye.
+  [[nodiscard]] glm::dvec2 pixel_of(const PointAhead& p) const {
+    const double unit = projection_.orthographic ? 1 : p.z;
+    return {(p.x / unit - projection_.left) * pixels_across_, (projection_.top - p.y / unit) * pixels_down_};
+  }
+
+  /// Winding of a triangle on the screen, even if parts lie behind the eye: positive if its front is seen, 0 if it is
+  /// edge-on.
+  [[nodiscard]] double facing(const PointAhead& a, const PointAhead& b, const PointAhead& c) const {
+    if (projection_.orthographic) return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    return glm::dot(a, glm::cross(b, c));
+  }
+
+ private:
+  glm::dvec3 eye_, right_, up_, forward_;
+  Projection projection_;
+  double pixels_across_, pixels_down_;  ///< pixels per unit of the projection's rectangle
+};
+
+/// Number of triangles with area 0 or a non-finite corner.
+std::uint64_t count_flat(const WorldTriangles& triangles) {
+  std::uint64_t count = 0;
+  for (std::size_t i = 0; i < triangles.corners.size(); ++i) {
+    const std::array<glm::vec3, 3> p = triangles[i];
+    const glm::dvec3 a(p[0]), normal = glm::cross(glm::dvec3(p[1]) - a, glm::dvec3(p[2]) - a);
+    const double size = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
+    count += !(size > 0 && std::isfinite(size));
+  }
+  return count;
+}
 
 /// By material, the default material last: 1 if no place of it is opaque.
 std::vector<std::uint8_t> find_clear_materials(const Scene& scene) {
@@ -69,7 +186,7 @@ class PlaceFinder {
       part.corners = world.corners.subspan(
           first, std::min<std::size_t>(MeshRange::triangles_in_box, world.corners.size() - first));
       if (!needs_area && is_surely_in_view(scene_.boxes[range.first_box + k])) {
-        const std::uint64_t empty = count_flat(part, isa_);
+        const std::uint64_t empty = count_flat(part);
         places.counts.empty += empty;
         places.counts.in_view += part.corners.size() - empty;
         continue;
@@ -137,8 +254,11 @@ class PlaceFinder {
     return bits;
   }
 
+  /// Whether culling leaves out a triangle. An edge-on triangle covers nothing and counts as turned away.
   [[nodiscard]] bool is_culled(const ViewedTriangle& t) const {
-    return facing_.culling() != Culling::none && is_left_out(t.id, frustum_.facing(t.at(0), t.at(1), t.at(2)));
+    if (facing_.culling() == Culling::none) return false;
+    const double facing = frustum_.facing(t.at(0), t.at(1), t.at(2));
+    return !(facing > 0 && facing_.keeps(t.id, true)) && !(facing < 0 && facing_.keeps(t.id, false));
   }
 
   /// \returns whether it is in view.
@@ -202,11 +322,6 @@ class PlaceFinder {
     return sum / double(polygon.count);
   }
 
-  /// Whether culling leaves out a triangle. An edge-on triangle covers nothing and counts as turned away.
-  [[nodiscard]] bool is_left_out(PrimitiveId id, double facing) const {
-    return !(facing > 0 && facing_.keeps(id, true)) && !(facing < 0 && facing_.keeps(id, false));
-  }
-
   void note_in_view(const FrustumPolygon& polygon, ObjectPlaces& places) const {
     std::array<glm::dvec2, 3 + kPlaneCount> pixels;
     for (std::size_t i = 0; i < polygon.count; ++i) {
@@ -233,30 +348,11 @@ class PlaceFinder {
 
 }  // namespace
 
-void ValueRange::include(double value) {
-  low = std::min(low, value);
-  high = std::max(high, value);
-}
-
-void ValueRange::include(const ValueRange& other) {
-  low = std::min(low, other.low);
-  high = std::max(high, other.high);
-}
-
-void LargestTriangle::offer(const LargestTriangle& other) {
-  if (other.area < 0) return;
-  if (area < 0 || (is_culled && !other.is_culled) || (is_culled == other.is_culled && other.area > area)) *this = other;
-}
-
 void ObjectPlaces::add(const ObjectPlaces& other) {
-  std::uint64_t* const sums[] = {
-      &counts.empty, &counts.behind_eye, &counts.nearer_than_near, &counts.beyond_far, &counts.left,   &counts.right,
-      &counts.above, &counts.below,      &counts.past_corner,      &counts.faces_away, &counts.in_view};
-  const TrianglePlaces& more = other.counts;
-  const std::uint64_t parts[] = {
-      more.empty, more.behind_eye, more.nearer_than_near, more.beyond_far, more.left,   more.right,
-      more.above, more.below,      more.past_corner,      more.faces_away, more.in_view};
-  for (std::size_t i = 0; i < std::size(sums); ++i) *sums[i] += parts[i];
+  using T = TrianglePlaces;
+  for (std::uint64_t T::*const count : {&T::empty, &T::behind_eye, &T::nearer_than_near, &T::beyond_far, &T::left,
+                                        &T::right, &T::above, &T::below, &T::past_corner, &T::faces_away, &T::in_view})
+    counts.*count += other.counts.*count;
   clear += other.clear;
   nearer.include(other.nearer);
   farther.include(other.farther);

@@ -1,22 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// Positions of the triangles of every object, and the data that remedies need.
+// Positions of the triangles of every object relative to the viewing volume, and remedies: changes of a view, in round
+// numbers.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "frontmost/report.h"
-#include "report/why/frustum.h"
 #include "surfaces/placed_scene.h"
 
 namespace frontmost::why_detail {
+
+/// Coordinates right, up and ahead of the eye.
+using PointAhead = glm::dvec3;
 
 /// A range of values.
 struct ValueRange {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
 
   [[nodiscard]] bool is_empty() const { return !(low <= high); }
-  void include(double value);
-  void include(const ValueRange& other);
+  void include(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  void include(const ValueRange& other) {
+    low = std::min(low, other.low);
+    high = std::max(high, other.high);
+  }
 };
 
 /// The middle of the largest triangle offered; a culled triangle counts only if there is no other.
@@ -25,7 +35,11 @@ struct LargestTriangle {
   double area = -1;  ///< in scene units squared; negative if there is none
   bool is_culled = true;
 
-  void offer(const LargestTriangle& other);
+  void offer(const LargestTriangle& other) {
+    if (other.area < 0) return;
+    if (area < 0 || (is_culled && !other.is_culled) || (is_culled == other.is_culled && other.area > area))
+      *this = other;
+  }
 };
 
 struct ObjectPlaces {
@@ -45,7 +59,27 @@ struct ObjectPlaces {
                                                     const Accounting& accounts, std::uint32_t object,
                                                     const Execution& execution);
 
-/// Number of triangles with area 0 or a non-finite corner.
-[[nodiscard]] std::uint64_t count_flat(const WorldTriangles& triangles, Isa isa);
+/// An object as it would be seen if nothing else were there: a scene of its own, without materials and therefore
+/// without holes.
+class LoneObject {
+ public:
+  LoneObject(const Scene& scene, std::uint32_t object);
+
+  /// Whether the object would cover a sample of the picture, or of one with `factor` times the width and height.
+  /// Precondition: the enlarged view is valid. `places` holds the object's position in the picture.
+  [[nodiscard]] bool has_sample(const View& view, const ObjectPlaces& places, int factor = 1) const;
+  /// The object's area in the picture, in square pixels. `places` holds the object's position.
+  [[nodiscard]] double area(const View& view, const ObjectPlaces& places) const;
+
+ private:
+  Scene scene_;
+  Surfaces surfaces_;
+};
+
+/// The remedy for an object that `reason`, one of those before no_sample, keeps from being seen; none if nothing helps.
+[[nodiscard]] Remedy remedy_for(SightReason reason, const ObjectPlaces& places, const View& view);
+/// The remedy for an object that covers no sample: the first of some growing pictures in which it covers one. None if
+/// no picture of up to 16384 pixels each way suffices.
+[[nodiscard]] Remedy enlargement_for(const LoneObject& lone, const ObjectPlaces& places, const View& view);
 
 }  // namespace frontmost::why_detail

@@ -68,40 +68,14 @@ std::vector<TrianglePlace> places_of(const TrianglePlaces& t) {
   return places;
 }
 
-/// Counts by place, such as "4 behind the eye and 8 on the left"; leaves out the place `but`.
-std::string counts_text(const TrianglePlaces& triangles, std::string_view but) {
+/// Counts by place, out of all triangles that have an area, such as "; of its 12 triangles 4 behind the eye and 8 on
+/// the left"; leaves out the place `but`. Empty if there are none.
+std::string mixture_text(const TrianglePlaces& triangles, std::string_view but = "") {
   std::vector<std::string> parts;
   for (const TrianglePlace& place : places_of(triangles))
     if (place.where != but) parts.push_back(std::to_string(place.count) + ' ' + place.where);
-  return listed(parts);
-}
-
-/// The counts of triangles that are not at the main place, out of all that have an area; empty if there are none.
-std::string mixture_text(const TrianglePlaces& triangles, std::string_view but = "") {
-  const std::string counts = counts_text(triangles, but);
-  if (counts.empty()) return "";
-  return "; of its " + std::to_string(triangles.total() - triangles.empty) + " triangles " + counts;
-}
-
-std::string empty_text(const TrianglePlaces& triangles) {
-  if (triangles.total() == 0) return "empty: it has no triangles";
-  return triangles.total() == 1 ? "empty: its triangle has no area"
-                                : "empty: none of its " + std::to_string(triangles.total()) + " triangles has an area";
-}
-
-std::string outside_text(const TrianglePlaces& triangles) {
-  const std::vector<TrianglePlace> places = places_of(triangles);
-  if (places.size() == 1) return std::string("outside: ") + places[0].where + " of the picture";
-  return "outside of the picture" + mixture_text(triangles);
-}
-
-std::string transparent_text(const Explanation& why) {
-  return why.is_all_holes ? "transparent: every sample of it is a hole" : "transparent: its opacity is 0";
-}
-
-std::string no_sample_text(const Explanation& why) {
-  if (why.pixels == 0) return "seen edge on, so that it has no area";
-  return "between the samples: its " + general_text(why.pixels, 3) + " square pixels cover none";
+  if (parts.empty()) return "";
+  return "; of its " + std::to_string(triangles.total() - triangles.empty) + " triangles " + listed(parts);
 }
 
 std::string seen_text(const Explanation& why, const ObjectNames& names) {
@@ -111,15 +85,12 @@ std::string seen_text(const Explanation& why, const ObjectNames& names) {
   return text;
 }
 
-std::string degrees_text(double radians) {
-  const std::string text = general_text(std::abs(radians) * 57.29577951308232, 4);
-  return text + (text == "1" ? " degree" : " degrees");
-}
-
 /// The directions of a turn, or of a move in scene units.
 std::string directions_text(const Remedy& remedy) {
   const auto part = [&](double amount, const char* positive, const char* negative) {
-    const std::string size = remedy.kind == RemedyKind::turn ? degrees_text(amount) : general_text(std::abs(amount), 6);
+    const bool is_turn = remedy.kind == RemedyKind::turn;
+    std::string size = general_text(std::abs(is_turn ? glm::degrees(amount) : amount), is_turn ? 4 : 6);
+    if (is_turn) size += size == "1" ? " degree" : " degrees";
     return size + (amount > 0 ? positive : negative);
   };
   std::vector<std::string> parts;
@@ -158,14 +129,25 @@ std::string_view name(RemedyKind kind) { return kRemedyNames[std::size_t(kind)];
 std::string reason_text(const Explanation& why, const ObjectNames& names) {
   const TrianglePlaces& triangles = why.triangles;
   switch (why.reason) {
-    case SightReason::empty: return empty_text(triangles);
+    case SightReason::empty:
+      if (triangles.total() == 0) return "empty: it has no triangles";
+      if (triangles.total() == 1) return "empty: its triangle has no area";
+      return "empty: none of its " + std::to_string(triangles.total()) + " triangles has an area";
     case SightReason::behind_eye: return "behind the eye";
     case SightReason::nearer_than_near: return "nearer than near" + mixture_text(triangles, "nearer than near");
     case SightReason::beyond_far: return "beyond far" + mixture_text(triangles, "beyond far");
-    case SightReason::outside: return outside_text(triangles);
+    case SightReason::outside:
+      if (const std::vector<TrianglePlace> places = places_of(triangles); places.size() == 1)
+        return std::string("outside: ") + places[0].where + " of the picture";
+      return "outside of the picture" + mixture_text(triangles);
     case SightReason::faces_away: return "turned away, and culled" + mixture_text(triangles);
-    case SightReason::transparent: return transparent_text(why) + mixture_text(triangles);
-    case SightReason::no_sample: return no_sample_text(why) + mixture_text(triangles);
+    case SightReason::transparent:
+      return std::string("transparent: ") + (why.is_all_holes ? "every sample of it is a hole" : "its opacity is 0") +
+             mixture_text(triangles);
+    case SightReason::no_sample:
+      if (why.pixels == 0) return "seen edge on, so that it has no area" + mixture_text(triangles);
+      return "between the samples: its " + general_text(why.pixels, 3) + " square pixels cover none" +
+             mixture_text(triangles);
     case SightReason::hidden: return "hidden by " + hiders_text(why.hiders, 1, names) + mixture_text(triangles);
     case SightReason::seen: return seen_text(why, names) + mixture_text(triangles);
   }

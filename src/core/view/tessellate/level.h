@@ -89,18 +89,11 @@ inline constexpr int finest_level = 1 << 13;
 
 [[nodiscard]] MeshLevel level_of(const Mesh& mesh, const glm::dmat4& world_from_mesh, const ScreenTolerance& tolerance);
 
-/// Whether the patch can be tessellated: all its points are finite.
-[[nodiscard]] bool is_finite(const BezierPatch& patch);
-
 /// Steps along the four edges of a patch, each at least those of its grid: u = 0, u = 1 (both along v), v = 0, v = 1.
 using EdgeLevels = std::array<int, 4>;
 
 /// Edge levels such that each edge is as fine as its finest patch. Levels of patches that are not finite are arbitrary.
 [[nodiscard]] std::vector<EdgeLevels> edge_levels(std::span<const BezierPatch> patches,
                                                   std::span<const PatchLevel> levels);
-
-/// Appends the triangles of one patch as those of face `face`, with normals and texture coordinates.
-void append_grid(const BezierPatch& patch, const PatchLevel& level, const EdgeLevels& edges, std::uint32_t face,
-                 Mesh& mesh);
 
 }  // namespace frontmost

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "report/mesh_topology.h"
+#include "base/orientation.h"
 #include "support/seeds.h"
 
 namespace frontmost {

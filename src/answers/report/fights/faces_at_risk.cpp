@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Placing the faces, and bounding the errors that positions and floats add to their keys.
-#include "report/fights/screen_faces.h"
+// Places the faces, bounds the errors that positions and floats add to their keys, and cuts the common area of two
+// faces twice. Cutting follows I. Sutherland, G. Hodgman. Reentrant Polygon Clipping. 1974.
+#include "report/fights/faces_at_risk.h"
 
-#include <algorithm>
-#include <cmath>
+#include <array>
 #include <limits>
-#include <numeric>
 
 #include "base/parallel.h"
 #include "zbuffer/place/submission.h"
@@ -191,10 +190,152 @@ std::vector<ScreenFace> screen_faces(const Surfaces& surfaces, const View& view,
     }
   });
   std::vector<ScreenFace> faces;
-  faces.reserve(std::transform_reduce(parts.begin(), parts.end(), std::size_t(0), std::plus<>(),
-                                      [](const std::vector<ScreenFace>& part) { return part.size(); }));
   for (const std::vector<ScreenFace>& part : parts) faces.insert(faces.end(), part.begin(), part.end());
   return faces;
+}
+
+namespace {
+
+constexpr double kNoArea = 1e-12;    // square pixels: area that rounding may give to a line
+constexpr double kSampleRim = 1e-6;  // pixels: a sample on a side belongs to both areas beside it
+constexpr double kMostAsked = 4096, kLeastAsked = 64, kAskedOfAll = 1 << 28;
+
+/// A function that is not negative on the inner side of the line from one point to the next.
+AffineOverScreen inside_of_side(const glm::dvec2& from, const glm::dvec2& to) {
+  const glm::dvec2 normal(from.y - to.y, to.x - from.x);
+  return {-glm::dot(normal, from), normal};
+}
+
+std::array<glm::dvec2, 3> corners_of(const ScreenFace& face) {
+  return {face.corner(0), face.corner(1), face.corner(2)};
+}
+
+/// Not negative where `nearer` is not surely shown: constant + relative * nearer - (nearer - other).
+AffineOverScreen is_not_shown(const KeyOverScreen& nearer, const KeyOverScreen& other, const KeyStep& step,
+                              double slack) {
+  const double share = step.relative - 1;
+  return {step.constant + slack + share * nearer.k + other.k,
+          {share * nearer.gx + other.gx, share * nearer.gy + other.gy}};
+}
+
+}  // namespace
+
+void ConvexArea::cut(const AffineOverScreen& f) {
+  const auto is_inside = [&](const glm::dvec2& corner) { return f.at(corner) >= 0; };
+  if (std::all_of(corners_.begin(), corners_.end(), is_inside)) return;
+  std::swap(corners_, before_);
+  corners_.clear();
+  double last = f.at(before_.back());
+  glm::dvec2 from = before_.back();
+  for (const glm::dvec2& to : before_) {
+    const double next = f.at(to);
+    if ((last < 0) != (next < 0)) corners_.push_back(from + (to - from) * (last / (last - next)));
+    if (next >= 0) corners_.push_back(to);
+    last = next;
+    from = to;
+  }
+  if (area() <= kNoArea) corners_.clear();
+}
+
+double ConvexArea::area() const {
+  double doubled = 0;
+  for (std::size_t i = 2; i < corners_.size(); ++i) {
+    const glm::dvec2 a = corners_[i - 1] - corners_[0], b = corners_[i] - corners_[0];
+    doubled += a.x * b.y - b.x * a.y;
+  }
+  return 0.5 * doubled;
+}
+
+glm::dvec2 ConvexArea::centre() const {
+  glm::dvec2 sum(0);
+  for (const glm::dvec2& corner : corners_) sum += corner;
+  return sum / double(corners_.size());
+}
+
+RowSpan span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, int width) {
+  double low = -1, high = width;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const AffineOverScreen f = inside_of_side(corners[i], corners[i + 1 == corners.size() ? 0 : i + 1]);
+    const double rest = f.constant + f.gradient.y * sample.y, slope = f.gradient.x;
+    if (slope > 0) low = std::max(low, -rest / slope - sample.x - kSampleRim);
+    if (slope < 0) high = std::min(high, -rest / slope - sample.x + kSampleRim);
+    if (slope == 0 && rest < -kSampleRim * std::abs(f.gradient.y)) return {0, 0};
+  }
+  // Bounds far beside the row would not fit an int.
+  low = std::min(low, double(width));
+  high = std::max(high, -1.0);
+  const int first = std::max(int(std::ceil(low)), 0), end = std::min(int(std::floor(high)) + 1, width);
+  return {first, std::max(first, end)};
+}
+
+RiskFinder::RiskFinder(const View& view, const DepthSetup& setup)
+    : size_(view.width, view.height),
+      step_(setup),
+      farthest_key_(setup.orthographic ? 0 : setup.clip.near / setup.clip.far) {}
+
+void RiskFinder::cut_by_frame() {
+  for (int axis = 0; axis < 2; ++axis) {
+    glm::dvec2 along(0);
+    along[axis] = 1;
+    area_.cut({0, along});
+    area_.cut({size_[axis], -along});
+  }
+}
+
+const ConvexArea& RiskFinder::of_pair(const ScreenFace& a, const ScreenFace& b) {
+  const KeyOverScreen first = a.keys(), second = b.keys();
+  const double slack = double(a.slack) + double(b.slack);
+  area_.assign(corners_of(a));
+  area_.cut(is_not_shown(first, second, step_, slack));
+  if (!area_.is_empty()) area_.cut(is_not_shown(second, first, step_, slack));
+  for (int k = 0; k < 3 && !area_.is_empty(); ++k) area_.cut(inside_of_side(b.corner(k), b.corner(k == 2 ? 0 : k + 1)));
+  if (!area_.is_empty()) cut_by_frame();
+  return area_;
+}
+
+const ConvexArea& RiskFinder::of_clear_value(const ScreenFace& face) {
+  area_.assign({});
+  if (!may_be_clear_value(face)) return area_;
+  const KeyOverScreen keys = face.keys();
+  area_.assign(corners_of(face));
+  cut_by_frame();
+  area_.cut({farthest_key_ + 0.5 * step_.constant + double(face.slack) - keys.k, {-keys.gx, -keys.gy}});
+  return area_;
+}
+
+RiskKeys::RiskKeys(const ScreenFace& a, const ScreenFace& b, const KeyStep& step)
+    : first(a.keys()),
+      second(b.keys()),
+      reach(double(a.slack) + double(b.slack) + step.at(std::max(a.record.nearest(), b.record.nearest()))) {}
+
+VisibleShares::VisibleShares(const Visible& visible, std::size_t areas)
+    : visible_(visible), asked_(std::clamp(kAskedOfAll / double(areas), kLeastAsked, kMostAsked)) {}
+
+double VisibleShares::of(const ConvexArea& area, const RiskKeys& keys) {
+  const View& view = visible_.view;
+  const auto is_seen = [&](std::size_t sample, const glm::dvec2& point) {
+    return keys.nearest_at(point) + keys.reach >= double(visible_.keys[sample]);
+  };
+  std::uint64_t all = 0, seen = 0;
+  const auto look = [&](int step) {
+    all = seen = 0;
+    visit_samples(area.corners(), view, step, [&](std::size_t i, int x, int y, const glm::dvec2& offset) {
+      ++all;
+      seen += is_seen(i, glm::dvec2(x, y) + offset);
+    });
+    looks_ += all;
+  };
+  // Some samples suffice for the share. To tell whether anything is seen, all samples are needed.
+  const int step = int(std::sqrt(area.area() * view.samples / asked_));
+  if (step > 1) look(step);
+  if (seen == 0) look(1);
+  if (all > 0) return double(seen) / double(all);
+  const glm::dvec2 centre = area.centre();
+  const glm::ivec2 last(view.width - 1, view.height - 1);
+  const glm::ivec2 pixel = glm::clamp(glm::ivec2(centre), glm::ivec2(0), last);
+  const std::size_t number = std::size_t(pixel.y) * std::size_t(view.width) + std::size_t(pixel.x);
+  for (std::size_t s = 0; s < std::size_t(view.samples); ++s) seen += is_seen(s * view.pixel_count() + number, centre);
+  return double(seen) / double(view.samples);
 }
 
 }  // namespace frontmost
