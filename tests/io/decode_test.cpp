@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Texture images in every flavour, and error messages for broken ones.
-#include "io/images/decode.h"
-
 #include <gmock/gmock.h>
 
 #include <functional>
 
 #include "io/image_bytes.h"
+#include "io/images/formats.h"
 
 namespace frontmost {
 namespace {

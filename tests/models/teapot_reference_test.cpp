@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "frontmost/frontmost.h"
-#include "io/images/decode.h"
+#include "io/images/formats.h"
 #include "support/models.h"
 
 namespace frontmost::test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole file in memory: mapped if that pays off, else read, with a limit that is checked before memory is allocated.
-
+// A whole file in memory is mapped if that pays off, else read, with a limit that is checked before memory is
+// allocated.
 #include "io/input_file.h"
 
 #include <fcntl.h>
@@ -24,6 +24,28 @@ void check_size(std::uint64_t size, std::uint64_t max_bytes, const std::string& 
                 "larger than the limit of " + std::to_string(max_bytes) + " bytes");
 }
 
+int open_for_reading(const char* path, const std::string& name) {
+  const int descriptor = ::open(path, O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail_to_read_by_errno(name, "cannot open");
+  return descriptor;
+}
+
+struct ::stat status_of(int descriptor, const std::string& name) {
+  struct ::stat status {};
+  if (::fstat(descriptor, &status) != 0) fail_to_read_by_errno(name, "cannot read");
+  if (S_ISDIR(status.st_mode)) fail_to_read(name, "is a folder");
+  return status;
+}
+
+/// Reads up to `count` bytes; an interrupting signal is no error. \returns how many there were: 0 only at the end.
+std::size_t read_some(int descriptor, std::byte* to, std::size_t count, const std::string& name) {
+  for (;;) {
+    const ssize_t got = ::read(descriptor, to, count);
+    if (got >= 0) return std::size_t(got);
+    if (errno != EINTR) fail_to_read_by_errno(name, "cannot read");
+  }
+}
+
 /// Closes a file descriptor.
 class Descriptor {
  public:
@@ -31,7 +53,6 @@ class Descriptor {
   ~Descriptor() { ::close(number_); }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
-  [[nodiscard]] int number() const { return number_; }
 
  private:
   int number_;
@@ -41,19 +62,16 @@ class Descriptor {
 
 void InputFile::Delete::operator()(const std::byte* data) const {
   auto* start = const_cast<std::byte*>(data);
-  switch (owner) {
-    case Owner::heap: std::free(start); break;
-    case Owner::mapping: ::munmap(start, size); break;
-  }
+  if (mapped_size == 0)
+    std::free(start);
+  else
+    ::munmap(start, mapped_size);
 }
 
 InputFile InputFile::open(const std::filesystem::path& path, const std::string& name, std::uint64_t max_bytes) {
-  const int number = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (number < 0) fail_to_read_by_errno(name, "cannot open");
+  const int number = open_for_reading(path.c_str(), name);
   const Descriptor file(number);
-  struct ::stat status {};
-  if (::fstat(number, &status) != 0) fail_to_read_by_errno(name, "cannot read");
-  if (S_ISDIR(status.st_mode)) fail_to_read(name, "is a folder");
+  const struct ::stat status = status_of(number, name);
   // Pipes have no size, and files of /proc report 0.
   const auto size = std::uint64_t(std::max<off_t>(status.st_size, 0));
   if (!S_ISREG(status.st_mode) || size < mapping_threshold)
@@ -62,15 +80,16 @@ InputFile InputFile::open(const std::filesystem::path& path, const std::string& 
   return map(number, std::size_t(size), name);
 }
 
-InputFile InputFile::standard_input(const std::string& name, std::uint64_t max_bytes) {
-  return read_stream(STDIN_FILENO, name, std::min(max_bytes, max_stream_bytes));
+InputFile InputFile::open_input(const std::string& path, std::uint64_t max_bytes) {
+  if (path != "-") return open(path, path, max_bytes);
+  return read_stream(STDIN_FILENO, input_name(path), std::min(max_bytes, max_stream_bytes));
 }
 
 InputFile InputFile::map(int descriptor, std::size_t size, const std::string& name) {
   void* start = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
   if (start == MAP_FAILED) fail_to_read_by_errno(name, "cannot map");
   ::madvise(start, size, MADV_SEQUENTIAL);  // only advice
-  return {Data(static_cast<const std::byte*>(start), Delete{Owner::mapping, size}), size};
+  return {Data(static_cast<const std::byte*>(start), Delete{size}), size};
 }
 
 InputFile InputFile::read_stream(int descriptor, const std::string& name, std::uint64_t max_bytes) {
@@ -93,11 +112,9 @@ InputFile InputFile::read_stream(int descriptor, const std::string& name, std::u
       (void)data.release();
       data.reset(start);
     }
-    const ssize_t got = ::read(descriptor, start + size, capacity - size);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail_to_read_by_errno(name, "cannot read");
+    const std::size_t got = read_some(descriptor, start + size, capacity - size, name);
     if (got == 0) break;
-    size += std::size_t(got);
+    size += got;
   }
   if (start == nullptr) throw std::bad_alloc();
   check_size(size, max_bytes, name);
@@ -105,7 +122,7 @@ InputFile InputFile::read_stream(int descriptor, const std::string& name, std::u
 }
 
 void InputFile::release(std::span<const std::byte> part) const {
-  if (data_.get_deleter().owner != Owner::mapping || part.empty()) return;
+  if (data_.get_deleter().mapped_size == 0 || part.empty()) return;
   // Only whole pages within the part are released; the mapping itself starts at a page.
   static const auto page = std::size_t(::sysconf(_SC_PAGESIZE));
   const auto first = std::size_t(part.data() - data_.get());
@@ -114,16 +131,48 @@ void InputFile::release(std::span<const std::byte> part) const {
   if (begin < end) ::madvise(const_cast<std::byte*>(data_.get()) + begin, end - begin, MADV_DONTNEED);
 }
 
-std::string load_text(const std::string& path, std::uint64_t most_bytes) {
-  const bool is_input = path == "-";
-  const InputFile file =
-      is_input ? InputFile::standard_input("standard input", most_bytes) : InputFile::open(path, path, most_bytes);
-  return std::string(text_of(file.bytes()));
+ByteStream::ByteStream(const std::string& path, std::string name) : name_(std::move(name)) {
+  is_ours_ = path != "-";
+  descriptor_ = is_ours_ ? open_for_reading(path.c_str(), name_) : STDIN_FILENO;
+  const struct ::stat status = status_of(descriptor_, name_);
+  // The size of files in /proc is 0 though they have contents. Standard input may be a file that was read in part.
+  const bool is_at_start = ::lseek(descriptor_, 0, SEEK_CUR) == 0;
+  if (S_ISREG(status.st_mode) && status.st_size > 0 && is_at_start) size_ = std::uint64_t(status.st_size);
+  if (size_) ::posix_fadvise(descriptor_, 0, 0, POSIX_FADV_SEQUENTIAL);  // only advice
+}
+
+ByteStream::~ByteStream() {
+  if (is_ours_) ::close(descriptor_);
+}
+
+std::size_t ByteStream::read(std::byte* to, std::size_t count) {
+  std::size_t done = 0;
+  // A pipe may return fewer bytes than asked for before its end.
+  for (std::size_t got = 1; done < count && got > 0; done += got)
+    got = read_some(descriptor_, to + done, count - done, name_);
+  return done;
+}
+
+void ByteStream::seek(std::uint64_t offset) {
+  if (::lseek(descriptor_, off_t(offset), SEEK_SET) < 0) fail_to_read_by_errno(name_, "cannot read again");
+}
+
+std::string input_name(const std::string& path) { return path == "-" ? "standard input" : path; }
+
+std::string lower_suffix(const std::string& path) {
+  std::string suffix = std::filesystem::path(path).extension().string();
+  for (char& c : suffix)
+    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+  return suffix;
 }
 
 std::string_view text_of(std::span<const std::byte> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
+}
+
+std::string load_text(const std::string& path, std::uint64_t most_bytes) {
+  return std::string(text_of(InputFile::open_input(path, most_bytes).bytes()));
 }
 
 void fail_to_read(const std::string& name, const std::string& reason) {

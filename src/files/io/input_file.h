@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Input of whole files and of standard input, with no more bytes in memory than needed.
+// Input of files, pipes and standard input: whole files in memory, or forwards piece by piece.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,7 +31,8 @@ class InputFile {
   /// `name` stands for the file in messages. \throws Error file_unreadable or limit_exceeded.
   static InputFile open(const std::filesystem::path& path, const std::string& name,
                         std::uint64_t max_bytes = max_file_bytes);
-  static InputFile standard_input(const std::string& name, std::uint64_t max_bytes = max_stream_bytes);
+  /// The same for a path of the user's: "-" is standard input.
+  static InputFile open_input(const std::string& path, std::uint64_t max_bytes = max_file_bytes);
 
   [[nodiscard]] std::span<const std::byte> bytes() const { return {data_.get(), size_}; }
 
@@ -38,10 +40,8 @@ class InputFile {
   void release(std::span<const std::byte> part) const;
 
  private:
-  enum class Owner : std::uint8_t { heap, mapping };
   struct Delete {
-    Owner owner = Owner::heap;
-    std::size_t size = 0;
+    std::size_t mapped_size = 0;  ///< 0: on the heap
     void operator()(const std::byte* data) const;
   };
   using Data = std::unique_ptr<const std::byte[], Delete>;
@@ -53,6 +53,39 @@ class InputFile {
   Data data_;
   std::size_t size_ = 0;
 };
+
+/// Sequential input of a file, a pipe or standard input. The stream does not map files: only the caller's buffers take
+/// memory, and a file cut short by another program causes an early end instead of a signal.
+class ByteStream {
+ public:
+  /// "-" is standard input. `name` stands for the file in messages. \throws Error file_unreadable.
+  ByteStream(const std::string& path, std::string name);
+  ~ByteStream();
+  ByteStream(const ByteStream&) = delete;
+  ByteStream& operator=(const ByteStream&) = delete;
+
+  /// Fills `to` with the next `count` bytes. \returns how many there were; fewer only at the end.
+  /// \throws Error file_unreadable.
+  std::size_t read(std::byte* to, std::size_t count);
+
+  /// The size of an ordinary file; empty for a pipe or a terminal.
+  [[nodiscard]] std::optional<std::uint64_t> size() const { return size_; }
+  [[nodiscard]] bool can_rewind() const { return size_.has_value(); }
+  /// Moves to `offset`, from which the next byte is read. Precondition: can_rewind().
+  void seek(std::uint64_t offset);
+
+ private:
+  std::string name_;
+  int descriptor_ = -1;
+  bool is_ours_ = false;
+  std::optional<std::uint64_t> size_;
+};
+
+/// The name of an input in messages: its path, or "standard input" for "-".
+[[nodiscard]] std::string input_name(const std::string& path);
+
+/// The suffix of a file's name, in lower case, with its point.
+[[nodiscard]] std::string lower_suffix(const std::string& path);
 
 /// Bytes as text, without a UTF-8 byte order mark at their start. All readers of text call this function.
 [[nodiscard]] std::string_view text_of(std::span<const std::byte> bytes);

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows are written in pieces, so that a long table is not held twice.
-#include <algorithm>
-#include <cstring>
-
+// Tables as CSV or NPY. Rows are written in pieces, so that a long table is not held twice.
 #include "base/decimal.h"
 #include "frontmost/files.h"
+#include "io/binary.h"
 #include "io/images/formats.h"
-#include "io/row_bytes.h"
 
 namespace frontmost {
 namespace {
-
-constexpr std::size_t kBytesAtOnce = 1 << 20;
 
 void append_text(std::string& text, const TableColumn& column, std::size_t row) {
   if (const auto* bytes = std::get_if<std::vector<std::uint8_t>>(&column.values))
@@ -22,28 +17,20 @@ void append_text(std::string& text, const TableColumn& column, std::size_t row) 
     text += shortest_text(std::get<std::vector<double>>(column.values)[row]);
 }
 
-/// Appends each row, and writes the text whenever enough has collected.
-template <class Append>
-void write_rows(std::string text, std::size_t count, OutputFile& file, const Append& append) {
-  for (std::size_t row = 0; row < count; ++row) {
-    append(text, row);
-    if (text.size() < kBytesAtOnce) continue;
-    file.write(std::as_bytes(std::span(text)));
-    text.clear();
-  }
-  file.write(std::as_bytes(std::span(text)));
-}
-
 void write_csv(const Table& table, OutputFile& file) {
-  std::string names;
-  for (const TableColumn& column : table.columns) names += (names.empty() ? "" : ",") + column.name;
-  write_rows(names + '\n', table.row_count(), file, [&](std::string& text, std::size_t row) {
+  detail::FileBytes sink(file);
+  std::string& text = sink.bytes();
+  for (const TableColumn& column : table.columns) text += (text.empty() ? "" : ",") + column.name;
+  text += '\n';
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
     for (const TableColumn& column : table.columns) {
       append_text(text, column, row);
       text += ',';
     }
     text.back() = '\n';
-  });
+    sink.pass_on();
+  }
+  sink.finish();
 }
 
 void write_npy(const Table& table, OutputFile& file) {
@@ -51,10 +38,13 @@ void write_npy(const Table& table, OutputFile& file) {
   std::string fields = "[";
   for (const TableColumn& column : table.columns)
     fields += (fields.size() > 1 ? ", ('" : "('") + column.name + "', '" + types[column.values.index()] + "')";
-  write_rows(detail::npy_header(fields + "]", std::to_string(table.row_count()) + ","), table.row_count(), file,
-             [&](std::string& bytes, std::size_t row) {
-               for (const TableColumn& column : table.columns) detail::append_bytes(bytes, column, row);
-             });
+  detail::FileBytes sink(file);
+  sink.bytes() = detail::npy_header(fields + "]", std::to_string(table.row_count()) + ",");
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    for (const TableColumn& column : table.columns) detail::append_bytes(sink.bytes(), column, row);
+    sink.pass_on();
+  }
+  sink.finish();
 }
 
 }  // namespace

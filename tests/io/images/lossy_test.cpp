@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/srgb.h"
-#include "io/images/decode.h"
+#include "io/images/formats.h"
 #include "support/effort.h"
 #include "support/scratch_folder.h"
 #include "support/test_images.h"

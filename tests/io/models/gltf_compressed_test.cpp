@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "frontmost/files.h"
-#include "io/models/gltf/compressed.h"
+#include "io/models/gltf/data.h"
 #include "io/models/gltf_maker.h"
 
 namespace frontmost {

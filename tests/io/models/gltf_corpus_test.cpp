@@ -8,8 +8,8 @@
 #include <map>
 
 #include "frontmost/files.h"
-#include "io/images/decode.h"
-#include "io/models/gltf/compressed.h"
+#include "io/images/formats.h"
+#include "io/models/gltf/data.h"
 
 namespace frontmost {
 namespace {

@@ -2,7 +2,7 @@
 // Small files that could cost much. Each must be refused, or be read at a cost in proportion to its size; read naively,
 // each takes gigabytes or minutes, so that this test would not end.
 #include "io/input_file.h"
-#include "io/models/model_source.h"
+#include "io/models/reader.h"
 #include "model_bytes.h"
 
 namespace frontmost {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/polygons/triangulate.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,6 +10,7 @@
 
 #include "base/orientation.h"
 #include "frontmost/files.h"
+#include "io/models/mesh_building.h"
 #include "support/models.h"
 #include "support/seeds.h"
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Joining the objects of a model into one mesh keeps vertices, attributes, materials and polygons.
-#include "io/scenes/one_mesh.h"
-
 #include <gtest/gtest.h>
 
+#include "io/scenes/scene_file.h"
 #include "io/scenes/scene_folder.h"
 
 namespace frontmost::test {

@@ -1,13 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
-// The image formats behind save() and load_image().
+// The image formats behind save() and load_image(), and textures: PNG, JPEG and WebP bytes to 8-bit RGBA pixels.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "base/output_file.h"
 #include "frontmost/files.h"
+
+namespace frontmost {
+
+/// No image is wider or higher than this, and none has more pixels (1 GiB as RGBA).
+inline constexpr int max_image_side = 16384;
+inline constexpr std::uint64_t max_image_pixels = std::uint64_t(1) << 28;
+
+/// Decodes a texture by `decoder`, or, if that is null, a PNG, a JPEG or a WebP, told apart by content. Grey, palette
+/// and transparent-colour images become RGBA; 16 bits are rounded to 8; gamma chunks and colour profiles are left
+/// aside, as glTF asks. `name` begins every message. \throws Error file_malformed (truncated files included),
+/// unsupported, limit_exceeded; bad_argument if the decoder's result has not the size that the decoder announced.
+[[nodiscard]] Texture decode_texture(std::span<const std::byte> bytes, const std::string& name,
+                                     const ImageDecoder* decoder = nullptr);
+
+/// Width and height, by `decoder` or as the file's header states them, without decoding. Limits and errors are those of
+/// decode_texture().
+[[nodiscard]] glm::ivec2 texture_size(std::span<const std::byte> bytes, const std::string& name,
+                                      const ImageDecoder* decoder = nullptr);
+
+/// Whether WebP images can be decoded: by `decoder`, or, if that is null, by this build.
+[[nodiscard]] bool decodes_webp(const ImageDecoder* decoder);
+
+}  // namespace frontmost
 
 namespace frontmost::detail {
 
@@ -19,6 +45,30 @@ void save_exr(const Image& image, OutputFile& file, const Execution& execution);
 void save_deep_exr(const DeepImage& image, OutputFile& file, const Execution& execution);
 void save_pfm(const Image& image, OutputFile& file);
 void save_npy(const Image& image, OutputFile& file);
+
+/// Rows of sRGB bytes with straight alpha: R, G, B or R, G, B, A. Borrows the picture that it was made from.
+struct PictureRows {
+  int width = 0, height = 0;
+  bool with_alpha = false;  ///< whether any pixel is not opaque
+  /// Fills row y, from the top. May be called from many threads at once.
+  std::function<void(int y, std::uint8_t* row)> row;
+
+  [[nodiscard]] std::size_t row_bytes() const { return std::size_t(with_alpha ? 4 : 3) * std::size_t(width); }
+};
+
+/// Empty unless the channels are R, G, B, or R, G, B, A, of floats. O(pixels), to look for alpha.
+[[nodiscard]] std::optional<PictureRows> picture_rows(const Image& image);
+[[nodiscard]] PictureRows picture_rows(const Bitmap& bitmap);
+
+/// Lossy formats. `quality` is 1 to 100. The writers check the sides before they allocate memory.
+/// \throws Error limit_exceeded; unsupported: JPEG holds no alpha; WebP in a build without libwebp.
+void save_jpeg(const PictureRows& picture, int quality, OutputFile& file, const Execution& execution);
+void save_webp(const PictureRows& picture, int quality, OutputFile& file, const Execution& execution);
+
+/// A texture as a whole PNG, 8 bits a channel with alpha, for model files. \throws Error limit_exceeded if PNG cannot
+/// hold the size; unsupported in a build without libpng.
+[[nodiscard]] std::string png_bytes(const Texture& texture);
+
 /// Header of a NumPy array file. `type` is written as in Python; `shape` holds numbers with commas.
 [[nodiscard]] std::string npy_header(const std::string& type, const std::string& shape);
 
@@ -29,8 +79,31 @@ void save_npy(const Image& image, OutputFile& file);
 [[nodiscard]] Image load_radiance(std::span<const std::byte> bytes, const std::string& name);
 [[nodiscard]] Image load_npy(std::span<const std::byte> bytes, const std::string& name);
 
-/// Channel names for formats that store none: see load_image().
-[[nodiscard]] std::vector<std::string> default_channel_names(std::size_t count, bool integers);
+/// The part of an image to read: its size alone, or its pixels, too.
+enum class ImagePart : std::uint8_t { size, pixels };
+
+[[nodiscard]] Texture decode_png(std::span<const std::byte> bytes, const std::string& name, ImagePart part);
+[[nodiscard]] Texture decode_jpeg(std::span<const std::byte> bytes, const std::string& name, ImagePart part);
+[[nodiscard]] Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, ImagePart part);
+[[nodiscard]] bool has_webp();
+
+/// Check of every decoder between header and pixels. `densest` is the greatest number of pixels that one byte of a
+/// valid file can hold. A header that claims more belongs to a truncated or hostile file, and no memory is allocated
+/// for it. `format` is the place of an error.
+void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height, std::size_t byte_count,
+                      double densest, const char* format = "");
+
+/// Keywords of the text chunks that tell the meaning of the numbers in a PNG map, for load_image().
+inline constexpr const char* png_channel_key = "frontmost:channel";  ///< a name; "N" for the three of a direction
+inline constexpr const char* png_scale_key = "frontmost:scale";      ///< depth = (value - offset) / scale
+inline constexpr const char* png_offset_key = "frontmost:offset";
+inline constexpr const char* png_ids_key = "frontmost:ids";  ///< marks an id map; id = value - 1
+
+/// A channel's values as they lie in memory, four bytes each.
+[[nodiscard]] inline const std::byte* bytes_of(const Channel& channel) {
+  return channel.is_integer() ? reinterpret_cast<const std::byte*>(channel.integers().data())
+                              : reinterpret_cast<const std::byte*>(channel.floats().data());
+}
 
 /// The image's channel names as "R, G, B", for messages.
 [[nodiscard]] std::string channel_list(const Image& image);

@@ -10,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "io/images/decode.h"
 #include "io/images/formats.h"
 
 namespace frontmost::detail {

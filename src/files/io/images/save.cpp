@@ -2,12 +2,12 @@
 // Chooses the format of an image file and writes it whole.
 
 #include <algorithm>
-#include <cctype>
 #include <utility>
 
 #include "base/parallel.h"
+#include "image/srgb_pixels.h"
 #include "io/images/formats.h"
-#include "io/images/lossy/lossy.h"
+#include "io/input_file.h"
 
 namespace frontmost {
 namespace {
@@ -15,9 +15,7 @@ namespace {
 ImageFormat format_of(const std::string& path, const SaveOptions& options) {
   if (options.format) return *options.format;
   if (path == "-") throw Error(ErrorCode::bad_argument, "standard output", "", "the image format must be given");
-  std::string suffix = std::filesystem::path(path).extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string suffix = lower_suffix(path);
   if (suffix == ".png") return ImageFormat::png;
   if (suffix == ".exr") return ImageFormat::exr;
   if (suffix == ".pfm") return ImageFormat::pfm;
@@ -64,13 +62,32 @@ std::string channel_list(const Image& image) {
   return list;
 }
 
-std::vector<std::string> default_channel_names(std::size_t count, bool integers) {
-  if (count == 1) return {integers ? "primitive" : "Z"};
-  if (count == 3 && !integers) return {"R", "G", "B"};
-  if (count == 4 && !integers) return {"R", "G", "B", "A"};
-  std::vector<std::string> names(count);
-  for (std::size_t i = 0; i < count; ++i) names[i] = std::to_string(i);
-  return names;
+std::optional<PictureRows> picture_rows(const Image& image) {
+  const std::optional<ColorPlanes> planes = color_planes(image);
+  if (!planes || image.channels.size() != (planes->alpha ? 4u : 3u)) return std::nullopt;
+  const bool with_alpha = !planes->is_opaque();
+  return PictureRows{image.width, image.height, with_alpha, [planes = *planes, with_alpha](int y, std::uint8_t* row) {
+                       srgb8_row(planes, y, with_alpha, row);
+                     }};
+}
+
+PictureRows picture_rows(const Bitmap& bitmap) {
+  constexpr std::size_t bytes = 4;  // a pixel
+  const std::size_t size = bitmap.rgba.size();
+  std::uint8_t least = 255;
+  // The loop has no branches and no early exit, which is faster than stopping at the first transparent pixel.
+  for (std::size_t i = bytes - 1; i < size; i += bytes) least = std::min(least, bitmap.rgba[i]);
+  const bool with_alpha = least < 255;
+  return {bitmap.width, bitmap.height, with_alpha, [&bitmap, with_alpha](int y, std::uint8_t* row) {
+            const std::size_t width = std::size_t(bitmap.width);
+            const std::uint8_t* in = bitmap.rgba.data() + bytes * width * std::size_t(y);
+            if (with_alpha) {
+              std::copy_n(in, bytes * width, row);
+            } else {
+              for (std::size_t x = 0; x < width; ++x)
+                for (std::size_t k = 0; k < 3; ++k) row[3 * x + k] = in[bytes * x + k];
+            }
+          }};
 }
 
 }  // namespace detail

@@ -3,7 +3,6 @@
 // formats takes large libraries; the advice takes a table.
 #include <algorithm>
 
-#include "io/models/model_source.h"
 #include "io/models/reader.h"
 
 namespace frontmost {
@@ -52,13 +51,6 @@ constexpr ForeignExtension foreign_extensions[] = {{"KHR_texture_basisu", ktx_to
                                                    {"KHR_draco_mesh_compression", decompress},
                                                    {"EXT_meshopt_compression", decompress},
                                                    {"KHR_meshopt_compression", decompress}};
-
-std::string lower_suffix(const std::string& path) {
-  std::string suffix = std::filesystem::path(path).extension().string();
-  for (char& c : suffix)
-    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
-  return suffix;
-}
 
 /// Quotes `path` for a shell's command line if needed. Further quotes would end a text that is in quotes already, so a
 /// plain name stands for the file there.

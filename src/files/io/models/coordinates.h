@@ -4,14 +4,8 @@
 // Floats hold 24 bits: at 5.4e6, where surveys lie, they have steps of half a metre. So readers of more precise files
 // subtract an origin first, in doubles. The best origin is known only after all vertices were read, when polygons have
 // been cut by rounded coordinates already. So a model that turns out to lie far from zero is read again; other models
-// pay nothing:
-//
-//   return read_about_origin([&](Coordinates& coordinates) { ... mesh.positions.push_back(coordinates(exact)); ... });
-//
-// A format whose meshes hold doubles and have transforms needs no second reading if it keeps the doubles of one mesh:
-// call OriginSearch::include() on all of them, subtract origin(), and multiply the instance's transform by the
-// translation to it. load() chooses the origin of the whole scene for all formats, so readers of floats and transforms
-// leave Scene::origin alone.
+// pay nothing. load() chooses the origin of the whole scene for all formats, so readers of floats and transforms leave
+// Scene::origin alone.
 #pragma once
 
 #include "scene/origin.h"

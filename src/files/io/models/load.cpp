@@ -1,16 +1,56 @@
 // SPDX-License-Identifier: Apache-2.0
-// load(): gets the bytes, recognizes the format, calls its reader and checks the result.
+// load(): gets the bytes, recognizes the format, calls its reader and checks the result. The suffix decides the format
+// if there is one. Standard input and memory have no name, so their first bytes decide: first by magic words, then by
+// typical contents.
 //
 //   path --> bytes (mapped, or all of a pipe) --> format --> reader --> validate() --> an origin, warnings with names
 //            "builtin:" has none                  by name,
 //                                                 else by content
 //
-// Work that is the same for all formats is done here, so that readers only parse bytes.
+// Work that is the same for all formats is done here, so that readers only parse bytes. Streams are opened likewise; a
+// pipe cannot be read again, so the bytes that tell its format are passed on to the reader.
+#include <algorithm>
+#include <array>
+#include <cstring>
+
 #include "base/parallel.h"
+#include "io/models/model_stream.h"
 #include "io/models/reader.h"
 
 namespace frontmost {
 namespace {
+
+/// The first bytes as text, without leading white space and comment lines.
+std::string_view first_statement(Bytes bytes) {
+  constexpr std::size_t window = 1 << 16;
+  std::string_view text = text_of(bytes.first(std::min(bytes.size(), window)));
+  for (;;) {
+    text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+    if (!text.starts_with('#')) return text;
+    text.remove_prefix(std::min(text.find('\n'), text.size()));
+  }
+}
+
+bool starts_with_word(std::string_view text, std::string_view word) {
+  return text.starts_with(word) && (text.size() == word.size() || std::strchr(" \t\r\n", text[word.size()]) != nullptr);
+}
+
+bool looks_like_off(std::string_view text) {
+  // [ST][C][N][4][n]OFF, the prefixes in any order and the first count perhaps without a blank before it.
+  text.remove_prefix(std::min(text.find_first_not_of("STCN4n"), text.size()));
+  constexpr std::string_view followers = " \t\r\n#0123456789";
+  return text.starts_with("OFF") && (text.size() == 3 || followers.find(text[3]) != std::string_view::npos);
+}
+
+bool looks_like_obj(std::string_view text) {
+  constexpr std::array statements{"v", "vt", "vn", "vp", "f", "o", "g", "s", "l", "p", "usemtl", "mtllib"};
+  return std::any_of(statements.begin(), statements.end(),
+                     [&](std::string_view word) { return starts_with_word(text, word); });
+}
+
+/// Whether the text of JSON has the member "asset". Writers that sort keys put it behind the accessors, so all text is
+/// searched.
+bool has_asset(Bytes bytes) { return text_of(bytes).find("\"asset\"") != std::string_view::npos; }
 
 /// A remark about the points of a scene without triangles.
 std::string points_told(const Scene& scene) {
@@ -64,7 +104,54 @@ Scene read_any(Bytes bytes, ModelSource& source, std::optional<ModelFormat> form
   return scene;
 }
 
+[[noreturn]] void refuse_stream(const ModelSource& source, const std::string& what) {
+  throw Error(ErrorCode::unsupported, source.name(), "", what + " cannot be streamed; binary STL and PLY can");
+}
+
+std::unique_ptr<ModelStream> open_stream(ModelFormat format, StreamStart start, const ModelSource& source) {
+  switch (format) {
+    case ModelFormat::stl:
+      if (known_stl_encoding(start.start, start.greatest_size(), source) == StlEncoding::ascii)
+        refuse_stream(source, "text STL");
+      return open_stl_stream(std::move(start), source);
+    case ModelFormat::ply: return open_ply_stream(std::move(start), source);
+    case ModelFormat::obj: refuse_stream(source, "OBJ");
+    case ModelFormat::off: refuse_stream(source, "OFF");
+    case ModelFormat::gltf: refuse_stream(source, "glTF");
+    case ModelFormat::threemf: refuse_stream(source, "3MF");
+    case ModelFormat::scene: refuse_stream(source, "a scene file");
+  }
+  throw Error(ErrorCode::bad_argument, source.name(), "", "not a model format");
+}
+
 }  // namespace
+
+std::optional<ModelFormat> format_of_suffix(const std::string& path) {
+  const std::string suffix = lower_suffix(path);
+  if (suffix == ".stl") return ModelFormat::stl;
+  if (suffix == ".ply") return ModelFormat::ply;
+  if (suffix == ".obj") return ModelFormat::obj;
+  if (suffix == ".off") return ModelFormat::off;
+  if (suffix == ".gltf" || suffix == ".glb") return ModelFormat::gltf;
+  if (suffix == ".3mf") return ModelFormat::threemf;
+  return std::nullopt;
+}
+
+Axis default_up(ModelFormat format) {
+  return format == ModelFormat::stl || format == ModelFormat::threemf ? Axis::z : Axis::y;
+}
+
+std::optional<ModelFormat> format_of_content(Bytes bytes) {
+  const std::string_view text = first_statement(bytes);
+  if (text.starts_with("glTF")) return ModelFormat::gltf;
+  if (text.starts_with('{')) return has_asset(bytes) ? ModelFormat::gltf : ModelFormat::scene;
+  if (text.starts_with("PK\x03\x04")) return ModelFormat::threemf;
+  if (starts_with_word(text, "ply")) return ModelFormat::ply;
+  if (looks_like_off(text)) return ModelFormat::off;
+  if (stl_encoding(bytes, bytes.size()) != StlEncoding::neither) return ModelFormat::stl;
+  if (looks_like_obj(text)) return ModelFormat::obj;
+  return std::nullopt;
+}
 
 Scene load_named(const std::string& reference, const ModelSource& scene_file) {
   if (reference.starts_with(builtin_prefix)) return builtin(std::string_view(reference).substr(builtin_prefix.size()));
@@ -89,8 +176,8 @@ Scene load(const std::string& path, const LoadOptions& options, const Execution&
     return scene;
   }
   if (path == "-") {
-    const InputFile file = InputFile::standard_input("standard input");
-    ModelSource source("standard input", execution);
+    const InputFile file = InputFile::open_input(path);
+    ModelSource source(input_name(path), execution);
     source.decode_images_by(options.image_decoder);
     Scene scene = read_any(file.bytes(), source, options.format, options);
     scene.name = "stdin";
@@ -113,6 +200,61 @@ Scene load(std::span<const std::byte> bytes, const std::string& name, const Load
   ModelSource source(name, execution);
   source.decode_images_by(options.image_decoder);
   return read_any(bytes, source, options.format, options);
+}
+
+/// Clears the values but keeps the memory, because the same few pieces are filled repeatedly.
+void StreamPiece::clear() {
+  const auto clear = [](auto& attribute) {
+    attribute.values.clear();
+    attribute.triangles.clear();
+  };
+  mesh.positions.clear();
+  mesh.triangles.clear();
+  mesh.material_ids.clear();
+  mesh.face_ids.clear();
+  clear(mesh.normals);
+  clear(mesh.texcoords);
+  clear(mesh.colors);
+  used = 0;
+  row_count = 0;
+  triangle_count = 0;
+}
+
+std::optional<std::uint64_t> StreamStart::size() const {
+  return has_ended ? std::uint64_t(start.size()) : bytes->size();
+}
+
+void StreamStart::extend(std::size_t size) {
+  if (size <= start.size()) return;
+  const std::size_t before = start.size();
+  start.resize(size);
+  start.resize(before + bytes->read(start.data() + before, size - before));
+  has_ended = start.size() < size;
+}
+
+std::unique_ptr<ModelStream> open_model_stream(const std::string& path, const LoadOptions& options,
+                                               const Execution& execution) {
+  const std::string name = input_name(path);
+  if (path.starts_with(builtin_prefix)) refuse_stream(ModelSource(name, execution), "a built-in scene");
+  const auto opened = std::make_shared<OpenedFiles>(path);
+  StreamStart start{std::make_unique<ByteStream>(path, name), {}, path, opened};
+  constexpr std::size_t enough_to_know = 1024;
+  start.extend(enough_to_know);
+  const ModelSource source(name, execution);
+  if (start.start.empty()) throw Error(ErrorCode::file_malformed, name, "", "the file is empty");
+  if (const auto conversion = options.format ? std::nullopt : conversion_by_suffix(path))
+    throw Error(ErrorCode::unsupported, name, "", *conversion);
+  auto format = options.format ? options.format : path == "-" ? std::nullopt : format_of_suffix(path);
+  if (!format) format = format_of_content(start.start);
+  // A prefix of a binary STL file holds no whole number of triangles, so format_of_content() does not recognize it.
+  if (!format && stl_encoding(start.start, start.greatest_size()) == StlEncoding::binary) format = ModelFormat::stl;
+  if (!format)
+    throw Error(ErrorCode::unsupported, name, "",
+                conversion_by_content(start.start).value_or("not a model that can be streamed (binary STL or PLY)"));
+  std::unique_ptr<ModelStream> stream = open_stream(*format, std::move(start), source);
+  stream->introduce(path == "-" ? "stdin" : source.stem(), options.up.value_or(default_up(*format)),
+                    {format, std::nullopt, opened->paths(), {}});
+  return stream;
 }
 
 }  // namespace frontmost

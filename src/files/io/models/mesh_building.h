@@ -4,9 +4,9 @@
 //   polygon 7 of the file: five corners  ->  three triangles, each with face id 7
 #pragma once
 
+#include <memory>
 #include <vector>
 
-#include "io/models/polygons/triangulate.h"
 #include "io/models/reader.h"
 
 namespace frontmost {
@@ -16,6 +16,26 @@ inline constexpr std::size_t max_objects = std::size_t(1) << 20;
 
 /// Adds an empty mesh and its one instance, both called `name`. `place` is for the error if there are too many.
 Mesh& add_object(Scene& scene, const std::string& name, const ModelSource& source, const std::string& place);
+
+/// Cuts the polygons of a file into triangles: always corner count - 2 of them, the same ones on every machine. Keeps
+/// its arrays from polygon to polygon, and counts the work of all of them, so that hostile files cannot make it slow.
+class Triangulator {
+ public:
+  Triangulator();
+  ~Triangulator();
+
+  /// Returns triangles as indices of `corners`, in the polygon's winding. Correct for each simple polygon, convex or
+  /// not, flat or nearly flat, and for outlines that touch themselves without crossing: at corners, along bridges to
+  /// holes and islands, at spikes. Zero-area triangles appear only where corners coincide or are collinear. Polygons
+  /// that cross themselves are covered somehow; small ones have the least area of wrong winding. Polygons without a
+  /// direction (all corners collinear, or not finite), and the rest of one that takes too long, become fans. The result
+  /// is valid until the next call. Precondition: at least 3 corners.
+  std::span<const glm::uvec3> operator()(std::span<const glm::vec3> corners);
+
+ private:
+  class Cutter;
+  std::unique_ptr<Cutter> cutter_;
+};
 
 /// Adds polygons to a mesh as triangles.
 class PolygonWriter {
@@ -38,6 +58,9 @@ class PolygonWriter {
   std::uint32_t face_ = 0;
   std::uint64_t skipped_ = 0;
 };
+
+/// A warning for Scene::warnings about polygons that PolygonWriter skipped.
+[[nodiscard]] std::string skipped_faces_warning(std::uint64_t count);
 
 /// Converts a colour of a file, sRGB from 0 to 1, to a linear one. Alpha is linear in both. NaN counts as 1.
 [[nodiscard]] glm::vec4 linear_color(const glm::vec4& srgb);

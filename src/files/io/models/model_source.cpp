@@ -2,11 +2,10 @@
 // All files beside a model are opened here. Names inside a model are untrusted: "../../etc/passwd", absolute paths and
 // links that lead out of the folder are refused, by comparing real paths. Users write scene files for their own folders
 // of models, which they may allow.
-#include "io/models/model_source.h"
-
 #include <algorithm>
 
 #include "frontmost/base.h"
+#include "io/models/reader.h"
 
 namespace frontmost {
 namespace {

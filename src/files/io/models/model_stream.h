@@ -10,8 +10,7 @@
 #include <mutex>
 
 #include "frontmost/files.h"
-#include "io/byte_stream.h"
-#include "io/models/model_source.h"
+#include "io/models/reader.h"
 
 namespace frontmost {
 

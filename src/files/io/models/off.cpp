@@ -15,7 +15,7 @@
 
 #include "io/models/coordinates.h"
 #include "io/models/mesh_building.h"
-#include "io/models/text/text_scanner.h"
+#include "io/models/text.h"
 
 namespace frontmost {
 namespace {
@@ -191,9 +191,7 @@ class OffReader {
       color_corners.resize(mesh.triangles.size(), glm::uvec3(std::uint32_t(colors.size())));
       colors.add(color(extra, count));
     }
-    if (polygons.skipped_count() > 0)
-      scene_.warnings.push_back("faces: " + std::to_string(polygons.skipped_count()) +
-                                " with fewer than three corners were passed over");
+    if (polygons.skipped_count() > 0) scene_.warnings.push_back(skipped_faces_warning(polygons.skipped_count()));
     if (colors.size() > 0) mesh.colors = {colors.take_linear(), std::move(color_corners)};
   }
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "io/images/decode.h"
-#include "io/models/model_source.h"
+#include "io/images/formats.h"
+#include "io/models/reader.h"
 #include "scene/texture_lookup.h"
 
 namespace frontmost {

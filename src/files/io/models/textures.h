@@ -11,10 +11,26 @@
 #include <tuple>
 #include <vector>
 
-#include "io/models/budget.h"
 #include "io/models/reader.h"
 
 namespace frontmost {
+
+/// Budget of pixels. A file of 32 kB can hold an image of a gigabyte in one colour, but real images have some 1 to 30
+/// pixels a byte. Each byte of an image file allows 64 pixels; 8192 x 8192 more are free.
+class PixelBudget {
+ public:
+  void add_file(std::uint64_t byte_count) { left_ += pixels_per_byte * byte_count; }
+  /// \returns false, without taking any pixels, if they exceed the budget.
+  [[nodiscard]] bool take(std::uint64_t pixels) {
+    if (pixels > left_) return false;
+    left_ -= pixels;
+    return true;
+  }
+
+ private:
+  static constexpr std::uint64_t pixels_per_byte = 64;
+  std::uint64_t left_ = std::uint64_t(1) << 26;
+};
 
 /// The files of a texture. An empty name means that there is no such file.
 struct TextureParts {

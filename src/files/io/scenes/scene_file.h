@@ -11,7 +11,6 @@
 
 #include <map>
 
-#include "io/models/gltf/json.h"
 #include "io/models/reader.h"
 
 namespace frontmost {
@@ -20,11 +19,7 @@ namespace frontmost {
 struct Replacement {
   std::uint32_t of_all = no_index;             ///< no_index: only the materials in `named` are replaced
   std::map<std::string, std::uint32_t> named;  ///< by the names of the model's materials
-  [[nodiscard]] bool is_none() const { return of_all == no_index && named.empty(); }
   // Compared without <=>, which std::map lacks in some standard libraries (WebAssembly).
-  friend bool operator==(const Replacement& a, const Replacement& b) {
-    return a.of_all == b.of_all && a.named == b.named;
-  }
   friend bool operator<(const Replacement& a, const Replacement& b) {
     return a.of_all != b.of_all ? a.of_all < b.of_all : a.named < b.named;
   }
@@ -54,16 +49,9 @@ struct SceneFile {
 /// \throws Error file_malformed or limit_exceeded: "name: place: reason".
 [[nodiscard]] SceneFile parse_scene_file(std::string_view text, const ModelSource& source);
 
-// Parsers for parts of a scene file.
-
-/// The pose of an object by "pose", or by "translation", "rotation" and "scale"; the identity if all are absent.
-[[nodiscard]] glm::dmat4 read_pose(const gltf::JsonValue& object);
-[[nodiscard]] Material read_look(const gltf::JsonValue& material, const std::string& name);
-
-/// Refuses objects with a repeated key, of which a JSON library silently keeps only the last value.
-void refuse_repeated_keys(std::string_view text, const ModelSource& source);
-/// Refuses unknown keys.
-void check_keys(const gltf::JsonValue& object, std::initializer_list<std::string_view> known);
-[[nodiscard]] bool has(const gltf::JsonValue& object, const char* key);
+/// All objects of a model as one mesh, in their order, in the model's space: relative to its origin, rounded to floats.
+/// If some meshes have normals, colours or texture coordinates, the others get the values that count as missing.
+/// Preconditions: the model is valid and has no curved meshes. O(triangles).
+[[nodiscard]] Mesh one_mesh(const Scene& model);
 
 }  // namespace frontmost

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Services of a compression library for PNG files: deflate in pieces, and two checksums. ISA-L provides them if the
-// build has it (strip_deflater_isal.cpp), else zlib (strip_deflater_zlib.cpp).
+// Services of a compression library for PNG files: deflate in pieces, and two checksums.
 #pragma once
 
 #include <cstddef>

@@ -7,10 +7,15 @@
 //
 // All numbers come from the file and may be anything. So the checks use differences and quotients of checked numbers
 // instead of sums and products, which could overflow. Later reads need no check.
+//
+// Sparse accessors are read like dense ones first; then their replacements overwrite elements. Replacements are sorted
+// by index, so a binary search finds the first one of a range.
 #include "io/models/gltf/data.h"
 
-#include "io/models/gltf/compressed.h"
-#include "io/models/gltf/container.h"
+#include <algorithm>
+#include <limits>
+
+#include "io/binary.h"
 
 namespace frontmost::gltf {
 namespace {
@@ -57,38 +62,137 @@ struct RowLayout {
 /// Whether `count` elements, `stride` apart, lie within `length` bytes from `offset` on. Nothing overflows.
 bool fits(std::uint64_t offset, std::uint64_t count, std::uint64_t stride, std::uint64_t element,
           std::uint64_t length) {
-  // The checks subtract smaller numbers from greater ones, because sums and products of numbers from a file would
-  // overflow.
   if (count == 0) return offset <= length;
   if (offset > length || element > length - offset) return false;
   // The last element needs only its own bytes, not a whole stride, because interleaved arrays end there.
   return count - 1 <= (length - offset - element) / stride;
 }
 
+/// Refuses bytes that are not within their buffer.
+void check_bytes(const JsonValue& json, std::uint64_t offset, std::uint64_t size, const ByteExtent& buffer) {
+  if (!fits(offset, size, 1, 1, buffer.length))
+    json.fail("bytes " + std::to_string(offset) + " + " + std::to_string(size) +
+              " are not within the buffer, which has " + std::to_string(buffer.length));
+}
+
+/// A copy of elements: address and stride of the components, and the target.
+template <class Out>
+struct Copy {
+  const std::byte* from;
+  std::size_t from_stride, count;
+  int components;
+  Out* to;
+  int to_stride;
+};
+
+template <class T, class Out, class Convert>
+void copy_as(const Copy<Out>& copy, Convert convert) {
+  for (std::size_t i = 0; i < copy.count; ++i)
+    for (int c = 0; c < copy.components; ++c)
+      copy.to[i * std::size_t(copy.to_stride) + std::size_t(c)] =
+          convert(read_value<T>(copy.from + i * copy.from_stride + std::size_t(c) * sizeof(T), Endian::little));
+}
+
+/// Calls `use` with a zero of the component's type.
+template <class Use>
+void with_type(Component component, const Use& use) {
+  switch (component) {
+    case Component::i8: return use(std::int8_t(0));
+    case Component::u8: return use(std::uint8_t(0));
+    case Component::i16: return use(std::int16_t(0));
+    case Component::u16: return use(std::uint16_t(0));
+    case Component::u32: return use(std::uint32_t(0));
+    case Component::f32: return use(0.0f);
+  }
+}
+
+/// Integers become floats by the format's equations for normalised values. The format forbids normalised floats and
+/// normalised 32-bit integers; if they occur, their values are not scaled.
+void convert_columns(const Accessor& accessor, const Copy<float>& copy) {
+  with_type(accessor.component, [&](auto zero) {
+    using T = decltype(zero);
+    constexpr auto greatest = static_cast<float>(std::numeric_limits<T>::max());
+    if (accessor.normalized && sizeof(T) < 4)
+      copy_as<T>(copy, [](T value) { return std::max(static_cast<float>(value) / greatest, -1.0f); });
+    else
+      copy_as<T>(copy, [](T value) { return static_cast<float>(value); });
+  });
+}
+
+void convert_columns(const Accessor& accessor, const Copy<std::uint32_t>& copy) {
+  with_type(accessor.component, [&](auto zero) {
+    using T = decltype(zero);
+    if constexpr (std::is_unsigned_v<T>) copy_as<T>(copy, [](T value) { return std::uint32_t(value); });
+  });
+}
+
+/// Copies column by column, because matrices may have padding between columns.
+template <class Out>
+void convert(const Accessor& accessor, const Copy<Out>& elements) {
+  for (int first = 0; first < elements.components; first += accessor.rows) {
+    Copy<Out> column = elements;
+    column.from += std::size_t(first / accessor.rows) * accessor.column_stride;
+    column.to += first;
+    column.components = std::min(accessor.rows, elements.components - first);
+    convert_columns(accessor, column);
+  }
+}
+
+/// The first replacement whose element is not before `element`.
+std::size_t lower_bound(const Sparse& sparse, std::size_t element) {
+  std::size_t low = 0, high = sparse.count;
+  while (low < high) {
+    const std::size_t middle = low + (high - low) / 2;
+    if (sparse.index(middle) < element)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+template <class Out>
+void replace_sparse(const Accessor& accessor, ElementRange range, Copy<Out> copy) {
+  const Sparse& sparse = *accessor.sparse;
+  Out* const first = copy.to;
+  copy.count = 1;
+  for (std::size_t i = lower_bound(sparse, range.first); i < sparse.count; ++i) {
+    const std::size_t element = sparse.index(i) - range.first;
+    if (element >= range.count) return;
+    copy.from = sparse.values.data() + i * sparse.value_stride;
+    copy.to = first + element * std::size_t(copy.to_stride);
+    convert(accessor, copy);
+  }
+}
+
+template <class Out>
+void read(const Accessor& accessor, ElementRange range, int width, Out* out) {
+  const int components = std::min(accessor.components, width);
+  Copy<Out> copy{nullptr, accessor.stride, range.count, components, out, width};
+  if (accessor.bytes.empty()) {
+    for (std::size_t i = 0; i < range.count; ++i)
+      for (int c = 0; c < components; ++c) out[i * std::size_t(width) + std::size_t(c)] = 0;
+  } else {
+    copy.from = accessor.bytes.data() + range.first * accessor.stride;
+    convert(accessor, copy);
+  }
+  if (accessor.sparse) replace_sparse(accessor, range, copy);
+}
+
 }  // namespace
 
 std::size_t size_of(Component component) {
-  switch (component) {
-    case Component::i8:
-    case Component::u8: return 1;
-    case Component::i16:
-    case Component::u16: return 2;
-    case Component::u32:
-    case Component::f32: return 4;
-  }
-  return 4;
+  std::size_t size = 0;
+  with_type(component, [&](auto zero) { size = sizeof zero; });
+  return size;
 }
 
 Data::Data(const JsonValue& root, const Container& container)
     : container_bytes_(container.json.size() + container.binary.size()) {
-  const auto each = [&root](const char* key, auto&& read) {
-    const std::optional<JsonValue> array = root.find(key);
-    for (std::size_t i = 0; array && i < array->size(); ++i) read((*array)[i], i);
-  };
-  each("buffers", [&](const JsonValue& json, std::size_t i) { read_buffer(json, container, i == 0); });
+  root.each("buffers", [&](const JsonValue& json) { read_buffer(json, container); });
   Budget decoded(byte_count());
-  each("bufferViews", [&](const JsonValue& json, std::size_t) { read_view(json, decoded); });
-  each("accessors", [&](const JsonValue& json, std::size_t) { read_accessor(json); });
+  root.each("bufferViews", [&](const JsonValue& json) { read_view(json, decoded); });
+  root.each("accessors", [&](const JsonValue& json) { read_accessor(json); });
 }
 
 std::uint64_t Data::byte_count() const {
@@ -113,7 +217,7 @@ std::uint32_t Data::add(const Accessor& accessor) {
   return std::uint32_t(accessors_.size() - 1);
 }
 
-void Data::read_buffer(const JsonValue& json, const Container& container, bool first) {
+void Data::read_buffer(const JsonValue& json, const Container& container) {
   ByteExtent buffer;
   buffer.length = json.require("byteLength").to_unsigned();
   buffer.present = true;
@@ -123,7 +227,7 @@ void Data::read_buffer(const JsonValue& json, const Container& container, bool f
       buffer.bytes = decoded_.emplace_back(decode_data_uri(text, *uri));
     else
       buffer.bytes = file_bytes(percent_decode(text), json.source());
-  } else if (first && container.is_glb) {
+  } else if (buffers_.empty() && container.is_glb) {
     if (!container.has_binary) json.fail("the GLB has no BIN chunk");
     buffer.bytes = container.binary;
   } else {
@@ -153,11 +257,10 @@ void Data::read_view(const JsonValue& json, Budget& decoded) {
   view.length = json.require("byteLength").to_unsigned();
   view.stride = json.unsigned_or("byteStride", 0);
   view.present = buffer.present;
-  if (!fits(offset, view.length, 1, 1, buffer.length))
-    json.fail("bytes " + std::to_string(offset) + " + " + std::to_string(view.length) +
-              " are not within the buffer, which has " + std::to_string(buffer.length));
+  check_bytes(json, offset, view.length, buffer);
   if (view.present) view.bytes = buffer.bytes.subspan(offset, view.length);
-  const std::optional<JsonValue> compression = find_meshopt(json);
+  std::optional<JsonValue> compression = json.extension("EXT_meshopt_compression");
+  if (!compression) compression = json.extension("KHR_meshopt_compression");
   if (compression && has_meshopt()) {
     view.bytes = decode_view(*compression, view.length, decoded);
     view.present = true;
@@ -171,9 +274,7 @@ Bytes Data::decode_view(const JsonValue& compression, std::uint64_t length, Budg
   const std::uint64_t offset = compression.unsigned_or("byteOffset", 0);
   const std::uint64_t size = compression.require("byteLength").to_unsigned();
   if (!buffer.present) compression.fail(no_contents);
-  if (!fits(offset, size, 1, 1, buffer.length))
-    compression.fail("bytes " + std::to_string(offset) + " + " + std::to_string(size) +
-                     " are not within the buffer, which has " + std::to_string(buffer.length));
+  check_bytes(compression, offset, size, buffer);
   decoded.charge(length, 1, compression.place(), compression.source());
   decoded.charge(size, 1, compression.place(), compression.source());
   return keep(decode_meshopt(compression, buffer.bytes.subspan(offset, size), length));
@@ -227,11 +328,11 @@ void Data::find_elements(const JsonValue& json, Accessor& accessor) const {
 
 /// The bytes of packed elements in the view that `json` names, from the first one on. Empty if the view has no
 /// contents.
-Bytes Data::packed(const JsonValue& json, const Packed& elements) const {
+Bytes Data::packed(const JsonValue& json, std::size_t count, std::size_t stride, std::size_t size) const {
   const ByteExtent& view = views_[json.require("bufferView").to_index(views_.size())];
   const std::uint64_t offset = json.unsigned_or("byteOffset", 0);
-  if (!fits(offset, elements.count, elements.stride, elements.size, view.length))
-    json.fail(std::to_string(elements.count) + " elements from byte " + std::to_string(offset) +
+  if (!fits(offset, count, stride, size, view.length))
+    json.fail(std::to_string(count) + " elements from byte " + std::to_string(offset) +
               " on are not within the buffer view, which has " + std::to_string(view.length) + " bytes");
   return view.present ? view.bytes.subspan(offset) : Bytes();
 }
@@ -247,8 +348,8 @@ void Data::read_sparse(const JsonValue& json, Accessor& accessor, std::size_t va
   if (type != Component::u8 && type != Component::u16 && type != Component::u32)
     indices.fail("componentType is not an unsigned integer");
   sparse.index_type = *type;
-  sparse.indices = packed(indices, {sparse.count, size_of(*type), size_of(*type)});
-  sparse.values = packed(values, {sparse.count, value_stride, accessor.size});
+  sparse.indices = packed(indices, sparse.count, size_of(*type), size_of(*type));
+  sparse.values = packed(values, sparse.count, value_stride, accessor.size);
   if (sparse.count == 0) return;
   if (sparse.indices.empty() || sparse.values.empty()) {
     accessor.unreadable = no_contents;
@@ -264,6 +365,22 @@ void Data::read_sparse(const JsonValue& json, Accessor& accessor, std::size_t va
     least = std::uint64_t(index) + 1;
   }
   accessor.sparse = sparse;
+}
+
+std::uint32_t Sparse::index(std::size_t i) const {
+  std::uint32_t index = 0;
+  with_type(index_type, [&](auto zero) {
+    index = std::uint32_t(read_value<decltype(zero)>(indices.data() + i * sizeof zero, Endian::little));
+  });
+  return index;
+}
+
+void read_floats(const Accessor& accessor, ElementRange range, int width, float* out) {
+  read(accessor, range, width, out);
+}
+
+void read_integers(const Accessor& accessor, ElementRange range, int width, std::uint32_t* out) {
+  read(accessor, range, width, out);
 }
 
 }  // namespace frontmost::gltf

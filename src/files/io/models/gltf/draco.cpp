@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Primitives compressed by Draco.
+// Primitives compressed by Draco; their decoded arrays become accessors of the file.
 //
 // Draco's decoder checks what it reads, but allocates memory by the numbers in its data: a stream of 20 bytes may state
 // a billion triangles, or an attribute of 255 components. So classes derived from its decoders stop before that:
@@ -12,10 +12,28 @@
 
 #include <algorithm>
 
-#include "io/models/gltf/compressed.h"
+#include "io/models/gltf/data.h"
 
 namespace frontmost::gltf {
 namespace {
+
+/// Cost of a compressed byte. Many overlapping buffer views may name the same bytes, so decoding is charged as well: in
+/// all, 4 times the file and 16 MiB may be decoded.
+constexpr std::size_t cost_of_compressed_byte = 16;
+
+/// A decoded array, packed.
+struct DecodedArray {
+  Accessor accessor;  ///< without its bytes
+  std::vector<std::byte> bytes;
+
+  DecodedArray(Component component, int components, std::size_t count) {
+    accessor.component = component;
+    accessor.components = accessor.rows = components;
+    accessor.count = count;
+    accessor.size = accessor.stride = accessor.column_stride = std::size_t(components) * size_of(component);
+    bytes.resize(count * accessor.size);
+  }
+};
 
 // Estimates of the decoder's memory, from its sources: tables with three corners a face, another table for each set of
 // attributes with seams of its own, and values with their quantised copies.
@@ -87,42 +105,34 @@ std::optional<Component> component_of(draco::DataType type) {
 }
 
 /// The values of all vertices. Empty if glTF lacks the type, or if vertices have no value.
-std::optional<DracoAttribute> attribute_of(const draco::PointAttribute& from, std::uint32_t vertex_count) {
+std::optional<DecodedArray> attribute_of(const draco::PointAttribute& from, std::uint32_t vertex_count) {
   const std::optional<Component> component = component_of(from.data_type());
   if (!component) return std::nullopt;
-  const auto size = std::size_t(from.num_components()) * size_of(*component);
-  DracoAttribute to{*component, from.num_components(), std::vector<std::byte>(vertex_count * size)};
+  DecodedArray to(*component, from.num_components(), vertex_count);
+  const std::size_t size = to.accessor.size;
   if (!from.is_mapping_identity() && from.indices_map_size() < vertex_count) return std::nullopt;
   const std::size_t stored = std::min<std::size_t>(from.size(), from.buffer()->data_size() / size);
   for (std::uint32_t i = 0; i < vertex_count; ++i) {
     const draco::AttributeValueIndex value = from.mapped_index(draco::PointIndex(i));
     if (value.value() >= stored) return std::nullopt;
-    std::copy_n(reinterpret_cast<const std::byte*>(from.GetAddress(value)), size, to.values.data() + i * size);
+    std::copy_n(reinterpret_cast<const std::byte*>(from.GetAddress(value)), size, to.bytes.data() + i * size);
   }
   return to;
 }
 
-DracoMesh converted(const draco::Mesh& from) {
-  DracoMesh to;
-  to.vertex_count = from.num_points();
-  static_assert(sizeof(draco::Mesh::Face) == 3 * sizeof(std::uint32_t));
-  to.corners.resize(std::size_t(from.num_faces()) * sizeof(draco::Mesh::Face));
+/// Three vertices for each triangle, 32 bits.
+DecodedArray corners_of(const draco::Mesh& from) {
+  DecodedArray to(Component::u32, 1, 3 * std::size_t(from.num_faces()));
   for (std::uint32_t i = 0; i < from.num_faces(); ++i) {
     const draco::Mesh::Face& face = from.face(draco::FaceIndex(i));
     const std::uint32_t corners[] = {face[0].value(), face[1].value(), face[2].value()};
-    std::copy_n(reinterpret_cast<const std::byte*>(corners), sizeof corners, to.corners.data() + i * sizeof corners);
+    std::copy_n(reinterpret_cast<const std::byte*>(corners), sizeof corners, to.bytes.data() + i * sizeof corners);
   }
-  for (int i = 0; i < from.num_attributes(); ++i)
-    if (auto attribute = attribute_of(*from.attribute(i), from.num_points()))
-      to.attributes.emplace(from.attribute(i)->unique_id(), *std::move(attribute));
   return to;
 }
 
-}  // namespace
-
-bool has_draco() { return true; }
-
-DracoMesh decode_draco(const JsonValue& json, Bytes compressed) {
+/// Decodes a primitive. `json` is the extension.
+void decode_draco(const JsonValue& json, Bytes compressed, draco::Mesh& mesh) {
   const auto* bytes = reinterpret_cast<const char*>(compressed.data());
   draco::DecoderBuffer buffer, ahead;
   buffer.Init(bytes, compressed.size());
@@ -136,7 +146,6 @@ DracoMesh decode_draco(const JsonValue& json, Bytes compressed) {
                     " of Draco's format is not supported, only 2.2");
   const draco::DecoderOptions options;
   WorkingMemory memory(compressed.size());
-  draco::Mesh mesh;
   const draco::Status status = header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING
                                    ? EdgebreakerDecoder(memory).Decode(options, &buffer, &mesh)
                                    : SequentialDecoder(memory).Decode(options, &buffer, &mesh);
@@ -145,7 +154,56 @@ DracoMesh decode_draco(const JsonValue& json, Bytes compressed) {
                                                " bytes of Draco data ask for more memory than " +
                                                "256 MiB and 1024 bytes for each of them");
   if (!status.ok()) json.fail("the Draco data are damaged: " + printable(status.error_msg_string()));
-  return converted(mesh);
+}
+
+}  // namespace
+
+bool has_draco() { return true; }
+
+std::optional<DecodedPrimitive> DracoPrimitives::decode(const JsonValue& primitive) {
+  const std::optional<JsonValue> extension = primitive.extension("KHR_draco_mesh_compression");
+  if (!extension) return std::nullopt;
+  const std::uint64_t mode = primitive.unsigned_or("mode", 4);
+  if (mode != 4 && mode != 5) extension->fail("holds triangles, but the primitive's mode is " + std::to_string(mode));
+  const View& view = view_of(*extension);
+  DecodedPrimitive decoded{view.indices, {}};
+  const JsonValue numbers = extension->require("attributes"), stated = primitive.require("attributes");
+  for (const std::string& name : numbers.keys()) {
+    const JsonValue json = numbers.require(name.c_str());
+    const std::uint32_t number = json.to_index(no_index);
+    const auto attribute = view.attributes.find(number);
+    if (attribute == view.attributes.end()) json.fail("the Draco data have no attribute " + std::to_string(number));
+    Accessor accessor = attribute->second;
+    accessor.normalized = data_.accessor(stated.require(name.c_str()).to_index(data_.accessor_count())).normalized;
+    const std::uint32_t view_id = extension->require("bufferView").to_index(data_.view_count());
+    const auto [known, is_new] = accessors_.try_emplace({view_id, number, accessor.normalized});
+    if (is_new) known->second = data_.add(accessor);
+    decoded.attributes.emplace(name, known->second);
+  }
+  return decoded;
+}
+
+const DracoPrimitives::View& DracoPrimitives::view_of(const JsonValue& extension) {
+  const JsonValue json = extension.require("bufferView");
+  const auto [entry, is_new] = views_.try_emplace(json.to_index(data_.view_count()));
+  View& view = entry->second;
+  if (!is_new) return view;
+  const Bytes compressed = data_.view_bytes(entry->first, extension);
+  budget_.charge(compressed.size(), cost_of_compressed_byte, extension.place(), extension.source());
+  draco::Mesh mesh;
+  decode_draco(extension, compressed, mesh);
+  std::map<std::uint32_t, DecodedArray> attributes;  // by the file's number of the attribute
+  for (int k = 0; k < mesh.num_attributes(); ++k)
+    if (auto attribute = attribute_of(*mesh.attribute(k), mesh.num_points()))
+      attributes.emplace(mesh.attribute(k)->unique_id(), *std::move(attribute));
+  const auto add = [&](DecodedArray array) {
+    budget_.charge(array.bytes.size(), 1, extension.place(), extension.source());
+    array.accessor.bytes = data_.keep(std::move(array.bytes));
+    return array.accessor;
+  };
+  view.indices = data_.add(add(corners_of(mesh)));
+  for (auto& [number, attribute] : attributes) view.attributes.emplace(number, add(std::move(attribute)));
+  return view;
 }
 
 }  // namespace frontmost::gltf

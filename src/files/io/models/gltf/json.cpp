@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A library parses the document; its recursion and memory grow with the text. So depth and number of values are counted
-// first, by a loop over characters that recognizes strings and nothing else.
+// A library parses the document. Its recursion and memory grow with the text, so depth and number of values are counted
+// first.
 #include "io/models/gltf/json.h"
 
 #include <cmath>
@@ -48,8 +48,6 @@ std::string reason_of(const nlohmann::json::exception& error) {
   return printable(start == std::string_view::npos ? what : what.substr(start + 2));
 }
 
-const char* type_name(const nlohmann::json& value) { return value.type_name(); }
-
 }  // namespace
 
 JsonDocument::JsonDocument(std::string_view text, const ModelSource& source) {
@@ -59,22 +57,18 @@ JsonDocument::JsonDocument(std::string_view text, const ModelSource& source) {
   } catch (const nlohmann::json::exception& error) {
     source.fail("JSON", reason_of(error));
   }
-  if (!root_->is_object()) source.fail("JSON", std::string("an object is expected, not ") + type_name(*root_));
+  if (!root_->is_object()) source.fail("JSON", std::string("an object is expected, not ") + root_->type_name());
 }
 
 JsonDocument::~JsonDocument() = default;
 
 void JsonValue::fail(const std::string& reason) const { source_->fail(place_.empty() ? "JSON" : place_, reason); }
 
-JsonValue JsonValue::member(const nlohmann::json& value, const char* key) const {
-  return {value, place_.empty() ? std::string(key) : place_ + "." + key, *source_};
-}
-
 std::optional<JsonValue> JsonValue::find(const char* key) const {
-  if (!value_->is_object()) fail(std::string("an object is expected, not ") + type_name(*value_));
+  if (!value_->is_object()) fail(std::string("an object is expected, not ") + value_->type_name());
   const auto found = value_->find(key);
   if (found == value_->end()) return std::nullopt;
-  return member(*found, key);
+  return JsonValue(*found, place_.empty() ? std::string(key) : place_ + "." + key, *source_);
 }
 
 JsonValue JsonValue::require(const char* key) const {
@@ -88,7 +82,7 @@ std::optional<JsonValue> JsonValue::extension(const char* name) const {
 }
 
 std::vector<std::string> JsonValue::keys() const {
-  if (!value_->is_object()) fail(std::string("an object is expected, not ") + type_name(*value_));
+  if (!value_->is_object()) fail(std::string("an object is expected, not ") + value_->type_name());
   std::vector<std::string> keys;
   for (const auto& member : value_->items()) keys.push_back(member.key());
   return keys;
@@ -99,7 +93,7 @@ bool JsonValue::is_string() const { return value_->is_string(); }
 bool JsonValue::is_number() const { return value_->is_number(); }
 
 std::size_t JsonValue::size() const {
-  if (!value_->is_array()) fail(std::string("an array is expected, not ") + type_name(*value_));
+  if (!value_->is_array()) fail(std::string("an array is expected, not ") + value_->type_name());
   return value_->size();
 }
 
@@ -108,17 +102,17 @@ JsonValue JsonValue::operator[](std::size_t i) const {
 }
 
 bool JsonValue::to_bool() const {
-  if (!value_->is_boolean()) fail(std::string("true or false is expected, not ") + type_name(*value_));
+  if (!value_->is_boolean()) fail(std::string("true or false is expected, not ") + value_->type_name());
   return value_->get<bool>();
 }
 
 double JsonValue::to_number() const {
-  if (!value_->is_number()) fail(std::string("a number is expected, not ") + type_name(*value_));
+  if (!value_->is_number()) fail(std::string("a number is expected, not ") + value_->type_name());
   return value_->get<double>();
 }
 
 std::string JsonValue::to_string() const {
-  if (!value_->is_string()) fail(std::string("a string is expected, not ") + type_name(*value_));
+  if (!value_->is_string()) fail(std::string("a string is expected, not ") + value_->type_name());
   return value_->get<std::string>();
 }
 
@@ -143,31 +137,14 @@ void JsonValue::to_numbers(std::span<double> out) const {
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = (*this)[i].to_number();
 }
 
-bool JsonValue::bool_or(const char* key, bool absent) const {
-  const std::optional<JsonValue> found = find(key);
-  return found ? found->to_bool() : absent;
-}
-
-double JsonValue::number_or(const char* key, double absent) const {
-  const std::optional<JsonValue> found = find(key);
-  return found ? found->to_number() : absent;
-}
-
-std::string JsonValue::string_or_empty(const char* key) const {
-  const std::optional<JsonValue> found = find(key);
-  return found ? found->to_string() : std::string();
-}
-
-std::string JsonValue::name() const { return name_of(string_or_empty("name")); }
-
-std::uint64_t JsonValue::unsigned_or(const char* key, std::uint64_t absent) const {
-  const std::optional<JsonValue> found = find(key);
-  return found ? found->to_unsigned() : absent;
-}
-
 std::uint32_t JsonValue::index_or_none(const char* key, std::size_t count) const {
   const std::optional<JsonValue> found = find(key);
   return found ? found->to_index(count) : no_index;
+}
+
+std::size_t JsonValue::count(const char* key) const {
+  const std::optional<JsonValue> array = find(key);
+  return array ? array->size() : 0;
 }
 
 bool JsonValue::read_numbers(const char* key, std::span<double> out) const {

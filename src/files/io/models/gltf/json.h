@@ -3,8 +3,6 @@
 // "meshes[2].primitives[0].attributes.POSITION". Unexpected contents throw an Error that names the place.
 //
 //   root["meshes"] --[2]--> "meshes[2]" --require("primitives")--> "meshes[2].primitives" --> ...
-//
-// Each accessor returns the requested value or throws, so readers have no code for wrong files.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/models/model_source.h"
+#include "io/models/reader.h"
 
 namespace frontmost::gltf {
 
@@ -67,20 +65,44 @@ class JsonValue {
   void to_numbers(std::span<double> out) const;
 
   // Members with a default value if absent.
-  [[nodiscard]] bool bool_or(const char* key, bool absent) const;
-  [[nodiscard]] double number_or(const char* key, double absent) const;
-  [[nodiscard]] std::string string_or_empty(const char* key) const;
+  [[nodiscard]] bool bool_or(const char* key, bool absent) const { return read_or(key, absent, &JsonValue::to_bool); }
+  [[nodiscard]] double number_or(const char* key, double absent) const {
+    return read_or(key, absent, &JsonValue::to_number);
+  }
+  [[nodiscard]] std::string string_or_empty(const char* key) const { return read_or(key, {}, &JsonValue::to_string); }
   /// The member "name"; empty if absent.
-  [[nodiscard]] std::string name() const;
-  [[nodiscard]] std::uint64_t unsigned_or(const char* key, std::uint64_t absent) const;
+  [[nodiscard]] std::string name() const { return name_of(string_or_empty("name")); }
+  [[nodiscard]] std::uint64_t unsigned_or(const char* key, std::uint64_t absent) const {
+    return read_or(key, absent, &JsonValue::to_unsigned);
+  }
   [[nodiscard]] std::uint32_t index_or_none(const char* key, std::size_t count) const;
   /// \returns false, and leaves `out` unchanged, if the member is absent.
   bool read_numbers(const char* key, std::span<double> out) const;
+  /// Reads a vector of floats or doubles. Leaves `out` unchanged if the member is absent.
+  template <class Vector>
+  void read_vector(const char* key, Vector& out) const {
+    double numbers[std::size_t(Vector::length())];
+    if (!read_numbers(key, numbers)) return;
+    for (int k = 0; k < Vector::length(); ++k) out[k] = typename Vector::value_type(numbers[k]);
+  }
+
+  // Members that are arrays; an absent one counts as empty.
+  [[nodiscard]] std::size_t count(const char* key) const;
+  /// Calls read(JsonValue) with each element.
+  template <class Read>
+  void each(const char* key, const Read& read) const {
+    const std::optional<JsonValue> array = find(key);
+    for (std::size_t i = 0; array && i < array->size(); ++i) read((*array)[i]);
+  }
 
  private:
   JsonValue(const nlohmann::json& value, std::string place, const ModelSource& source)
       : value_(&value), place_(std::move(place)), source_(&source) {}
-  [[nodiscard]] JsonValue member(const nlohmann::json& value, const char* key) const;
+  template <class T>
+  [[nodiscard]] T read_or(const char* key, std::type_identity_t<T> absent, T (JsonValue::*read)() const) const {
+    const std::optional<JsonValue> found = find(key);
+    return found ? ((*found).*read)() : absent;
+  }
 
   const nlohmann::json* value_;
   std::string place_;

@@ -36,32 +36,8 @@ class TextureTable {
     bool nearest = false;
     auto operator<=>(const Look&) const = default;
   };
-  /// An encoded image, in memory or as a file's name.
-  struct Encoded {
-    std::string place, name;
-    Bytes bytes;
-    std::vector<std::byte> decoded_uri;
-    std::string path;  ///< file beside the model; empty: `bytes` holds the image
-  };
-  /// An image that textures use.
-  struct Job {
-    std::size_t uses = 0;  ///< textures with different samplers, each of which gets the pixels
-    Encoded encoded;
-    Texture texture;
-    std::string problem;  ///< the reason if it cannot be decoded
-  };
-  struct Jobs {
-    std::map<std::uint32_t, Job> by_image;
-    std::map<std::uint32_t, std::uint32_t> first_alike;  ///< for each image, the first one with the same bytes
-  };
-
+  class ImageLoader;
   void read_sampler(const JsonValue& texture, Look& look) const;
-  [[nodiscard]] Encoded find_image(std::uint32_t image) const;
-  template <class Use>
-  auto with_bytes(const Encoded& encoded, Use use) const;
-  [[nodiscard]] Jobs find_images() const;
-  void check_sizes(Jobs& jobs) const;
-  void decode(Jobs& jobs) const;
 
   const JsonValue& root_;
   const Data& data_;
@@ -71,25 +47,6 @@ class TextureTable {
 
 /// Stands for a texture that cannot be used; TextureTable::load() removes its uses.
 inline constexpr std::uint32_t lost_texture = no_index - 1;
-
-/// Reads uses of textures and notes which sets of coordinates they need.
-class UseReader {
- public:
-  UseReader(TextureTable& textures, std::vector<std::string>& warnings) : textures_(textures), warnings_(warnings) {}
-
-  /// The use in the member `key` of `json`; unset if absent. If it cannot be used, lost_texture with a warning.
-  [[nodiscard]] TextureUse read(const JsonValue& json, const char* key);
-  /// Bit k is set if set k is used.
-  [[nodiscard]] std::uint32_t sets() const { return sets_; }
-
- private:
-  TextureTable& textures_;
-  std::vector<std::string>& warnings_;
-  std::uint32_t sets_ = 0;
-};
-
-/// Reads the layers that a material's extensions describe.
-void read_layers(const JsonValue& json, UseReader& uses, Material& material);
 
 struct MaterialList {
   std::vector<Material> materials;

@@ -3,7 +3,7 @@
 // and strides are checked here, and so is whether the bytes can hold the stated amount.
 #include <meshoptimizer.h>
 
-#include "io/models/gltf/compressed.h"
+#include "io/models/gltf/data.h"
 
 namespace frontmost::gltf {
 namespace {

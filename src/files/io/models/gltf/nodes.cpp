@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tree of nodes. A file lists the children of nodes and may be inconsistent: two parents, loops, missing children.
-// Each of these is an error. The remaining forest is walked without recursion, because it may be a million levels deep.
+// The tree of nodes, and the meshes that they place. A file lists the children of nodes and may be inconsistent: two
+// parents, loops, missing children. Each of these is an error. The remaining forest is walked without recursion,
+// because it may be a million levels deep.
+//
+//   node with a mesh    --not posed--------> an instance of the mesh, with the node's transform
+//                      --morph, skin------> a mesh of its own, read again in that pose; equal poses are read once
+//                      --instancing-------> an instance for each copy
+//
+// Skinned vertices are in world space already: the format ignores the transform of their node.
 #include "io/models/gltf/nodes.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "base/parallel.h"
+#include "scene/origin.h"
 
 namespace frontmost::gltf {
 namespace {
@@ -14,17 +24,10 @@ struct Counts {
   std::size_t nodes, meshes, skins, cameras, lights;
 };
 
-std::size_t size_or_zero(const JsonValue& root, const char* key) {
-  const std::optional<JsonValue> array = root.find(key);
-  return array ? array->size() : 0;
-}
-
 glm::dmat4 read_transform(const JsonValue& json) {
-  double m[16], t[3] = {0, 0, 0}, r[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
   // The format forbids nodes with both; exporters that write both mean the matrix.
-  if (json.read_numbers("matrix", m)) {
-    glm::dmat4 matrix;
-    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = m[i];
+  glm::dmat4 matrix;
+  if (json.read_numbers("matrix", {&matrix[0][0], 16})) {
     constexpr double tolerance = 1e-6;  // exporters that use floats
     for (int column = 0; column < 4; ++column) {
       const double expected = column == 3 ? 1 : 0;
@@ -33,10 +36,12 @@ glm::dmat4 read_transform(const JsonValue& json) {
     }
     return matrix;
   }
-  json.read_numbers("translation", t);
-  json.read_numbers("rotation", r);
-  json.read_numbers("scale", s);
-  return compose({t[0], t[1], t[2]}, {r[0], r[1], r[2], r[3]}, {s[0], s[1], s[2]});
+  glm::dvec3 translation(0), scale(1);
+  glm::dvec4 rotation(0, 0, 0, 1);
+  json.read_vector("translation", translation);
+  json.read_vector("rotation", rotation);
+  json.read_vector("scale", scale);
+  return compose(translation, rotation, scale);
 }
 
 std::uint32_t copy_attribute(const JsonValue& attributes, const char* key, int components, const Data& data,
@@ -78,18 +83,13 @@ Node read_node(const JsonValue& json, const Counts& counts, const Data& data) {
   node.copies = read_copies(json, data);
   if (const auto visibility = json.extension("KHR_node_visibility"))
     node.is_hidden = !visibility->bool_or("visible", true);
-  const std::optional<JsonValue> children = json.find("children");
-  for (std::size_t i = 0; children && i < children->size(); ++i)
-    node.children.push_back((*children)[i].to_index(counts.nodes));
-  if (const std::optional<JsonValue> weights = json.find("weights")) {
-    node.weights.resize(weights->size());
-    weights->to_numbers(node.weights);
-  }
+  json.each("children", [&](const JsonValue& child) { node.children.push_back(child.to_index(counts.nodes)); });
+  node.weights.resize(json.count("weights"));
+  json.read_numbers("weights", node.weights);
   return node;
 }
 
-// Each node has at most one parent, so the graph is a forest with unique world transforms. A loop cannot be reached
-// from a root, so finding loops needs no search of its own.
+/// Gives each node its parent. With at most one parent each, the graph is a forest with unique world transforms.
 void find_parents(std::vector<Node>& nodes, const ModelSource& source) {
   for (std::size_t i = 0; i < nodes.size(); ++i)
     for (const std::uint32_t child : nodes[i].children) {
@@ -150,14 +150,180 @@ std::vector<std::uint32_t> place_in_world(std::vector<Node>& nodes, const ModelS
 /// Start nodes of the shown scene. A start node with a parent keeps the parent's transform.
 std::vector<std::uint32_t> scene_starts(const JsonValue& root, std::size_t node_count,
                                         std::vector<std::uint32_t> roots) {
-  const std::optional<JsonValue> scenes = root.find("scenes");
-  const std::uint32_t chosen = root.index_or_none("scene", scenes ? scenes->size() : 0);
-  if (!scenes || scenes->size() == 0) return roots;
+  const std::size_t scene_count = root.count("scenes");
+  const std::uint32_t chosen = root.index_or_none("scene", scene_count);
+  if (scene_count == 0) return roots;
   std::vector<std::uint32_t> starts;
-  const std::optional<JsonValue> nodes = (*scenes)[chosen == no_index ? 0 : chosen].find("nodes");
-  for (std::size_t i = 0; nodes && i < nodes->size(); ++i) starts.push_back((*nodes)[i].to_index(node_count));
+  const JsonValue scene = root.require("scenes")[chosen == no_index ? 0 : chosen];
+  scene.each("nodes", [&](const JsonValue& node) { starts.push_back(node.to_index(node_count)); });
   return starts;
 }
+
+/// Matrices world_from_joint * inverse bind matrix for the joints of a skin, in rest pose.
+using Joints = std::vector<glm::dmat4>;
+
+/// Skinned vertices are stored in world space; if they lie far from zero, they are stored relative to an origin near
+/// them.
+struct Skin {
+  Joints joints;
+  glm::dvec3 origin{0};
+
+  explicit Skin(Joints in_world) : joints(std::move(in_world)) {
+    OriginSearch search;
+    for (const glm::dmat4& joint : joints) search.include(glm::dvec3(joint[3]));
+    origin = search.origin();
+    for (glm::dmat4& joint : joints) joint[3] -= glm::dvec4(origin, 0);
+  }
+  [[nodiscard]] glm::dmat4 world_from_mesh() const {
+    glm::dmat4 moved(1.0);
+    moved[3] = glm::dvec4(origin, 1);
+    return moved;
+  }
+};
+
+Joints read_joints(const JsonValue& json, const Data& data, const std::vector<Node>& nodes) {
+  Joints skin;
+  const JsonValue joints = json.require("joints");
+  for (std::size_t i = 0; i < joints.size(); ++i) skin.push_back(nodes[joints[i].to_index(nodes.size())].world);
+  if (skin.empty()) joints.fail("a skin without joints");
+  const std::optional<JsonValue> bind = json.find("inverseBindMatrices");
+  if (!bind) return skin;
+  const Accessor& accessor = data.accessor(data.readable_accessor(*bind));
+  if (accessor.components != 16 || accessor.component != Component::f32)
+    bind->fail("the accessor is not of float MAT4");
+  if (accessor.count < skin.size())
+    bind->fail(std::to_string(accessor.count) + " matrices for " + std::to_string(skin.size()) + " joints");
+  std::vector<glm::mat4> matrices(skin.size());
+  read_floats(accessor, {0, matrices.size()}, 16, &matrices[0][0][0]);
+  for (std::size_t i = 0; i < skin.size(); ++i) skin[i] *= glm::dmat4(matrices[i]);
+  return skin;
+}
+
+std::vector<Skin> read_skins(const JsonValue& root, const Data& data, const std::vector<Node>& nodes) {
+  std::vector<Skin> skins;
+  root.each("skins", [&](const JsonValue& json) { skins.emplace_back(read_joints(json, data, nodes)); });
+  return skins;
+}
+
+/// Reads each mesh once for each of its poses.
+class PosedMeshes {
+ public:
+  PosedMeshes(const JsonValue& root, const Data& data, const std::vector<MeshPlan>& plans, const NodeTree& tree,
+              Scene& scene)
+      : source_(root.source()),
+        data_(data),
+        plans_(plans),
+        tree_(tree),
+        scene_(scene),
+        budget_(data.byte_count()),
+        skins_(read_skins(root, data, tree.nodes)),
+        is_read_(plans.size()) {}
+
+  void place() {
+    scene_.meshes.resize(plans_.size());
+    for (const std::uint32_t id : tree_.shown) {
+      const Node& node = tree_.nodes[id];
+      if (node.mesh == no_index) continue;
+      if (node.is_hidden)
+        scene_.source.hidden.push_back(name_of_node(node));
+      else
+        place_node(node);
+    }
+    for (std::uint32_t i = 0; i < plans_.size(); ++i)
+      // Meshes that no node shows are read, too: they keep the file's numbers, and a user may place them.
+      if (!is_read_[i]) (void)read(i, {plans_[i].weights});
+  }
+
+ private:
+  using Key = std::tuple<std::uint32_t, std::uint32_t, std::vector<double>>;
+
+  [[nodiscard]] const std::string& name_of_node(const Node& node) const {
+    const std::string& name = plans_[node.mesh].name;
+    return !node.name.empty() ? node.name : !name.empty() ? name : node.place;
+  }
+
+  void place_node(const Node& node) {
+    const MeshPlan& plan = plans_[node.mesh];
+    if (plan.primitives.empty()) return;
+    // A skin places its mesh in the world, so the node's transform is ignored.
+    const bool skinned = node.skin != no_index && plan.has_joints;
+    Instance instance;
+    instance.name = name_of_node(node);
+    instance.mesh = posed_mesh(node, skinned);
+    const std::uint64_t copies = node.copies ? node.copies->count : 1;
+    budget_.charge_placed(copies * scene_.meshes[instance.mesh].triangles.size(), node.place, source_);
+    instance.world_from_mesh = skinned ? skins_[node.skin].world_from_mesh() : node.world;
+    if (node.copies)
+      place_copies(node, instance);
+    else
+      scene_.instances.push_back(std::move(instance));
+  }
+
+  std::uint32_t posed_mesh(const Node& node, bool skinned) {
+    const MeshPlan& plan = plans_[node.mesh];
+    if (!node.weights.empty() && node.weights.size() != plan.target_count)
+      source_.fail(node.place + ".weights", std::to_string(node.weights.size()) + " weights for " +
+                                                std::to_string(plan.target_count) + " morph targets");
+    VertexPose pose{node.weights.empty() ? plan.weights : node.weights};
+    // Each node stores and compares weights, even those that come from its mesh.
+    budget_.charge(pose.weights.size(), sizeof(double), node.place, source_);
+    if (skinned) pose.joints = skins_[node.skin].joints, pose.origin = skins_[node.skin].origin;
+    // The skin's number stands for its joints in the key, because comparing matrices would cost more than posing.
+    const Key key{node.mesh, skinned ? node.skin : no_index, pose.weights};
+    const auto known = posed_.find(key);
+    if (known != posed_.end()) return known->second;
+    const std::uint32_t number = read(node.mesh, pose);
+    posed_.emplace(key, number);
+    return number;
+  }
+
+  std::uint32_t read(std::uint32_t mesh, const VertexPose& pose) {
+    check_cancelled(source_.execution());
+    // Warnings about a mesh are kept once, not for each of its poses.
+    std::vector<std::string> repeated;
+    Mesh posed = read_mesh(plans_[mesh], pose, data_, budget_, source_, is_read_[mesh] ? repeated : scene_.warnings);
+    posed.origin = pose.origin;
+    std::uint32_t number = mesh;
+    if (is_read_[mesh]) {
+      number = std::uint32_t(scene_.meshes.size());
+      scene_.meshes.emplace_back();
+    }
+    is_read_[mesh] = true;
+    scene_.meshes[number] = std::move(posed);
+    return number;
+  }
+
+  /// EXT_mesh_gpu_instancing: adds one instance for each element of its attributes.
+  void place_copies(const Node& node, const Instance& first) {
+    const InstancingAccessors& copies = *node.copies;
+    budget_.charge(copies.count, sizeof(Instance) + first.name.size() + 64, node.place, source_);
+    const std::vector<glm::vec4> translations = elements(copies.translation, copies.count, glm::vec4(0));
+    const std::vector<glm::vec4> rotations = elements(copies.rotation, copies.count, glm::vec4(0, 0, 0, 1));
+    const std::vector<glm::vec4> scales = elements(copies.scale, copies.count, glm::vec4(1));
+    for (std::size_t i = 0; i < copies.count; ++i) {
+      Instance& copy = scene_.instances.emplace_back(first);
+      copy.name.append("[").append(std::to_string(i)).append("]");
+      copy.world_from_mesh =
+          first.world_from_mesh * compose(glm::dvec3(translations[i]), glm::dvec4(rotations[i]), glm::dvec3(scales[i]));
+    }
+  }
+
+  [[nodiscard]] std::vector<glm::vec4> elements(std::uint32_t accessor, std::size_t count, glm::vec4 absent) const {
+    std::vector<glm::vec4> values(count, absent);
+    if (accessor != no_index && count != 0) read_floats(data_.accessor(accessor), {0, count}, 4, &values[0][0]);
+    return values;
+  }
+
+  const ModelSource& source_;
+  const Data& data_;
+  const std::vector<MeshPlan>& plans_;
+  const NodeTree& tree_;
+  Scene& scene_;
+  Budget budget_;
+  std::vector<Skin> skins_;
+  std::vector<bool> is_read_;
+  std::map<Key, std::uint32_t> posed_;
+};
 
 }  // namespace
 
@@ -176,11 +342,10 @@ glm::dmat4 compose(const glm::dvec3& translation, const glm::dvec4& rotation, co
 
 NodeTree read_nodes(const JsonValue& root, const Data& data, std::vector<std::string>& warnings) {
   NodeTree tree;
-  const std::optional<JsonValue> array = root.find("nodes");
   const std::optional<JsonValue> lights = find_lights(root);
-  const Counts counts{array ? array->size() : 0, size_or_zero(root, "meshes"), size_or_zero(root, "skins"),
-                      size_or_zero(root, "cameras"), lights ? lights->size() : 0};
-  for (std::size_t i = 0; i < counts.nodes; ++i) tree.nodes.push_back(read_node((*array)[i], counts, data));
+  const Counts counts{root.count("nodes"), root.count("meshes"), root.count("skins"), root.count("cameras"),
+                      lights ? lights->size() : 0};
+  root.each("nodes", [&](const JsonValue& json) { tree.nodes.push_back(read_node(json, counts, data)); });
   find_parents(tree.nodes, root.source());
   std::vector<std::uint32_t> roots = place_in_world(tree.nodes, root.source());
   tree.shown = walk(tree.nodes, scene_starts(root, counts.nodes, std::move(roots)));
@@ -190,6 +355,11 @@ NodeTree read_nodes(const JsonValue& root, const Data& data, std::vector<std::st
     warnings.push_back("KHR_node_visibility: the file hides " + std::to_string(hidden) + " of " +
                        std::to_string(tree.shown.size()) + " nodes");
   return tree;
+}
+
+void place_meshes(const JsonValue& root, const Data& data, const std::vector<MeshPlan>& plans, const NodeTree& tree,
+                  Scene& scene) {
+  PosedMeshes(root, data, plans, tree, scene).place();
 }
 
 }  // namespace frontmost::gltf

@@ -4,12 +4,10 @@
 //   mesh --> primitives --> attributes --> accessors: number of components, type, equal counts
 //                       --> indices, morph targets, joints and weights
 //
-// Primitives of points and lines are checked too, although they are not drawn, so that errors in a file are always
-// found. The resulting MeshPlan can be read without further checks.
+// The resulting MeshPlan can be read without further checks.
 #include <algorithm>
 
-#include "io/models/gltf/compressed.h"
-#include "io/models/gltf/meshes.h"
+#include "io/models/gltf/nodes.h"
 
 namespace frontmost::gltf {
 namespace {
@@ -82,10 +80,8 @@ class Planner {
     MeshPlan plan;
     plan.place = json_.place();
     plan.name = json_.name();
-    if (const auto weights = json_.find("weights")) {
-      plan.weights.resize(weights->size());
-      weights->to_numbers(plan.weights);
-    }
+    plan.weights.resize(json_.count("weights"));
+    json_.read_numbers("weights", plan.weights);
     const JsonValue primitives = json_.require("primitives");
     std::optional<std::size_t> target_count;
     for (std::size_t i = 0; i < primitives.size(); ++i) {
@@ -164,14 +160,12 @@ class Planner {
       vertices.weights.push_back(weights);
     }
     primitive.vertex_count = reader.count();
-    const std::optional<JsonValue> targets = json.find("targets");
-    for (std::size_t i = 0; targets && i < targets->size(); ++i) {
-      const JsonValue target = (*targets)[i];
+    json.each("targets", [&](const JsonValue& target) {
       AttributeReader target_reader(target, data_);
       // Displacements are read by the same ranges as the vertices, so their counts must agree.
       target_reader.expect_count(primitive.vertex_count);
       vertices.targets.push_back(target_reader.read_sources());
-    }
+    });
   }
 
   std::uint32_t read_indices(const JsonValue& json) const {
@@ -196,11 +190,9 @@ std::vector<MeshPlan> plan_meshes(const JsonValue& root, Data& data, const Mater
                                   std::vector<std::string>& warnings) {
   DracoPrimitives compressed(data);
   std::vector<MeshPlan> plans;
-  const std::optional<JsonValue> array = root.find("meshes");
-  for (std::size_t i = 0; array && i < array->size(); ++i) {
-    const JsonValue json = (*array)[i];
+  root.each("meshes", [&](const JsonValue& json) {
     plans.push_back(Planner(json, data, compressed, materials, warnings).plan());
-  }
+  });
   return plans;
 }
 

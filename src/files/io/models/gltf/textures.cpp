@@ -6,9 +6,8 @@
 #include "io/models/textures.h"
 
 #include "base/parallel.h"
-#include "io/images/decode.h"
-#include "io/models/budget.h"
-#include "io/models/gltf/container.h"
+#include "io/images/formats.h"
+#include "io/models/gltf/data.h"
 #include "io/models/gltf/materials.h"
 
 namespace frontmost::gltf {
@@ -66,11 +65,9 @@ void do_without(const TextureUse* lost, Material& m, const std::string& who, std
 }  // namespace
 
 std::uint32_t TextureTable::intern(const JsonValue& index, std::vector<std::string>& warnings) {
-  const std::optional<JsonValue> textures = root_.find("textures");
-  const std::uint32_t id = index.to_index(textures ? textures->size() : 0);
-  const JsonValue texture = (*textures)[id];
-  const std::optional<JsonValue> images = root_.find("images");
-  const std::size_t image_count = images ? images->size() : 0;
+  const std::uint32_t id = index.to_index(root_.count("textures"));
+  const JsonValue texture = root_.require("textures")[id];
+  const std::size_t image_count = root_.count("images");
   Look look;
   // WebP has precedence: the texture's plain source is for programs without the extension.
   if (const auto webp = texture.extension("EXT_texture_webp"); webp && decodes_webp(root_.source().image_decoder()))
@@ -89,126 +86,156 @@ std::uint32_t TextureTable::intern(const JsonValue& index, std::vector<std::stri
 }
 
 void TextureTable::read_sampler(const JsonValue& texture, Look& look) const {
-  const std::optional<JsonValue> samplers = root_.find("samplers");
-  const std::uint32_t id = texture.index_or_none("sampler", samplers ? samplers->size() : 0);
+  const std::uint32_t id = texture.index_or_none("sampler", root_.count("samplers"));
   if (id == no_index) return;
-  const JsonValue sampler = (*samplers)[id];
+  const JsonValue sampler = root_.require("samplers")[id];
   look.wrap_u = wrap_of(sampler.unsigned_or("wrapS", repeat_code));
   look.wrap_v = wrap_of(sampler.unsigned_or("wrapT", repeat_code));
   look.nearest = sampler.unsigned_or("magFilter", 0) == nearest_code;
 }
 
-TextureTable::Encoded TextureTable::find_image(std::uint32_t id) const {
-  const JsonValue image = root_.require("images")[id];
-  Encoded encoded;
-  encoded.name = image.name();
-  encoded.place = image.place();
-  const std::uint32_t view = image.index_or_none("bufferView", data_.view_count());
-  if (view != no_index) {
-    encoded.bytes = data_.view_bytes(view, image);
+/// Finds and decodes the images that textures use.
+class TextureTable::ImageLoader {
+  /// An encoded image, in memory or as a file's name.
+  struct Encoded {
+    std::string place, name;
+    Bytes bytes;
+    std::vector<std::byte> decoded_uri;
+    std::string path;  ///< file beside the model; empty: `bytes` holds the image
+  };
+
+  [[nodiscard]] Encoded find_image(std::uint32_t id) const {
+    const JsonValue image = root_.require("images")[id];
+    Encoded encoded;
+    encoded.name = image.name();
+    encoded.place = image.place();
+    const std::uint32_t view = image.index_or_none("bufferView", data_.view_count());
+    if (view != no_index) {
+      encoded.bytes = data_.view_bytes(view, image);
+      return encoded;
+    }
+    const JsonValue uri = image.require("uri");
+    const std::string text = uri.to_string();
+    if (is_data_uri(text)) {
+      encoded.decoded_uri = decode_data_uri(text, uri);
+      encoded.bytes = encoded.decoded_uri;
+      return encoded;
+    }
+    encoded.path = percent_decode(text);
+    encoded.place += " (" + printable(encoded.path) + ")";
+    if (encoded.name.empty()) encoded.name = encoded.path;
     return encoded;
   }
-  const JsonValue uri = image.require("uri");
-  const std::string text = uri.to_string();
-  if (is_data_uri(text)) {
-    encoded.decoded_uri = decode_data_uri(text, uri);
-    encoded.bytes = encoded.decoded_uri;
-    return encoded;
+
+  template <class Use>
+  auto with_bytes(const Encoded& encoded, Use use) const {
+    if (encoded.path.empty()) return use(encoded.bytes, encoded.place);
+    // The file is open only while it is used, because a thousand images may name the same file.
+    const InputFile file = root_.source().open(encoded.path, max_image_bytes);
+    return use(file.bytes(), encoded.place);
   }
-  encoded.path = percent_decode(text);
-  encoded.place += " (" + printable(encoded.path) + ")";
-  if (encoded.name.empty()) encoded.name = encoded.path;
-  return encoded;
-}
 
-template <class Use>
-auto TextureTable::with_bytes(const Encoded& encoded, Use use) const {
-  if (encoded.path.empty()) return use(encoded.bytes, encoded.place);
-  // The file is open only while it is used, because a thousand images may name the same file.
-  const InputFile file = root_.source().open(encoded.path, max_image_bytes);
-  return use(file.bytes(), encoded.place);
-}
+ public:
+  /// An image that textures use.
+  struct Job {
+    std::size_t uses = 0;  ///< textures with different samplers, each of which gets the pixels
+    Encoded encoded;
+    Texture texture;
+    std::string problem;  ///< the reason if it cannot be decoded
+  };
 
-/// Textures that lie in the same place share an image: some exporters write an image for each material, and hostile
-/// files write thousands.
-TextureTable::Jobs TextureTable::find_images() const {
-  Jobs jobs;
-  std::map<std::tuple<const std::byte*, std::size_t, std::string>, std::uint32_t> places;
-  for (const Look& look : looks_) {
-    const auto [alike, is_new] = jobs.first_alike.emplace(look.image, look.image);
-    if (is_new) {
-      Job job;
+  ImageLoader(const JsonValue& root, const Data& data) : root_(root), data_(data) {}
+
+  /// Textures that lie in the same place share an image: some exporters write an image for each material, and hostile
+  /// files write thousands.
+  void find(const std::vector<Look>& looks) {
+    std::map<std::tuple<const std::byte*, std::size_t, std::string>, std::uint32_t> places;
+    for (const Look& look : looks) {
+      const auto [alike, is_new] = first_alike_.emplace(look.image, look.image);
+      if (is_new) {
+        Job job;
+        try {
+          job.encoded = find_image(look.image);
+          const auto [place, is_first] =
+              places.try_emplace({job.encoded.bytes.data(), job.encoded.bytes.size(), job.encoded.path}, look.image);
+          alike->second = place->second;
+        } catch (const Error& error) {
+          job.problem = root_.source().without_name(error);
+        }
+        if (alike->second == look.image) by_image_.emplace(look.image, std::move(job));
+      }
+      ++by_image_.at(alike->second).uses;
+    }
+  }
+
+  /// Reads the images' headers. Images that exceed the budget get a problem, before memory is allocated.
+  void check_sizes() {
+    // Buffer views may overlap, and scanning an image's chunks takes time, so each byte may belong to a few images
+    // only.
+    std::uint64_t encoded_left = (std::uint64_t(1) << 24) + 4 * data_.byte_count();
+    PixelBudget budget;
+    budget.add_file(data_.byte_count());
+    for (auto& entry : by_image_) {
+      Job& job = entry.second;  // a named reference, because lambdas may not capture structured bindings
+      if (!job.problem.empty()) continue;
+      const std::string& place = job.encoded.place;
       try {
-        job.encoded = find_image(look.image);
-        const auto [place, is_first] =
-            places.try_emplace({job.encoded.bytes.data(), job.encoded.bytes.size(), job.encoded.path}, look.image);
-        alike->second = place->second;
+        if (job.encoded.bytes.size() > encoded_left)
+          throw Error(ErrorCode::limit_exceeded, place, "all images together are larger than the file");
+        encoded_left -= job.encoded.bytes.size();
+        const auto pixel_count = [&](Bytes bytes, const std::string& name) {
+          if (!job.encoded.path.empty()) budget.add_file(bytes.size());
+          const glm::ivec2 size = texture_size(bytes, name, root_.source().image_decoder());
+          return std::uint64_t(size.x) * std::uint64_t(size.y);
+        };
+        if (!budget.take(job.uses * with_bytes(job.encoded, pixel_count)))
+          throw Error(ErrorCode::limit_exceeded, place, "too many pixels in all images together");
       } catch (const Error& error) {
         job.problem = root_.source().without_name(error);
       }
-      if (alike->second == look.image) jobs.by_image.emplace(look.image, std::move(job));
-    }
-    ++jobs.by_image.at(alike->second).uses;
-  }
-  return jobs;
-}
-
-/// Reads the images' headers. Images that exceed the budget get a problem, before memory is allocated.
-void TextureTable::check_sizes(Jobs& jobs) const {
-  // Buffer views may overlap, and scanning an image's chunks takes time, so each byte may belong to a few images only.
-  std::uint64_t encoded_left = (std::uint64_t(1) << 24) + 4 * data_.byte_count();
-  PixelBudget budget;
-  budget.add_file(data_.byte_count());
-  for (auto& entry : jobs.by_image) {
-    Job& job = entry.second;  // a named reference, because lambdas may not capture structured bindings
-    if (!job.problem.empty()) continue;
-    const std::string& place = job.encoded.place;
-    try {
-      if (job.encoded.bytes.size() > encoded_left)
-        throw Error(ErrorCode::limit_exceeded, place, "all images together are larger than the file");
-      encoded_left -= job.encoded.bytes.size();
-      const auto pixel_count = [&](Bytes bytes, const std::string& name) {
-        if (!job.encoded.path.empty()) budget.add_file(bytes.size());
-        const glm::ivec2 size = texture_size(bytes, name, root_.source().image_decoder());
-        return std::uint64_t(size.x) * std::uint64_t(size.y);
-      };
-      if (!budget.take(job.uses * with_bytes(job.encoded, pixel_count)))
-        throw Error(ErrorCode::limit_exceeded, place, "too many pixels in all images together");
-    } catch (const Error& error) {
-      job.problem = root_.source().without_name(error);
     }
   }
-}
 
-void TextureTable::decode(Jobs& jobs) const {
-  std::vector<Job*> list;
-  for (auto& [id, job] : jobs.by_image)
-    if (job.problem.empty()) list.push_back(&job);
-  parallel_for(root_.source().execution(), list.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      Job& job = *list[i];
-      try {
-        job.texture = with_bytes(job.encoded, [&](Bytes bytes, const std::string& name) {
-          return decode_texture(bytes, name, root_.source().image_decoder());
-        });
-        job.texture.name = job.encoded.name;
-      } catch (const Error& error) {
-        job.problem = root_.source().without_name(error);
+  void decode() {
+    std::vector<Job*> list;
+    for (auto& [id, job] : by_image_)
+      if (job.problem.empty()) list.push_back(&job);
+    parallel_for(root_.source().execution(), list.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Job& job = *list[i];
+        try {
+          job.texture = with_bytes(job.encoded, [&](Bytes bytes, const std::string& name) {
+            return decode_texture(bytes, name, root_.source().image_decoder());
+          });
+          job.texture.name = job.encoded.name;
+        } catch (const Error& error) {
+          job.problem = root_.source().without_name(error);
+        }
       }
-    }
-  });
-}
+    });
+  }
+
+  [[nodiscard]] const std::map<std::uint32_t, Job>& jobs() const { return by_image_; }
+  [[nodiscard]] Job& job_of(std::uint32_t image) { return by_image_.at(first_alike_.at(image)); }
+
+ private:
+  const JsonValue& root_;
+  const Data& data_;
+  std::map<std::uint32_t, Job> by_image_;
+  std::map<std::uint32_t, std::uint32_t> first_alike_;  ///< for each image, the first one with the same bytes
+};
 
 void TextureTable::load(Scene& scene) const {
-  Jobs jobs = find_images();
-  check_sizes(jobs);
-  decode(jobs);
-  for (const auto& [id, job] : jobs.by_image)
+  ImageLoader images(root_, data_);
+  images.find(looks_);
+  images.check_sizes();
+  images.decode();
+  for (const auto& [id, job] : images.jobs())
     if (!job.problem.empty()) scene.warnings.push_back(job.problem + "; materials go without it");
   std::vector<std::uint32_t> new_numbers(looks_.size(), no_index);
   for (std::size_t i = 0; i < looks_.size(); ++i) {
     const Look& look = looks_[i];
-    Job& job = jobs.by_image.at(jobs.first_alike.at(look.image));
+    ImageLoader::Job& job = images.job_of(look.image);
     if (!job.problem.empty()) continue;
     new_numbers[i] = std::uint32_t(scene.textures.size());
     // The pixels are copied only for a further sampler of the same image.

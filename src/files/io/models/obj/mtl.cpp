@@ -8,8 +8,8 @@
 #include <map>
 
 #include "io/models/mesh_building.h"
-#include "io/models/model_source.h"
-#include "io/models/text/text_scanner.h"
+#include "io/models/reader.h"
+#include "io/models/text.h"
 #include "io/models/textures.h"
 
 namespace frontmost {

@@ -11,7 +11,6 @@
 
 #include "base/parallel.h"
 #include "io/models/model_stream.h"
-#include "io/models/ply/ply_header.h"
 #include "io/models/ply/ply_mesh.h"
 
 namespace frontmost {
@@ -27,7 +26,7 @@ constexpr std::uint64_t max_kept_vertices = std::uint64_t(1) << 29;
 /// Finds the length of a row of faces and its number of triangles, without parsing the rest.
 class RowScanner {
  public:
-  RowScanner(const PlyElement& element, Endian endian) : endian_(endian) {
+  RowScanner(const PlyElement& element, Endian endian, const ModelSource& source) : endian_(endian), source_(source) {
     for (const Column& column : Columns(element).list) {
       const PlyProperty& p = column.property;
       steps_.push_back({size_of(p.is_list ? p.count_type : p.type), size_of(p.type), p.is_list, p.count_type,
@@ -47,7 +46,7 @@ class RowScanner {
       const std::byte* value = bytes.data() + row.size;
       row.size += step.size;
       if (!step.is_list) continue;
-      const std::int64_t count = list_count(value, step.count_type);
+      const std::int64_t count = PlyBinaryRows({value, step.size}, endian_, source_).integer(step.count_type);
       if (count < 0) break;
       if (step.is_corners) row.triangles = count < 3 ? 0 : std::uint64_t(count) - 2;
       row.size += std::uint64_t(count) * step.value_size;
@@ -64,18 +63,8 @@ class RowScanner {
     PlyType count_type;
     bool is_corners;
   };
-  [[nodiscard]] std::int64_t list_count(const std::byte* at, PlyType type) const {
-    switch (type) {
-      case PlyType::int8: return read_value<std::int8_t>(at, endian_);
-      case PlyType::uint8: return read_value<std::uint8_t>(at, endian_);
-      case PlyType::int16: return read_value<std::int16_t>(at, endian_);
-      case PlyType::uint16: return read_value<std::uint16_t>(at, endian_);
-      case PlyType::int32: return read_value<std::int32_t>(at, endian_);
-      default: return read_value<std::uint32_t>(at, endian_);
-    }
-  }
-
   Endian endian_;
+  const ModelSource& source_;
   std::vector<Step> steps_;
 };
 
@@ -107,8 +96,7 @@ struct VertexRows {
   }
 };
 
-/// Parses a block of vertices when a face names one of them. If faces jump about so that too many blocks would be
-/// needed, it parses single vertices.
+/// The vertices that the faces of a piece name.
 class NamedVertices {
  public:
   NamedVertices(const VertexRows& rows, const glm::dvec3& origin, std::size_t most_in_blocks)
@@ -157,7 +145,7 @@ class PlyStream final : public ModelStream {
       keep_vertices();
     }
     scene_.origin = vertices_.fitting_origin();
-    scanner_.emplace(*faces_, endian());
+    scanner_.emplace(*faces_, endian(), source_);
     if (can_rewind()) rewind();
   }
 

@@ -12,13 +12,13 @@
 //
 // The stack of open tags decides the meaning of a tag. An unknown tag is skipped with all its contents.
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "io/models/mesh_building.h"
-#include "io/models/model_source.h"
-#include "io/models/text/text_scanner.h"
-#include "io/models/threemf/model.h"
-#include "io/models/threemf/xml_part.h"
+#include "io/models/reader.h"
+#include "io/models/text.h"
+#include "io/models/threemf/threemf.h"
 #include "scene/origin.h"
 
 namespace frontmost::threemf {
@@ -108,6 +108,61 @@ struct Unit {
 };
 constexpr Unit units[] = {{"micron", 1e-6}, {"millimeter", 1e-3}, {"centimeter", 1e-2},
                           {"inch", 0.0254}, {"foot", 0.3048},     {"meter", 1}};
+
+// Values of attributes are read as strictly as the schema defines except for blanks around them. A value with anything
+// behind it is refused, because half of a transform would place an object somewhere.
+
+constexpr std::string_view blanks = " \t\r\n";
+
+std::string_view trimmed(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  return text.substr(0, text.find_last_not_of(blanks) + 1);
+}
+
+/// A number, which may be infinite or NaN: such vertices are kept, as in all formats.
+std::optional<double> parse_number(std::string_view text) {
+  const std::string_view word = trimmed(text);
+  double value = 0;
+  const char* const end = word.data() + word.size();
+  return parse_double(word.data(), end, value) == end ? std::optional(value) : std::nullopt;
+}
+
+/// A whole number below no_index.
+std::optional<std::uint32_t> parse_index(std::string_view text) {
+  const std::string_view word = trimmed(text);
+  std::int64_t value = 0;
+  const char* const end = word.data() + word.size();
+  if (parse_integer(word.data(), end, value) != end || value < 0 || value >= std::int64_t(no_index))
+    return std::nullopt;
+  return std::uint32_t(value);
+}
+
+/// A colour #RRGGBB or #RRGGBBAA in sRGB, converted to linear light.
+std::optional<glm::vec4> parse_color(std::string_view text) {
+  const std::string_view word = trimmed(text);
+  if ((word.size() != 7 && word.size() != 9) || word[0] != '#') return std::nullopt;
+  glm::vec4 srgb(1);
+  for (std::size_t k = 0; 2 * k + 1 < word.size(); ++k) {
+    const int high = hex_digit(word[2 * k + 1]), low = hex_digit(word[2 * k + 2]);
+    if (high < 0 || low < 0) return std::nullopt;
+    srgb[int(k)] = float(16 * high + low) / 255.0f;
+  }
+  return linear_color(srgb);
+}
+
+/// Twelve finite numbers: the rows of a matrix for row vectors, without its last column.
+std::optional<glm::dmat4> parse_transform(std::string_view text) {
+  glm::dmat4 matrix(1.0);
+  for (int i = 0; i < 12; ++i) {
+    text = trimmed(text);
+    const std::size_t size = std::min(text.find_first_of(blanks), text.size());
+    const std::optional<double> value = parse_number(text.substr(0, size));
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    matrix[i / 3][i % 3] = *value;
+    text.remove_prefix(size);
+  }
+  return trimmed(text).empty() ? std::optional(matrix) : std::nullopt;
+}
 
 class ModelPartReader : public XmlPart {
  public:
@@ -223,7 +278,7 @@ class ModelPartReader : public XmlPart {
 
   void check_extensions(std::string_view prefixes) const {
     while (!prefixes.empty()) {
-      const std::size_t size = std::min(prefixes.find_first_of(" \t\r\n"), prefixes.size());
+      const std::size_t size = std::min(prefixes.find_first_of(blanks), prefixes.size());
       const auto space = spaces_.find(std::string(prefixes.substr(0, size)));
       const std::string name = space == spaces_.end() ? "" : space->second;
       if (size > 0 && std::find(std::begin(supported), std::end(supported), name) == std::end(supported))
