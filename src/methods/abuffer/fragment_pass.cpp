@@ -6,8 +6,7 @@
 //    same place     id 3 (opaque)   id 8   id 9         3 hides 8 and 9 everywhere: they are left out
 //    same place     id 4 (clear)    id 5   id 6 ...     all count, or as many as there are layers
 //
-// The areas of the remaining triangles add up to the number of fragments. A frame with too many is refused before it is
-// gathered.
+// A frame is refused before it is gathered, if the areas of the remaining triangles add up to too many fragments.
 
 #include "abuffer/fragment_pass.h"
 

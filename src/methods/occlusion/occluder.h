@@ -8,8 +8,7 @@
 //     | / |   |   \   |   |     Cells that are reached and have no ends are covered everywhere.
 //     +---+---+---+---+---+
 //
-// Vertices are snapped, which moves ends by less than the margin that they are widened by. Other sides move with both
-// of their triangles. Any triangles may be left out, which only makes more ends.
+// Snapping moves ends by less than the margin that they are widened by. Triangles left out only make more ends.
 #pragma once
 
 #include <span>

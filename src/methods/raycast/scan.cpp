@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras that only rays can serve, their limits and their grids; and scans: the rays of a camera, cast over its grid
-// in packets of neighbouring rays.
+// Cameras that only rays can serve; and scans: the rays of a camera, cast over its grid in packets of neighbours.
 //
 //     wide grid, rows close together      The columns and rows of a packet make it look as nearly square as possible,
 //     +----------------+                  so that its rays spread as little as possible: a scanner whose rings lie far

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The z-buffer: plan the frame, then draw its tiles on all threads.
 //
-// The plan leads from clusters to tiles: cull, order roughly front to back, and bin. Order only decides how much the
-// hierarchical depth can hide, never the result. Whole clusters are ordered by 32 slices of depth and keep their memory
-// order within a slice: a full sort hides no more and loses locality.
+// Order only decides how much the hierarchical depth can hide, never the result. Whole clusters are ordered by 32
+// slices of depth and keep their memory order within a slice: a full sort hides no more and loses locality.
 //
 // A ZBuffer keeps its planes, its plan and its scratch memory from frame to frame. Tiles that stay empty are not filled
 // again: `blank` tells which tiles of the planes hold nothing. If an error ends a frame, the tiles being drawn count as

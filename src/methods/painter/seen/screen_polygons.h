@@ -2,15 +2,12 @@
 // Polygons on the screen, the input of all functions of this folder. They find which polygons hide which.
 //
 //   place in the order     1 ____________        An occluder is a polygon that nothing is seen through. It hides
-//   of painting              |   2 ______|___    earlier polygons under it.
-//                            |    |      |   |
-//                            |    |   3 _|___|_  - clip: the visible part of 1 is 1 without the union of the occluders
-//                            |    |    | |   | |   2 and 3 (visible_parts.cpp, by outlines.h)
-//                            |____|____|_|   | | - union of occluders: 2 and 3 may together hide a polygon that neither
-//                                 |____|_____| |   of them hides alone (OccluderUnion)
-//                                      |_______| - adjacency: polygons of a mesh share sides, so a union is followed
-//                                                  from side to side. If no side without a neighbour crosses, nothing
-//                                                  begins or ends (adjacency.h)
+//   of painting              |   2 ______|___    earlier polygons under it. The visible part of 1 is 1 without the
+//                            |    |   3 _|___|_  union of the occluders 2 and 3 (visible_parts.cpp, by outlines.h).
+//                            |    |    | |   | | Both may together hide a polygon that neither of them hides alone;
+//                            |____|____|_|   | | a union is followed from side to side, as polygons of a mesh share
+//                                 |____|_____| | sides. If no side without a neighbour crosses, nothing begins or
+//                                      |_______| ends (adjacency.h).
 #pragma once
 
 #include <atomic>

@@ -7,9 +7,8 @@
 //              `   /                own distance. Everything left out lies beside it by more than all rounding.
 //                `.  low u
 //
-// The normal n = a x (b - a) belongs to the plane of the eye and the edge from a to b. The turn n . ray tells on which
-// side of the plane a ray passes. Turns are affine in the rays' slopes, so the turns of a whole rectangle of rays lie
-// between those at its corners. A ray that passes all three edges on one side meets the triangle.
+// The turn of a ray about an edge tells on which side of the plane of the eye and the edge the ray passes. Turns are
+// affine in the rays' slopes, so the turns of a whole rectangle of rays lie between those at its corners.
 
 // Included once for every target.
 #if defined(FRONTMOST_RAYCAST_PACKET_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The depth buffer: planes that outlive draw calls.
-//
-// A draw call has three steps: the state becomes rules for this view and format, the triangles become batches in the
-// order of their ids, and every batch is drawn into its tiles. Tiles are independent, so threads share no sample.
-// Within a tile all batches come in order.
+// The depth buffer: planes that outlive draw calls. A draw call has three steps: the state becomes rules for this view
+// and format, the triangles become batches in the order of their ids, and every batch is drawn into its tiles. Tiles
+// are independent, so threads share no sample. Within a tile all batches come in order.
 //
 //    key      0 ............................ 1          0: at infinity, or at the far plane in parallel projection
 //    depth    at_far ................. at_near          the depth range, in either direction; depths are limited to it
 //
-// Keys are affine over the screen, and depths are affine in keys, so depths are affine over the screen too. Depths are
-// computed in double and rounded once, to 8, 16 or 24 bits or to a float, so that every machine stores the same.
+// Depths are affine in keys, computed in double and rounded once, so that every machine stores the same.
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batches of triangles: their lists by tile, and batches in the order of submission. The lists hold runs of consecutive
-// triangles that lie in the same tiles.
+// Batches of triangles: their lists by tile, and batches in the order of submission.
 //
 //    triangle    0     1     2     3     4          consecutive triangles that touch the same tiles are one run
 //    tiles       A     A     A,B   A,B   B          runs of A: [0,1] [2,3]      runs of B: [2,3] [4]
