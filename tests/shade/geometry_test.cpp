@@ -57,7 +57,7 @@ TEST(SeenPrimitives, AreThoseThatHoldASample) {
   const Surfaces surfaces(scene);
   const Visible visible = zbuffer(surfaces, front_view(64, 4));
   for (const int threads : {1, 3}) {
-    const BitSet seen = seen_primitives(surfaces, visible, {.threads = threads});
+    const BitSet seen = seen_primitives(surfaces.primitive_count(), visible.primitives, {.threads = threads});
     for (PrimitiveId id = 0; id < 6; ++id) {
       bool expected = false;
       for (const PrimitiveId other : visible.primitives) expected = expected || other == id;
@@ -76,7 +76,7 @@ TEST(SeenMaterials, OfWholeMeshesAndOfSingleTriangles) {
   scene.instances.push_back({"hidden", 1, glm::dmat4(0.5)});
   scene.instances[1].world_from_mesh[3] = {0, 0, -1, 1};
   const Surfaces surfaces(scene);
-  const BitSet seen = seen_primitives(surfaces, zbuffer(surfaces, front_view()), {});
+  const BitSet seen = seen_primitives(surfaces.primitive_count(), zbuffer(surfaces, front_view()).primitives, {});
   BitSet known(surfaces.primitive_count());
   EXPECT_EQ(seen_materials(surfaces, seen, known), (std::vector<bool>{false, false, true, false}));
   known.add_all(seen);
@@ -161,10 +161,10 @@ TEST(TriangleSource, AttributesFollowTheirOwnIndices) {
 }
 
 TEST(TriangleSource, TextureCoordinatesCanBeLeftOut) {
-  World world(scene_of(square()));
+  const World world(scene_of(square()));
   EXPECT_TRUE(world.set_up(0).has_texcoord[0]);
-  world.source.leave_out_texcoords();
-  EXPECT_FALSE(world.set_up(0).has_texcoord[0]);
+  const TriangleSource without(world.store, world.visible.view, &world.large, false);
+  EXPECT_FALSE(set_up_one(without, 0, {32, 32}).has_texcoord[0]);
 }
 
 TEST(TriangleSource, InstancesKnowWhichSideIsSeen) {

@@ -6,7 +6,7 @@
 
 #include "frontmost/pictures.h"
 #include "frontmost/zbuffer.h"
-#include "shade/layers/opaque_part.h"
+#include "shade/shadow/light_shadows.h"
 #include "shade/support.h"
 
 namespace frontmost {

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "frontmost/frontmost.h"
-#include "shade/shadow/light_view.h"
+#include "shade/shadow/shadow_map.h"
 #include "shade/support.h"
 #include "support/allocation_count.h"
 #include "support/costly_meshes.h"

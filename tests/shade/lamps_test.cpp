@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light of lamps on fragments made by hand, and lights of a scene in pictures. The reference evaluates the extension's
 // formulas one sample at a time, in doubles.
-#include "shade/light/lamps.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,6 +10,7 @@
 #include <random>
 
 #include "frontmost/zbuffer.h"
+#include "shade/light/lighting.h"
 #include "shade/support.h"
 #include "support/refusal.h"
 #include "support/seeds.h"

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Material layers against their formulas, one fragment at a time in doubles: KHR_materials_ior, _specular, _sheen and
 // _clearcoat over glTF 2.0's metallic-roughness (appendix B), under one directional light.
-#include "shade/material/material_layers.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "frontmost/pictures.h"
 #include "frontmost/zbuffer.h"
-#include "shade/light/layers.h"
-#include "shade/light/sheen.h"
+#include "shade/light/albedo.h"
+#include "shade/light/lighting.h"
+#include "shade/material/materials.h"
 #include "shade/support.h"
 
 namespace frontmost::shading {

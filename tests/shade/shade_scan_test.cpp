@@ -7,7 +7,7 @@
 #include "frontmost/pictures.h"
 #include "frontmost/raycast.h"
 #include "frontmost/zbuffer.h"
-#include "shade/scan/scan_tile.h"
+#include "shade/scan/scan.h"
 #include "shade/support.h"
 #include "support/odd_numbers.h"
 

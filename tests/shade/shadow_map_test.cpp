@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "frontmost/zbuffer.h"
-#include "shade/shadow/light_view.h"
 #include "shade/support.h"
 #include "support/key_light_map.h"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/geometry/smooth_normals.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <random>
 
 #include "frontmost/files.h"
+#include "shade/geometry/geometry.h"
 #include "support/meshes.h"
 #include "support/models.h"
 #include "support/seeds.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/geometry/triangle_setup.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
+#include "shade/geometry/geometry.h"
 #include "support/interpolation.h"
 #include "support/odd_numbers.h"
 #include "support/seeds.h"

@@ -6,11 +6,9 @@
 
 #include "frontmost/zbuffer.h"
 #include "stream/as_whole.h"
-#include "stream/id_map.h"
-#include "stream/kept_triangles.h"
+#include "stream/neighbours.h"
 #include "stream/outline.h"
 #include "stream/sample_filter.h"
-#include "stream/touched_positions.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -200,7 +198,7 @@ TEST(OutlineFinder, OfPartsIsThatOfTheWhole) {
                             mesh.triangles.begin() + std::ptrdiff_t(end));
       OutlineFinder one(direction, 0.05);
       one.include(part);
-      parts.include(one);
+      parts.include(one.points());
     }
     EXPECT_EQ(parts.bounds().low, whole.bounds().low);
     EXPECT_EQ(parts.bounds().high, whole.bounds().high);

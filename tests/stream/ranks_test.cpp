@@ -5,7 +5,6 @@
 
 #include "frontmost/streams.h"
 #include "stream/as_whole.h"
-#include "stream/message.h"
 #include "stream/shared.h"
 #include "stream/thread_ranks.h"
 #include "support/meshes.h"

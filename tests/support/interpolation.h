@@ -2,7 +2,7 @@
 // Interpolation for one fragment, as the kernel does it for many at once.
 #pragma once
 
-#include "shade/geometry/triangle_setup.h"
+#include "shade/geometry/geometry.h"
 
 namespace frontmost::shading {
 

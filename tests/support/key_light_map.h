@@ -3,7 +3,6 @@
 #pragma once
 
 #include "frontmost/zbuffer.h"
-#include "shade/shadow/light_view.h"
 #include "shade/shadow/shadow_map.h"
 
 namespace frontmost::test {

@@ -10,7 +10,7 @@
 #include "frontmost/pictures.h"
 #include "frontmost/raycast.h"
 #include "frontmost/zbuffer.h"
-#include "shade/geometry/triangle_setup.h"
+#include "shade/geometry/geometry.h"
 #include "shade/light/lighting.h"
 #include "support/interpolation.h"
 #include "support/key_light_map.h"

@@ -14,7 +14,6 @@
 #include "frontmost/sheets.h"
 #include "frontmost/zbuffer.h"
 #include "painter/traps/traps.h"
-#include "shade/picture_parts.h"
 #include "shade/prepared_scene.h"
 #include "view/answer.h"
 

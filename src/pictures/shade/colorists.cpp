@@ -1,46 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/colorists.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 
+#include "base/parallel.h"
 #include "base/srgb.h"
-#include "shade/light/layers.h"
 #include "shade/prepared_scene.h"
 
 namespace frontmost::shading {
 namespace {
 
-constexpr int kSteps = 1285;  ///< divides 65535
-
-const std::array<float, kSteps + 1>& shown_table() {
-  static const auto table = [] {
-    std::array<float, kSteps + 1> values{};
-    for (int i = 0; i <= kSteps; ++i) values[std::size_t(i)] = linear_of_srgb16(std::uint16_t(i * (65535 / kSteps)));
-    return values;
-  }();
-  return table;
-}
-
-void make_opaque(FragmentBatch& batch) {
-  for (int i = 0; i < batch.coverage.count; ++i) {
-    batch.material.alpha[i] = 1.0f;
-  }
-  batch.layers.clear();
-}
-
 float clamped(float value) { return value > 0 ? (value < 1 ? value : 1.0f) : 0.0f; }  // 0 for NaN
 glm::vec3 clamped(const glm::vec3& v) { return {clamped(v.x), clamped(v.y), clamped(v.z)}; }
 
-float fraction(float value) {
+float linear_of_shown_channel(float value) {
+  constexpr int steps = 1285;  // divides 65535
+  static const auto table = [] {
+    std::array<float, steps + 1> values{};
+    for (int i = 0; i <= steps; ++i) values[std::size_t(i)] = linear_of_srgb16(std::uint16_t(i * (65535 / steps)));
+    return values;
+  }();
+  const float t = clamped(value) * float(steps);
+  const int i = std::min(int(t), steps - 1);
+  const float low = table[std::size_t(i)], high = table[std::size_t(i) + 1];
+  return low + (high - low) * (t - float(i));
+}
+
+float wrapped_texcoord(float value) {
+  if (value == 1.0f) return 1.0f;  // so that the far edge of a texture differs from its near edge
   if (!(std::abs(value) < 1e6f)) return 0.0f;
   const float whole = float(int(value));
   return value - (whole > value ? whole - 1.0f : whole);
 }
-
-/// 1 stays 1, so that the far edge of a texture differs from its near edge.
-float wrapped_texcoord(float value) { return value == 1.0f ? 1.0f : fraction(value); }
 
 /// Whether light that reaches the shading normal would come from behind the triangle, on a surface that is not lifted
 /// towards the viewer over the triangle's horizon. An example is the inside of a hollow body, whose wall the light
@@ -50,27 +43,15 @@ bool comes_through(const Geometry& g, int i, const glm::vec3& to_light) {
   return glm::dot(g.plane_normal.at(i), to_light) <= 0 && g.smooth_position.at(i) == g.position.at(i);
 }
 
-}  // namespace
-
-float linear_of_shown(float value) {
-  const float t = clamped(value) * float(kSteps);
-  const int i = std::min(int(t), kSteps - 1);
-  const auto& table = shown_table();
-  const float low = table[std::size_t(i)], high = table[std::size_t(i) + 1];
-  return low + (high - low) * (t - float(i));
+/// Bright for the nearest depth, dark for the farthest.
+glm::vec3 shown_depth(float depth, const DepthRange& range) {
+  const float size = range.farthest - range.nearest;
+  const float t = size > 0 ? std::clamp((depth - range.nearest) / size, 0.0f, 1.0f) : 0.0f;
+  return glm::vec3(linear_of_shown_channel(0.95f - 0.85f * t));
 }
 
-glm::vec3 linear_of_shown(const glm::vec3& value) {
-  return {linear_of_shown(value.x), linear_of_shown(value.y), linear_of_shown(value.z)};
-}
-
-glm::vec3 shown_depth(float depth, float nearest, float farthest) {
-  const float range = farthest - nearest;
-  const float t = range > 0 ? std::clamp((depth - nearest) / range, 0.0f, 1.0f) : 0.0f;
-  return glm::vec3(linear_of_shown(0.95f - 0.85f * t));
-}
-
-/// Hues are a golden angle apart, in three rounds of brightness, so that consecutive numbers look different.
+/// A distinctive colour for an object; as displayed, 0 to 1. Hues are a golden angle apart, in three rounds of
+/// brightness, so that consecutive numbers look different.
 glm::vec3 color_of_object(std::uint32_t object) {
   const float hue = float(object * 0x9E3779B9u >> 8) / float(1 << 24) * 6.0f;
   const float value = 0.95f - 0.18f * float(object % 3), saturation = 0.75f - 0.2f * float(object / 3 % 2);
@@ -83,12 +64,41 @@ glm::vec3 color_of_object(std::uint32_t object) {
   return {part(5.0f), part(3.0f), part(1.0f)};
 }
 
+/// Shows opaque surfaces: color_at(geometry, i, triangle of fragment i) is a linear colour.
+template <class ColorAt>
+void show_opaque(const std::vector<TriangleSetup>& setups, FragmentBatch& batch, const ColorAt& color_at) {
+  for (int i = 0; i < batch.coverage.count; ++i) {
+    batch.light.set(i, color_at(batch.geometry, i, setups[batch.coverage.triangle[i]]));
+    batch.material.alpha[i] = 1.0f;
+  }
+  batch.layers.clear();
+}
+
+template <class ColorAt>
+FragmentShader::Colorist opaque_colorist(const ColorAt& color_at) {
+  return [color_at](const std::vector<TriangleSetup>& setups, FragmentBatch& batch) {
+    show_opaque(setups, batch, color_at);
+  };
+}
+
+glm::vec3 shown_texcoord(const Geometry& g, int i, const TriangleSetup& triangle) {
+  if (!triangle.has_texcoord[0]) return linear_of_shown(glm::vec3(0.25f));
+  const glm::vec2 uv = g.texcoord.value.at(i);
+  return linear_of_shown({wrapped_texcoord(uv.x), wrapped_texcoord(uv.y), 0});
+}
+
+}  // namespace
+
+glm::vec3 linear_of_shown(const glm::vec3& value) {
+  return {linear_of_shown_channel(value.x), linear_of_shown_channel(value.y), linear_of_shown_channel(value.z)};
+}
+
 Lit lit_by(const Lighting& lighting, const ShadedPicture& picture, PreparedScene& scene, const Execution& execution) {
   const Lights lights = picture.options.light.lights;
+  const bool counts_key = lights == Lights::key || lights == Lights::both;
   std::span<const Light> own;
   if (lights == Lights::file || lights == Lights::both) own = scene.surfaces.scene().lights;
-  scene.lights.set(counts_key(lights) && lighting.key.is_on() ? &lighting.key : nullptr, own,
-                   picture.input.visible.view.eye());
+  scene.lights.set(counts_key && lighting.key.is_on() ? &lighting.key : nullptr, own, picture.input.visible.view.eye());
   scene.shadows.find(picture, scene.lights, execution);
   return {scene.materials, lighting, scene.lights, scene.shadows, execution.isa};
 }
@@ -109,7 +119,7 @@ void Lit::add_far(const std::vector<TriangleSetup>& setups, FragmentBatch& batch
   bool is_asked[batch_capacity];
   for (std::size_t k = 0; k < lights.far.size(); ++k) {
     const DirectLight& light = lights.far[k].light;
-    const bool has_shadows = shadows.has_far(k);
+    const bool has_shadows = shadows.has_shadows(k);
     for (int i = 0; i < batch.coverage.count; ++i) {
       is_asked[i] = glm::dot(g.normal.at(i), light.to_light) > 0;
       batch.shadow[i] = 1;
@@ -118,7 +128,7 @@ void Lit::add_far(const std::vector<TriangleSetup>& setups, FragmentBatch& batch
         is_asked[i] = false;
       }
     }
-    if (has_shadows) shadows.find_far(k, {setups, is_asked, batch}, isa);
+    if (has_shadows) shadows.find_arriving(k, {setups, is_asked, batch}, isa);
     add_direct_light(light, batch, isa);
   }
 }
@@ -132,7 +142,8 @@ void Lit::add_near(const std::vector<TriangleSetup>& setups, FragmentBatch& batc
     const Lamp& lamp = lights.near[k].lamp;
     if (!may_reach(lamp, bounds)) continue;
     find_lamp_light(lamp, batch, arriving, isa);
-    const bool has_shadows = shadows.has_near(k);
+    const std::size_t number = lights.far.size() + k;
+    const bool has_shadows = shadows.has_shadows(number);
     bool any = false;
     for (int i = 0; i < batch.coverage.count; ++i) {
       const glm::vec3 to_lamp = arriving.to_lamp.at(i);
@@ -142,60 +153,69 @@ void Lit::add_near(const std::vector<TriangleSetup>& setups, FragmentBatch& batc
       any |= is_asked[i];
     }
     if (!any) continue;
-    if (has_shadows) shadows.find_near(k, {setups, is_asked, batch}, isa);
+    if (has_shadows) shadows.find_arriving(number, {setups, is_asked, batch}, isa);
     for (int i = 0; i < batch.coverage.count; ++i) batch.shadow[i] *= arriving.part[i];
-    add_light_from(arriving.to_lamp, lamp.color, batch, isa);
+    add_direct_light({.color = lamp.color, .directions = &arriving.to_lamp}, batch, isa);
   }
 }
 
-void Flat::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
-  look_up_materials(materials, MaterialPart::color, setups, batch, isa);
-  for (int i = 0; i < batch.coverage.count; ++i) batch.light.set(i, clamped(batch.material.base.at(i)));
-  if (!batch.layers.has_transmission) return;
-  for (int i = 0; i < batch.coverage.count; ++i)
-    batch.light.set(i, batch.light.at(i) * (1 - batch.layers.transmission[i]));
-  let_through(batch, Mirroring::none);
+FragmentShader::Colorist unlit_colorist(Shading shading, const MaterialTable& materials, Isa isa) {
+  if (shading == Shading::flat)
+    return [&materials, isa](const std::vector<TriangleSetup>& setups, FragmentBatch& batch) {
+      look_up_materials(materials, MaterialPart::color, setups, batch, isa);
+      const bool has_glass = batch.layers.has_transmission;
+      for (int i = 0; i < batch.coverage.count; ++i) {
+        const glm::vec3 color = clamped(batch.material.base.at(i));
+        batch.light.set(i, has_glass ? color * (1 - batch.layers.transmission[i]) : color);
+      }
+      if (has_glass) let_through(batch, Mirroring::none);
+    };
+  if (shading == Shading::normals)
+    return [&materials, isa](const std::vector<TriangleSetup>& setups, FragmentBatch& batch) {
+      look_up_materials(materials, MaterialPart::normal, setups, batch, isa);
+      batch.layers.clear();  // a picture of normals shows the surface of glass
+      for (int i = 0; i < batch.coverage.count; ++i)
+        batch.light.set(i, linear_of_shown(batch.geometry.normal.at(i) * 0.5f + 0.5f));
+    };
+  if (shading == Shading::uv) return opaque_colorist(shown_texcoord);
+  return opaque_colorist([](const Geometry&, int, const TriangleSetup& triangle) {
+    return linear_of_shown(color_of_object(triangle.instance));
+  });
 }
 
-void Normals::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
-  look_up_materials(materials, MaterialPart::normal, setups, batch, isa);
-  batch.layers.clear();  // a picture of normals shows the surface of glass
-  for (int i = 0; i < batch.coverage.count; ++i)
-    batch.light.set(i, linear_of_shown(batch.geometry.normal.at(i) * 0.5f + 0.5f));
+FragmentShader::Colorist normal_colorist(const MaterialTable& materials, Isa isa) {
+  return [&materials, isa](const std::vector<TriangleSetup>& setups, FragmentBatch& batch) {
+    look_up_materials(materials, MaterialPart::normal, setups, batch, isa);
+    show_opaque(setups, batch, [](const Geometry& g, int i, const TriangleSetup&) { return g.normal.at(i); });
+  };
 }
 
-void RawNormals::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
-  look_up_materials(materials, MaterialPart::normal, setups, batch, isa);
-  for (int i = 0; i < batch.coverage.count; ++i) batch.light.set(i, batch.geometry.normal.at(i));
-  make_opaque(batch);
+DepthRange depth_range(const Visible& visible, const Execution& execution) {
+  // Keys are monotonic in depth, so their extremes suffice.
+  DepthRange keys;
+  std::mutex mutex;
+  constexpr std::size_t samples_at_once = 1u << 16;
+  parallel_for(execution, visible.keys.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
+    DepthRange part;
+    for (std::size_t i = begin; i < end; ++i)
+      if (visible.primitives[i] != no_primitive) part.include({visible.keys[i], visible.keys[i]});
+    const std::lock_guard lock(mutex);
+    keys.include(part);
+  });
+  if (!(keys.nearest <= keys.farthest)) return {0, 0};
+  return {depth_of_key(visible.view, keys.farthest), depth_of_key(visible.view, keys.nearest)};
 }
 
-void Depths::operator()(const std::vector<TriangleSetup>&, FragmentBatch& batch) const {
-  for (int i = 0; i < batch.coverage.count; ++i)
-    batch.light.set(i, shown_depth(glm::dot(batch.geometry.position.at(i), forward), nearest, farthest));
-  make_opaque(batch);
+FragmentShader::Colorist depth_colorist(const DepthRange& range, const glm::vec3& forward) {
+  return opaque_colorist([range, forward](const Geometry& g, int i, const TriangleSetup&) {
+    return shown_depth(glm::dot(g.position.at(i), forward), range);
+  });
 }
 
-void Ranges::operator()(const std::vector<TriangleSetup>&, FragmentBatch& batch) const {
-  for (int i = 0; i < batch.coverage.count; ++i)
-    batch.light.set(i, shown_depth(glm::length(batch.geometry.position.at(i)), nearest, farthest));
-  make_opaque(batch);
-}
-
-void Ids::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
-  for (int i = 0; i < batch.coverage.count; ++i)
-    batch.light.set(i, linear_of_shown(color_of_object(setups[batch.coverage.triangle[i]].instance)));
-  make_opaque(batch);
-}
-
-void Texcoords::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
-  for (int i = 0; i < batch.coverage.count; ++i) {
-    const glm::vec2 uv = batch.geometry.texcoord.value.at(i);
-    const bool has = setups[batch.coverage.triangle[i]].has_texcoord[0];
-    const glm::vec3 shown = has ? glm::vec3(wrapped_texcoord(uv.x), wrapped_texcoord(uv.y), 0) : glm::vec3(0.25f);
-    batch.light.set(i, linear_of_shown(shown));
-  }
-  make_opaque(batch);
+FragmentShader::Colorist distance_colorist(const DepthRange& range) {
+  return opaque_colorist([range](const Geometry& g, int i, const TriangleSetup&) {
+    return shown_depth(glm::length(g.position.at(i)), range);
+  });
 }
 
 }  // namespace frontmost::shading

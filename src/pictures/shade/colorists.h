@@ -2,8 +2,11 @@
 // Functions that compute the colours of a batch, one for each Shading.
 #pragma once
 
+#include <algorithm>
+#include <limits>
+
 #include "frontmost/pictures.h"
-#include "shade/light/lamps.h"
+#include "shade/light/lighting.h"
 #include "shade/material/materials.h"
 #include "shade/occlusion/depth_occlusion.h"
 #include "shade/shadow/light_shadows.h"
@@ -31,51 +34,27 @@ struct PreparedScene;
 [[nodiscard]] Lit lit_by(const Lighting& lighting, const ShadedPicture& picture, PreparedScene& scene,
                          const Execution& execution);
 
-struct Flat {
-  const MaterialTable& materials;
-  Isa isa;
-  void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
-};
+/// The colorist of a picture that is flat, of normals, ids or texture coordinates. Borrows the materials.
+[[nodiscard]] FragmentShader::Colorist unlit_colorist(Shading shading, const MaterialTable& materials, Isa isa);
+/// World normals without mapping to colours, for normal_image(). Borrows the materials.
+[[nodiscard]] FragmentShader::Colorist normal_colorist(const MaterialTable& materials, Isa isa);
 
-struct Normals {
-  const MaterialTable& materials;
-  Isa isa;
-  void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
-};
+/// The range of depths that a picture of depths maps from bright to dark.
+struct DepthRange {
+  float nearest = std::numeric_limits<float>::infinity(), farthest = -std::numeric_limits<float>::infinity();
 
-/// World normals without mapping to colours, for normal_image.
-struct RawNormals {
-  const MaterialTable& materials;
-  Isa isa;
-  void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
+  void include(const DepthRange& other) {
+    nearest = std::min(nearest, other.nearest);
+    farthest = std::max(farthest, other.farthest);
+  }
 };
-
-struct Depths {
-  glm::vec3 forward;
-  float nearest, farthest;
-  void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
-};
-
-/// Shows distances from the eye in place of depths.
-struct Ranges {
-  float nearest, farthest;
-  void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
-};
-
-struct Ids {
-  void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
-};
-
-struct Texcoords {
-  void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
-};
+/// The range of all visible depths; both 0 where nothing is visible. O(samples), in parallel.
+[[nodiscard]] DepthRange depth_range(const Visible& visible, const Execution& execution);
+/// The colorists of pictures of depths, and of distances from the eye.
+[[nodiscard]] FragmentShader::Colorist depth_colorist(const DepthRange& range, const glm::vec3& forward);
+[[nodiscard]] FragmentShader::Colorist distance_colorist(const DepthRange& range);
 
 /// The linear value that is displayed as `value`, 0 to 1 in sRGB. The error is well below 1/1000 of a step of 8 bits.
-[[nodiscard]] float linear_of_shown(float value);
 [[nodiscard]] glm::vec3 linear_of_shown(const glm::vec3& value);
-/// Bright for the nearest depth, dark for the farthest.
-[[nodiscard]] glm::vec3 shown_depth(float depth, float nearest, float farthest);
-/// A distinctive colour for an object; as displayed, 0 to 1.
-[[nodiscard]] glm::vec3 color_of_object(std::uint32_t object);
 
 }  // namespace frontmost::shading

@@ -2,22 +2,40 @@
 // Data that all pictures of the same surfaces share; it is computed when first needed.
 #pragma once
 
+#include <algorithm>
+
 #include "base/pool.h"
 #include "frontmost/pictures.h"
-#include "shade/geometry/geometry.h"
-#include "shade/light/lamps.h"
 #include "shade/material/materials.h"
 #include "shade/occlusion/depth_occlusion.h"
-#include "shade/scan/scan_tile.h"
+#include "shade/scan/scan.h"
 #include "shade/shadow/light_shadows.h"
-#include "shade/tile.h"
 
 namespace frontmost::shading {
+
+/// Whether any mesh of the scene lacks normals.
+[[nodiscard]] inline bool lacks_normals(const Scene& scene) {
+  return std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh& m) { return m.normals.empty(); });
+}
+/// Whether colours come from materials.
+[[nodiscard]] inline bool shows_materials(Shading shading) {
+  return shading == Shading::lit || shading == Shading::flat || shading == Shading::normals;
+}
+/// \throws Error bad_argument unless exactly one of both inputs is given and it is valid.
+inline void check_given(const ShadeInput& input, const char* who) {
+  if (!input.visible == !input.pixels)
+    throw Error(ErrorCode::bad_argument, who, "either what is visible or its pixels must be given");
+}
+/// \throws Error bad_argument.
+inline void check_opacity(const ShadeOptions& options) {
+  if (!(options.opacity >= 0.0f && options.opacity <= 1.0f))
+    throw Error(ErrorCode::bad_argument, "shade: opacity", "must be 0 to 1");
+}
 
 /// The set of primitives that hold a sample.
 [[nodiscard]] inline BitSet seen_primitives(const Surfaces& surfaces, const ShadeInput& input,
                                             const Execution& execution, BitSet memory) {
-  BitSet seen = seen_primitives(surfaces, input.first(), execution, std::move(memory));
+  BitSet seen = seen_primitives(surfaces.primitive_count(), input.first().primitives, execution, std::move(memory));
   for (std::size_t i = 0; input.pixels && i < input.pixels->other_count; ++i)
     if (input.pixels->others[i] != no_primitive) seen.add(input.pixels->others[i]);
   return seen;

@@ -1,28 +1,147 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <bit>
 #include <functional>
+#include <optional>
+#include <span>
 
-#include "base/srgb.h"
 #include "frontmost/pictures.h"
 #include "shade/canvas/canvas.h"
-#include "shade/canvas/environment_canvas.h"
-#include "shade/canvas/srgb_blend.h"
 #include "shade/colorists.h"
-#include "shade/picture_parts.h"
-#include "shade/scan/scan_picture.h"
-#include "shade/shade_tiles.h"
-#include "shade/shadow/light_view.h"
-#include "shade/shown_materials.h"
+#include "shade/layers/layers.h"
+#include "shade/prepared_scene.h"
+#include "shade/scan/scan.h"
 #include "view/answer.h"
 
 namespace frontmost {
 namespace {
 
 using namespace shading;
+using abuffer_detail::Rectangle;
+
+using PictureRequest = RequestFor<ShadeInput>;
+
+bool wants_layers(const PictureRequest& request) {
+  if (request.options.layers.see_through != SeeThrough::where_needed)
+    return request.options.layers.see_through == SeeThrough::always;
+  return has_see_through(request.scene.surfaces.scene()) || request.options.opacity < 1.0f;
+}
+
+/// Whether `is_so` holds for the primitives of samples 1 and up in a row of a tile, for pixels whose samples differ.
+template <class IsSo>
+bool all_of_mixed(const VisiblePixels& pixels, const Rectangle& tile, int y, const IsSo& is_so) {
+  constexpr int run = VisiblePixels::run;
+  static_assert(abuffer_detail::kTileSize % run == 0);
+  const std::size_t first = std::size_t(y) * pixels.runs_across() + std::size_t(tile.x / run);
+  for (std::size_t k = 0; k < std::size_t((tile.width + run - 1) / run); ++k) {
+    const auto mixed = std::size_t(std::popcount(pixels.mixed[first + k]));
+    if (mixed == 0) continue;
+    const PrimitiveId* const others = pixels.others.data() + pixels.places[first + k];
+    if (!std::all_of(others, others + mixed * std::size_t(pixels.view.samples - 1), is_so)) return false;
+  }
+  return true;
+}
+
+/// Whether `is_so` holds for the primitives of all samples of a tile.
+template <class IsSo>
+bool all_of_tile(const ShadeInput& input, const Rectangle& tile, const IsSo& is_so) {
+  const Visible& visible = input.first();
+  for (int y = tile.y; y < tile.y + tile.height; ++y) {
+    for (int s = 0; s < visible.view.samples; ++s) {
+      const PrimitiveId* const ids = visible.primitives.data() + visible.index(tile.x, y, s);
+      if (!std::all_of(ids, ids + tile.width, is_so)) return false;
+    }
+    if (input.pixels && !all_of_mixed(*input.pixels, tile, y, is_so)) return false;
+  }
+  return true;
+}
+
+/// The input of a picture of materials: a Visible and, if materials are see-through, all layers.
+class ShownMaterials {
+ public:
+  /// Prepares whatever the scene lacks. Borrows the request.
+  explicit ShownMaterials(const PictureRequest& request)
+      : request_(request), input_(request.input), scene_(request.scene) {
+    const bool wants_normals = request.options.shading != Shading::flat && lacks_normals(scene_.surfaces.scene());
+    wants_layers(request) ? find_layers(wants_normals) : find_front(wants_normals);
+    if (wants_normals) scene_.triangles.smooth(scene_.large, request.execution);
+    source_.emplace(scene_.triangles, input_.view(), wants_normals ? &scene_.large : nullptr,
+                    scene_.materials.has_textures());
+  }
+
+  /// The positions of samples within a pixel, in 1/256.
+  [[nodiscard]] std::span<const glm::ivec2> samples() const {
+    return layers_ ? std::span(layer_samples_) : sample_offsets(input_.view().samples);
+  }
+
+  /// Precondition: the layers were found.
+  [[nodiscard]] DeepImage deep(const FragmentShader::Colorist& colorist) const {
+    return deep_layers(scene_.surfaces, input_.view(), *source_, *layers_, colorist, request_.execution);
+  }
+
+  void paint(const Painting& painting) const {
+    const Execution& execution = request_.execution;
+    const ShadedLayer front{*source_, input_.first(), SampleUse::all, input_.pixels};
+    if (!layers_) return shade_tiles(front, painting, scene_.works, execution);
+    const auto paint_opaque = [&](const Rectangle& tile) {
+      if (!shows_front_alone(tile)) return false;
+      shade_part({tile.x, tile.y, tile.width, tile.height}, front, painting, scene_.works, execution.isa);
+      return true;
+    };
+    shade_layers(*source_, *layers_, paint_opaque, painting, execution);
+  }
+
+ private:
+  void find_front(bool wants_normals) {
+    const PrimitiveId count = scene_.surfaces.primitive_count();
+    if (wants_normals)
+      scene_.large = large_primitives(count, input_.first(), request_.execution, std::move(scene_.large));
+    scene_.make_materials_ready(input_, request_.execution);
+  }
+
+  void find_layers(bool wants_normals) {
+    const auto& layers = request_.options.layers;
+    layers_.emplace(scene_.surfaces, input_.view(), AbufferOptions{layers.grid, request_.options.opacity},
+                    request_.execution);
+    layer_samples_ = layers_->samples();
+    takes_front_ = layers.see_through == SeeThrough::where_needed && layers.grid == 0;
+    if (!wants_normals && scene_.materials.is_ready()) return;
+    if (takes_front_)
+      scene_.large = seen_primitives(scene_.surfaces, input_, request_.execution, std::move(scene_.large));
+    else
+      scene_.large.clear(scene_.surfaces.primitive_count());
+    const auto is_opaque = [&](const Rectangle& tile) { return shows_front_alone(tile); };
+    const auto note = [&](std::span<const PrimitiveId> primitives) {
+      for (const PrimitiveId id : primitives) scene_.large.add(id);
+    };
+    layers_->list_primitives(note, is_opaque, request_.execution);
+    scene_.make_materials_ready(scene_.large, request_.execution);
+  }
+
+  /// Whether all that is seen in a tile is opaque, so that the front alone gives its picture.
+  [[nodiscard]] bool shows_front_alone(const Rectangle& tile) const {
+    if (!takes_front_) return false;
+    PrimitiveId last = no_primitive;
+    return all_of_tile(input_, tile, [&](PrimitiveId id) {
+      if (id == last || id == no_primitive) return true;
+      last = id;
+      return layers_->is_opaque(id);
+    });
+  }
+
+  const PictureRequest& request_;
+  const ShadeInput& input_;
+  PreparedScene& scene_;
+  std::optional<abuffer_detail::FragmentPass> layers_;
+  std::vector<glm::ivec2> layer_samples_;
+  bool takes_front_ = false;  ///< tiles without see-through parts are painted from the front, which has the same
+                              ///< samples
+  std::optional<TriangleSource> source_;
+};
 
 glm::vec4 background_color(const ShadeOptions& options) {
   if (!options.background) return glm::vec4(0);
-  const glm::vec3& c = *options.background;
-  return {linear_of_shown(c.x), linear_of_shown(c.y), linear_of_shown(c.z), 1.0f};
+  return {linear_of_shown(*options.background), 1.0f};
 }
 
 Lighting lighting_of(const PictureRequest& request) {
@@ -35,14 +154,12 @@ Lighting lighting_of(const PictureRequest& request) {
 template <class Use>
 void with_colorist(const PictureRequest& request, const ShownMaterials& shown, const Use& use) {
   const ShadeOptions& options = request.options;
-  const MaterialTable& materials = request.scene.materials;
-  const auto use_it = [&](const auto& colorist) { use(FragmentShader::Colorist(std::cref(colorist))); };
-  if (options.shading == Shading::flat) return use_it(Flat{materials, request.execution.isa});
-  if (options.shading == Shading::normals) return use_it(Normals{materials, request.execution.isa});
+  if (options.shading != Shading::lit)
+    return use(unlit_colorist(options.shading, request.scene.materials, request.execution.isa));
   const Lighting lighting = lighting_of(request);
   Lit lit = lit_by(lighting, {request.input, options, shown.samples()}, request.scene, request.execution);
   lit.occlusion = request.scene.find_occlusion(request.input, options, request.execution);
-  use_it(lit);
+  use(FragmentShader::Colorist(std::cref(lit)));
 }
 
 void check(const PictureRequest& request) {
@@ -65,12 +182,11 @@ void paint_materials(const PictureRequest& request, TileCanvas& canvas) {
   const ShadeOptions& options = request.options;
   with_colorist(request, shown, [&](const FragmentShader::Colorist& colorist) {
     if (options.pixels.blend == Blend::linear)
-      return shown.paint({canvas, colorist, background_color(options), options.opacity, options.pixels.rate},
-                         request.execution);
+      return shown.paint({canvas, colorist, background_color(options), options.opacity, options.pixels.rate});
     LinearCanvas in_srgb(canvas);
-    const FragmentShader::Colorist srgb = SrgbColorist{colorist};
+    const FragmentShader::Colorist srgb = srgb_colorist(colorist);
     const glm::vec4 background = options.background ? glm::vec4(*options.background, 1) : glm::vec4(0);
-    shown.paint({in_srgb, srgb, background, options.opacity, options.pixels.rate}, request.execution);
+    shown.paint({in_srgb, srgb, background, options.opacity, options.pixels.rate});
   });
 }
 
@@ -82,46 +198,17 @@ void paint_map(const PictureRequest& request, TileCanvas& canvas) {
     shade_tiles({source, visible, SampleUse::all, request.input.pixels}, {canvas, colorist, background_color(options)},
                 request.scene.works, request.execution);
   };
-  if (options.shading == Shading::ids) return paint(Ids{});
-  if (options.shading == Shading::uv) return paint(Texcoords{});
-  const DepthRange range = depth_range(visible, request.execution);
-  const Depths depths{glm::vec3(visible.view.forward()), range.nearest, range.farthest};
-  paint(std::cref(depths));
-}
-
-/// Precondition: check().
-void paint_surfaces(const PictureRequest& request, TileCanvas& canvas) {
-  shows_materials(request.options.shading) ? paint_materials(request, canvas) : paint_map(request, canvas);
+  if (options.shading != Shading::depth)
+    return paint(unlit_colorist(options.shading, request.scene.materials, request.execution.isa));
+  paint(depth_colorist(depth_range(visible, request.execution), glm::vec3(visible.view.forward())));
 }
 
 /// Precondition: check().
 void paint(const PictureRequest& request, TileCanvas& canvas) {
+  const auto paint_surfaces = shows_materials(request.options.shading) ? paint_materials : paint_map;
   if (!request.options.light.shows_environment) return paint_surfaces(request, canvas);
   EnvironmentCanvas surrounded(canvas, request.input.view(), lighting_of(request), request.execution.isa);
   paint_surfaces(request, surrounded);
-}
-
-DeepImage deep_image(const PictureRequest& request) {
-  check(request);
-  const ShownMaterials shown(request);
-  DeepImage image;
-  with_colorist(request, shown, [&](const FragmentShader::Colorist& colorist) {
-    image = shown.deep(request.scene.surfaces, colorist, request.execution);
-  });
-  return image;
-}
-
-void paint_normals(PreparedScene& scene, const Visible& visible, const Execution& execution, TileCanvas& canvas) {
-  std::optional<BitSet> large;
-  if (lacks_normals(scene.surfaces.scene())) {
-    large = large_primitives(scene.surfaces.primitive_count(), visible, execution);
-    scene.triangles.smooth(*large, execution);
-  }
-  scene.make_materials_ready(ShadeInput{.visible = &visible}, execution);
-  TriangleSource source(scene.triangles, visible.view, large ? &*large : nullptr);
-  if (!scene.materials.has_textures()) source.leave_out_texcoords();
-  const TileWork::Colorist colorist = RawNormals{scene.materials, execution.isa};
-  shade_tiles({source, visible, SampleUse::first}, {canvas, colorist, glm::vec4(0)}, scene.works, execution);
 }
 
 }  // namespace
@@ -173,13 +260,28 @@ DeepImage Shader::shade_deep(const ShadeInput& input, const ShadeOptions& option
     throw Error(ErrorCode::unsupported, "shade", "deep images are lit, flat, or of normals");
   ShadeOptions in_layers = options;
   in_layers.layers.see_through = SeeThrough::always;
-  return deep_image({state_->now(execution), input, in_layers, execution});
+  const PictureRequest request{state_->now(execution), input, in_layers, execution};
+  check(request);
+  const ShownMaterials shown(request);
+  DeepImage image;
+  with_colorist(request, shown, [&](const FragmentShader::Colorist& colorist) { image = shown.deep(colorist); });
+  return image;
 }
 
 Image Shader::normal_image(const Visible& visible, const Execution& execution) {
   check_answer(visible, state_->scene.surfaces.primitive_count(), "normal image", execution);
+  PreparedScene& scene = state_->now(execution);
+  const bool wants_normals = lacks_normals(scene.surfaces.scene());
+  if (wants_normals) {
+    scene.large = large_primitives(scene.surfaces.primitive_count(), visible, execution, std::move(scene.large));
+    scene.triangles.smooth(scene.large, execution);
+  }
+  scene.make_materials_ready(ShadeInput{.visible = &visible}, execution);
+  const TriangleSource source(scene.triangles, visible.view, wants_normals ? &scene.large : nullptr,
+                              scene.materials.has_textures());
+  const FragmentShader::Colorist colorist = normal_colorist(scene.materials, execution.isa);
   PlanesCanvas canvas(visible.view, {"N.X", "N.Y", "N.Z"});
-  paint_normals(state_->now(execution), visible, execution, canvas);
+  shade_tiles({source, visible, SampleUse::first}, {canvas, colorist, glm::vec4(0)}, scene.works, execution);
   return canvas.take();
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "base/pool.h"
 #include "frontmost/pictures.h"
 #include "frontmost/view.h"
 #include "shade/fragment_shader.h"
@@ -88,5 +89,13 @@ class TileWork {
   std::vector<glm::vec4> pixels_;
   Row rows_[tile_height];
 };
+
+struct Painting;
+
+/// Shades the tiles of a part of the picture. The part begins at the corner of a tile.
+void shade_part(const TileRectangle& part, const ShadedLayer& layer, const Painting& painting, Pool<TileWork>& works,
+                Isa isa);
+/// Shades all tiles, one row of tiles per thread at a time.
+void shade_tiles(const ShadedLayer& layer, const Painting& painting, Pool<TileWork>& works, const Execution& execution);
 
 }  // namespace frontmost::shading

@@ -50,18 +50,6 @@ Models::Models(const std::vector<std::string>& paths, const LoadOptions& options
   has_opened_ = true;
 }
 
-bool Models::is_shared(std::size_t file) const { return turns_.count > 1 && turns_.reader_of(file) < 0; }
-
-bool Models::is_read_here(std::size_t file) const {
-  const int reader = turns_.reader_of(file);
-  return turns_.count == 1 || reader < 0 || reader == turns_.number;
-}
-
-bool Models::takes_turn(std::size_t file) {
-  if (!is_shared(file)) return true;
-  return shared_pieces_++ % std::uint64_t(turns_.count) == std::uint64_t(turns_.number);
-}
-
 void Models::add(Model model) {
   const Scene& part = model.stream->scene();
   if (models_.empty()) {
@@ -95,19 +83,6 @@ void Models::warn(const Model& model, const std::string& text) {
 void Models::take_warnings(Model& model) {
   const std::vector<std::string>& all = model.stream->scene().warnings;
   for (; model.warnings < all.size(); ++model.warnings) warn(model, all[model.warnings]);
-}
-
-void Models::begin(std::size_t file) {
-  Model& model = models_[file];
-  if (knows_firsts_) next_ = model.first;
-  model.first = PrimitiveId(next_);
-  begun_ = file + 1;
-}
-
-/// Warns about a file without triangles, as load() does.
-void Models::end(Model& model) {
-  if (!model.has_ended && model.triangle_count == 0) warn(model, no_triangles_warning);
-  model.has_ended = true;
 }
 
 std::uint64_t Models::triangle_count() const {
@@ -171,10 +146,15 @@ void Models::rewind() {
 bool Models::fetch(StreamPiece& piece, PiecePlace& place, std::uint32_t triangles) {
   for (; current_ < models_.size(); ++current_) {
     if (!is_read_here(current_)) continue;
-    if (begun_ <= current_) begin(current_);
     Model& model = models_[current_];
+    if (begun_ <= current_) {
+      if (knows_firsts_) next_ = model.first;
+      model.first = PrimitiveId(next_);
+      begun_ = current_ + 1;
+    }
     while (true) {
-      const bool is_wanted = takes_turn(current_);
+      const bool is_wanted =
+          !is_shared(current_) || shared_pieces_++ % std::uint64_t(turns_.count) == std::uint64_t(turns_.number);
       const bool got = is_wanted ? model.stream->fetch(piece, triangles) : model.stream->pass_over(piece, triangles);
       take_warnings(model);
       if (!got) break;
@@ -184,7 +164,9 @@ bool Models::fetch(StreamPiece& piece, PiecePlace& place, std::uint32_t triangle
       if (next_ > most_triangles) fail_too_many();
       if (is_wanted) return true;
     }
-    end(model);
+    // A file without triangles gets a warning, as from load().
+    if (!model.has_ended && model.triangle_count == 0) warn(model, no_triangles_warning);
+    model.has_ended = true;
   }
   return false;
 }

@@ -79,12 +79,11 @@ class Models {
   void add(Model model);
   void warn(const Model& model, const std::string& text);
   void take_warnings(Model& model);
-  void begin(std::size_t file);
-  void end(Model& model);
-  [[nodiscard]] bool is_read_here(std::size_t file) const;
-  [[nodiscard]] bool is_shared(std::size_t file) const;
-  /// True if this rank reads the next piece.
-  bool takes_turn(std::size_t file);
+  /// True if all ranks read the file, taking turns by pieces.
+  [[nodiscard]] bool is_shared(std::size_t file) const { return turns_.count > 1 && turns_.reader_of(file) < 0; }
+  [[nodiscard]] bool is_read_here(std::size_t file) const {
+    return turns_.count == 1 || is_shared(file) || turns_.reader_of(file) == turns_.number;
+  }
 
   std::vector<Model> models_;
   Turns turns_;

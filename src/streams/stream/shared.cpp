@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "stream/message.h"
 #include "view/packed.h"
 
 namespace frontmost::streaming {
@@ -35,34 +34,34 @@ PassFacts facts_of(const Ranks::Message& message) {
   return facts;
 }
 
-void put(const Kept& kept, MessageWriter& writer) {
-  writer.put(kept.place.first);
-  writer.put(kept.place.object);
-  writer.put_list(kept.triangles);
-  writer.put_list(kept.mesh.positions);
-  writer.put_list(kept.mesh.normals.values);
-  writer.put_list(kept.mesh.texcoords.values);
-  writer.put_list(kept.mesh.colors.values);
-  writer.put_list(kept.mesh.material_ids);
+/// Calls visit(list) for all that a message holds of kept triangles besides their place.
+template <class AnyKept, class Visit>
+void for_each_list(AnyKept& kept, const Visit& visit) {
+  visit(kept.triangles);
+  visit(kept.mesh.positions);
+  visit(kept.mesh.normals.values);
+  visit(kept.mesh.texcoords.values);
+  visit(kept.mesh.colors.values);
+  visit(kept.mesh.material_ids);
 }
 
 std::size_t size_of(const Kept& kept) {
-  constexpr std::size_t counts = 64;  // including the place
-  const auto bytes = [](const auto& list) { return list.size() * sizeof(list[0]); };
-  return counts + bytes(kept.triangles) + bytes(kept.mesh.positions) + bytes(kept.mesh.normals.values) +
-         bytes(kept.mesh.texcoords.values) + bytes(kept.mesh.colors.values) + bytes(kept.mesh.material_ids);
+  std::size_t bytes = 64;  // for the place, and the lengths of the lists
+  for_each_list(kept, [&](const auto& list) { bytes += list.size() * sizeof(list[0]); });
+  return bytes;
+}
+
+void put(const Kept& kept, MessageWriter& writer) {
+  writer.put(kept.place.first);
+  writer.put(kept.place.object);
+  for_each_list(kept, [&](const auto& list) { writer.put_list(list); });
 }
 
 Kept get_kept(MessageReader& reader) {
   Kept kept;
   kept.place.first = reader.get<PrimitiveId>();
   kept.place.object = reader.get<std::uint32_t>();
-  kept.triangles = reader.get_list<std::uint32_t>();
-  kept.mesh.positions = reader.get_list<glm::vec3>();
-  kept.mesh.normals.values = reader.get_list<glm::vec3>();
-  kept.mesh.texcoords.values = reader.get_list<glm::vec2>();
-  kept.mesh.colors.values = reader.get_list<glm::vec4>();
-  kept.mesh.material_ids = reader.get_list<std::uint32_t>();
+  for_each_list(kept, [&]<class T>(std::vector<T>& list) { list = reader.get_list<T>(); });
   // Each triangle has three vertices of its own, in order.
   kept.mesh.triangles.reserve(kept.triangles.size());
   for (std::uint32_t t = 0; t < kept.triangles.size(); ++t)

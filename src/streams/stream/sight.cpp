@@ -91,8 +91,6 @@ void SightGatherer::share(Ranks& ranks, const IdShift& shift, const Execution& e
   }
 }
 
-void SightGatherer::finish() { forget_hidden(); }
-
 /// Works in slices of ids, so that one bit per id takes 32 MiB at most, however long the stream is.
 void SightGatherer::forget_hidden() {
   constexpr std::uint64_t slice = std::uint64_t(1) << 28;

@@ -56,15 +56,13 @@ class SightGatherer {
   /// After the last piece: merges the planes of all ranks. `shift` maps ids to those of the whole model.
   void share(Ranks& ranks, const IdShift& shift, const Execution& execution);
   /// After share(), if there are ranks: removes kept triangles that later pieces or other ranks hide.
-  void finish();
+  void forget_hidden();
 
   [[nodiscard]] KeptPieces take_kept() { return std::move(kept_); }
   [[nodiscard]] std::vector<Visible> take_visible() { return std::move(visible_); }
   [[nodiscard]] const Box& bounds() const { return bounds_; }
 
  private:
-  void forget_hidden();
-
   std::vector<Visible> visible_;
   std::size_t sample_count_ = 0;
   SightNeeds needs_;

@@ -10,12 +10,9 @@
 #include "frontmost/streams.h"
 #include "frontmost/zbuffer.h"
 #include "shade/geometry/geometry.h"
-#include "stream/id_map.h"
-#include "stream/kept_triangles.h"
+#include "stream/neighbours.h"
 #include "stream/outline.h"
-#include "stream/shared.h"
 #include "stream/sight.h"
-#include "stream/touched_positions.h"
 
 namespace frontmost {
 
@@ -42,6 +39,28 @@ std::uint32_t shared_piece_size(const std::vector<std::string>& paths, const Str
                     : std::uint32_t(std::min<std::uint64_t>(std::max(even, least), options.triangles_at_once));
 }
 
+/// Vertices of the kept triangles that are large enough on the screen for their smooth normals to be used.
+std::vector<glm::vec3> large_corners(const KeptPieces& kept, const std::vector<Visible>& visible,
+                                     const Execution& execution) {
+  const std::vector<PrimitiveId> ids = ids_of(kept);
+  const IdMap places(ids);
+  std::vector<shading::BitSet> large;
+  for (const Visible& one : visible) {
+    const PrimitiveId* const seen = one.primitives.data();
+    std::vector<PrimitiveId> first(seen, seen + one.view.pixel_count());
+    places.apply(first, execution);
+    large.push_back(shading::large_primitives(ids.size(), first, one.view.width, execution));
+  }
+  std::vector<glm::vec3> corners;
+  std::size_t id = 0;
+  for (const auto& [number, piece] : kept)
+    for (std::uint32_t t = 0; t < piece.triangles.size(); ++t, ++id)
+      if (piece.mesh.normals.empty() &&
+          std::any_of(large.begin(), large.end(), [&](auto& set) { return set.contains(id); }))
+        for (int k = 0; k < 3; ++k) corners.push_back(piece.mesh.positions[3 * t + std::uint32_t(k)]);
+  return corners;
+}
+
 }  // namespace
 
 struct Stream::State {
@@ -52,8 +71,6 @@ struct Stream::State {
       throw Error(ErrorCode::bad_argument, "triangles_at_once", "must be 1 to 16777216");
     options.triangles_at_once = shared_piece_size(paths, given);
   }
-
-  [[nodiscard]] bool has_results() const { return !options.ranks || options.ranks->number() == 0; }
 
   /// Exchanges facts with the other ranks after the first pass, which has found bounds. \returns the map from this
   /// pass's ids to ids of the whole model.
@@ -69,28 +86,69 @@ struct Stream::State {
     return {from, counts, models.first_ids()};
   }
 
-  void begin_pass() {
-    if (passes++ == 0) return;
-    if (!models.can_rewind())
-      throw Error(ErrorCode::unsupported,
-                  "standard input and pipes can be read only once, and this takes another pass");
-    models.rewind();
-  }
-
-  /// Options of a pass: as many workers as the memory for pieces allows, which share the threads.
-  [[nodiscard]] LoopOptions loop_options(std::size_t samples, const Execution& execution) const {
-    constexpr std::size_t memory = std::size_t(512) << 20, bytes_per_triangle = 220, bytes_per_sample = 8;
-    const std::size_t each = options.triangles_at_once * bytes_per_triangle + samples * bytes_per_sample;
-    const auto most = int(std::max<std::size_t>(memory / each, 1));
-    return {options.triangles_at_once, std::min(thread_count(execution), most)};
-  }
-
   /// Calls work(worker, piece, place, execution of the worker) for every piece; a piece is drawn into `samples` in all.
   template <class Work>
-  void pass(std::size_t samples, const Execution& execution, const Work& work);
+  void pass(std::size_t samples, const Execution& execution, const Work& work) {
+    if (passes++ > 0) {
+      if (!models.can_rewind())
+        throw Error(ErrorCode::unsupported,
+                    "standard input and pipes can be read only once, and this takes another pass");
+      models.rewind();
+    }
+    // As many workers as the memory for pieces allows; they share the threads.
+    constexpr std::size_t memory = std::size_t(512) << 20, bytes_per_triangle = 220, bytes_per_sample = 8;
+    const std::size_t each = options.triangles_at_once * bytes_per_triangle + samples * bytes_per_sample;
+    const int workers = std::min(thread_count(execution), int(std::max<std::size_t>(memory / each, 1)));
+    // Workers report no progress of their own: the loop over pieces does.
+    Watch quiet;
+    if (execution.watch) quiet.cancelled = execution.watch->cancelled;
+    const Execution of_worker{std::max(1, thread_count(execution) / workers), execution.isa, &quiet};
+    for_each_piece(
+        models, {options.triangles_at_once, workers}, execution,
+        [&](int worker, StreamPiece& piece, const PiecePlace& place) { work(worker, piece, place, of_worker); });
+  }
+
+  /// The first pass of look(): finds what is visible on any rank, and keeps copies of the triangles read here.
   KeptPieces find_visible(const std::vector<View>& views, const StreamNeeds& needs, Excerpt& excerpt,
-                          const Execution& execution);
-  KeptPieces find_needs(KeptPieces kept, const StreamNeeds& needs, Excerpt& excerpt, const Execution& execution);
+                          const Execution& execution) {
+    SightGatherer sight(views, {.triangles = true, .bounds = !bounds, .unseen = needs.unseen});
+    std::vector<Drawer> drawers(std::size_t(thread_count(execution)));
+    pass(sight.sample_count(), execution,
+         [&](int worker, StreamPiece& piece, const PiecePlace& place, const Execution& each) {
+           drawers[std::size_t(worker)].draw(piece, place, models.scene(), sight, each);
+         });
+    Box found = bounds.value_or(sight.bounds());
+    if (options.ranks) sight.share(*options.ranks, share_facts(found), execution);
+    sight.forget_hidden();
+    bounds = found;
+    excerpt.visible = sight.take_visible();
+    return sight.take_kept();
+  }
+
+  /// The second pass of look(): finds what the light sees, and the neighbours of visible triangles.
+  KeptPieces find_needs(KeptPieces kept, const StreamNeeds& needs, Excerpt& excerpt, const Execution& execution) {
+    std::vector<View> light;
+    if (needs.key_light)
+      if (const auto view = key_light_view(excerpt.visible.front(), *bounds, needs.light, execution))
+        light.push_back(*view);
+    std::optional<NeighbourFinder> neighbours;
+    if (needs.smooth_normals) {
+      std::vector<glm::vec3> corners = large_corners(kept, excerpt.visible, execution);
+      if (options.ranks) corners = share(*options.ranks, corners);
+      if (!corners.empty()) neighbours.emplace(std::move(kept), corners);
+    }
+    if (light.empty() && !neighbours) return kept;
+    SightGatherer sight(light, {});
+    std::vector<Drawer> drawers(std::size_t(thread_count(execution)));
+    pass(sight.sample_count(), execution,
+         [&](int worker, StreamPiece& piece, const PiecePlace& place, const Execution& each) {
+           if (neighbours) neighbours->find(piece.mesh, place);
+           if (!light.empty()) drawers[std::size_t(worker)].draw(piece, place, models.scene(), sight, each);
+         });
+    if (options.ranks && !light.empty()) sight.share(*options.ranks, {{}, {}, {}}, execution);
+    if (!light.empty()) excerpt.seen_by_light = std::move(sight.take_visible().front());
+    return neighbours ? neighbours->take() : std::move(kept);
+  }
 
   StreamOptions options;
   Models models;
@@ -113,98 +171,13 @@ std::uint64_t Stream::triangle_count() const {
 }
 Box Stream::bounds() const { return state_->bounds.value_or(Box{}); }
 
-namespace {
-
-/// The threads of one worker. They report no progress of their own: the loop over pieces does.
-struct WorkerExecution {
-  WorkerExecution(const Execution& whole, int workers) {
-    if (whole.watch) quiet.cancelled = whole.watch->cancelled;
-    execution = {std::max(1, thread_count(whole) / workers), whole.isa, &quiet};
-  }
-  WorkerExecution(const WorkerExecution&) = delete;
-  WorkerExecution& operator=(const WorkerExecution&) = delete;
-
-  Watch quiet;
-  Execution execution;
-};
-
-bool lacks_normals(const Kept& piece) { return piece.mesh.normals.empty(); }
-
-/// Vertices of the kept triangles that are large enough on the screen for their smooth normals to be used.
-std::vector<glm::vec3> large_corners(const KeptPieces& kept, const std::vector<Visible>& visible,
-                                     const Execution& execution) {
-  const std::vector<PrimitiveId> ids = ids_of(kept);
-  const IdMap places(ids);
-  std::vector<shading::BitSet> large;
-  for (const Visible& one : visible) {
-    const PrimitiveId* const seen = one.primitives.data();
-    std::vector<PrimitiveId> first(seen, seen + one.view.pixel_count());
-    places.apply(first, execution);
-    large.push_back(shading::large_primitives(ids.size(), first, one.view.width, execution));
-  }
-  std::vector<glm::vec3> corners;
-  std::size_t id = 0;
-  for (const auto& [number, piece] : kept)
-    for (std::uint32_t t = 0; t < piece.triangles.size(); ++t, ++id)
-      if (lacks_normals(piece) && std::any_of(large.begin(), large.end(), [&](auto& set) { return set.contains(id); }))
-        for (int k = 0; k < 3; ++k) corners.push_back(piece.mesh.positions[3 * t + std::uint32_t(k)]);
-  return corners;
-}
-
-/// Finds the triangles that touch large ones, in addition to the visible ones.
-class NeighbourFinder {
- public:
-  /// Triangles of `seen` are copied anew, so that they and their neighbours are in the order of the stream.
-  NeighbourFinder(KeptPieces seen, const std::vector<glm::vec3>& corners)
-      : seen_(std::move(seen)), touched_(corners.size()) {
-    for (const glm::vec3& position : corners) touched_.add(position);
-    for (auto& [number, piece] : seen_) piece.mesh = {};
-  }
-
-  void find(const Mesh& mesh, const PiecePlace& place) {
-    Kept found{place, {}, {}};
-    const auto seen = seen_.find(place.number);
-    std::size_t next = 0;
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      const bool is_seen =
-          seen != seen_.end() && next < seen->second.triangles.size() && seen->second.triangles[next] == t;
-      next += is_seen;
-      const bool touches = touched_.touches(mesh, t);
-      if (!is_seen && !touches) continue;
-      found.triangles.push_back(t);
-      append_triangle(mesh, t, found.mesh);
-    }
-    if (found.triangles.empty()) return;
-    const std::lock_guard lock(mutex_);
-    all_.emplace(place.number, std::move(found));
-  }
-  [[nodiscard]] KeptPieces take() { return std::move(all_); }
-
- private:
-  KeptPieces seen_, all_;
-  TouchedPositions touched_;
-  std::mutex mutex_;
-};
-
-}  // namespace
-
-template <class Work>
-void Stream::State::pass(std::size_t samples, const Execution& execution, const Work& work) {
-  begin_pass();
-  const LoopOptions loop = loop_options(samples, execution);
-  const WorkerExecution each(execution, loop.workers);
-  for_each_piece(models, loop, execution, [&](int worker, StreamPiece& piece, const PiecePlace& place) {
-    work(worker, piece, place, each.execution);
-  });
-}
-
 Scene Stream::outline(const View& direction, double margin, const Execution& execution) {
   std::vector<OutlineFinder> finders(std::size_t(thread_count(execution)), OutlineFinder(direction, margin));
   state_->pass(0, execution, [&](int worker, StreamPiece& piece, const PiecePlace&, const Execution&) {
     finders[std::size_t(worker)].include(piece.mesh);
   });
   OutlineFinder finder(direction, margin);
-  for (const OutlineFinder& other : finders) finder.include(other);
+  for (const OutlineFinder& other : finders) finder.include(other.points());
   if (Ranks* const ranks = state_->options.ranks) finder.include(share(*ranks, finder.points()));
   Box bounds = finder.bounds();
   if (state_->options.ranks) (void)state_->share_facts(bounds);
@@ -216,56 +189,15 @@ Scene Stream::outline(const View& direction, double margin, const Execution& exe
   return scene;
 }
 
-/// The first pass of look(): finds what is visible on any rank, and keeps copies of the triangles read here.
-KeptPieces Stream::State::find_visible(const std::vector<View>& views, const StreamNeeds& needs, Excerpt& excerpt,
-                                       const Execution& execution) {
-  SightGatherer sight(views, {.triangles = true, .bounds = !bounds, .unseen = needs.unseen});
-  std::vector<Drawer> drawers(std::size_t(thread_count(execution)));
-  pass(sight.sample_count(), execution,
-       [&](int worker, StreamPiece& piece, const PiecePlace& place, const Execution& each) {
-         drawers[std::size_t(worker)].draw(piece, place, models.scene(), sight, each);
-       });
-  Box found = bounds.value_or(sight.bounds());
-  if (options.ranks) sight.share(*options.ranks, share_facts(found), execution);
-  sight.finish();
-  bounds = found;
-  excerpt.visible = sight.take_visible();
-  return sight.take_kept();
-}
-
-/// The second pass of look(): finds what the light sees, and the neighbours of visible triangles.
-KeptPieces Stream::State::find_needs(KeptPieces kept, const StreamNeeds& needs, Excerpt& excerpt,
-                                     const Execution& execution) {
-  std::vector<View> light;
-  if (needs.key_light)
-    if (const auto view = key_light_view(excerpt.visible.front(), *bounds, needs.light, execution))
-      light.push_back(*view);
-  std::optional<NeighbourFinder> neighbours;
-  if (needs.smooth_normals) {
-    std::vector<glm::vec3> corners = large_corners(kept, excerpt.visible, execution);
-    if (options.ranks) corners = share(*options.ranks, corners);
-    if (!corners.empty()) neighbours.emplace(std::move(kept), corners);
-  }
-  if (light.empty() && !neighbours) return kept;
-  SightGatherer sight(light, {});
-  std::vector<Drawer> drawers(std::size_t(thread_count(execution)));
-  pass(sight.sample_count(), execution,
-       [&](int worker, StreamPiece& piece, const PiecePlace& place, const Execution& each) {
-         if (neighbours) neighbours->find(piece.mesh, place);
-         if (!light.empty()) drawers[std::size_t(worker)].draw(piece, place, models.scene(), sight, each);
-       });
-  if (options.ranks && !light.empty()) sight.share(*options.ranks, {{}, {}, {}}, execution);
-  if (!light.empty()) excerpt.seen_by_light = std::move(sight.take_visible().front());
-  return neighbours ? neighbours->take() : std::move(kept);
-}
-
 Excerpt Stream::look(const std::vector<View>& views, const StreamNeeds& needs, const Execution& execution) {
   if (views.empty()) throw Error(ErrorCode::bad_argument, "stream", "no views");
   Excerpt excerpt;
   KeptPieces kept = state_->find_visible(views, needs, excerpt, execution);
   kept = state_->find_needs(std::move(kept), needs, excerpt, execution);
-  if (Ranks* const ranks = state_->options.ranks) kept = gather(*ranks, std::move(kept));
-  if (!state_->has_results()) return {};
+  if (Ranks* const ranks = state_->options.ranks) {
+    kept = gather(*ranks, std::move(kept));
+    if (ranks->number() != 0) return {};
+  }
   excerpt.stream_ids = ids_of(kept);
   const IdMap places(excerpt.stream_ids);
   for (Visible& visible : excerpt.visible)

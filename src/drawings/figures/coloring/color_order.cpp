@@ -20,7 +20,6 @@
 #include "figures/coloring/pieces.h"
 #include "shade/colorists.h"
 #include "shade/fragment_shader.h"
-#include "shade/picture_parts.h"
 #include "shade/prepared_scene.h"
 #include "surfaces/cluster_set.h"
 #include "view/screen_cutout.h"
@@ -76,18 +75,12 @@ class PointShader {
     check_opacity(options);
     check_ambient_occlusion(options);
     scene.make_materials_ready(triangles.seen, execution);
-    switch (options.shading) {
-      case Shading::lit: colorist_ = lit_at_points(scene, input, options, lighting_, execution); break;
-      case Shading::flat: colorist_ = Flat{scene.materials, execution.isa}; break;
-      case Shading::normals: colorist_ = Normals{scene.materials, execution.isa}; break;
-      case Shading::ids: colorist_ = Ids{}; break;
-      case Shading::uv: colorist_ = Texcoords{}; break;
-      case Shading::depth: {
-        const DepthRange range = depth_range(input.first(), execution);
-        colorist_ = Depths{glm::vec3(input.first().view.forward()), range.nearest, range.farthest};
-        break;
-      }
-    }
+    if (options.shading == Shading::lit)
+      colorist_ = lit_at_points(scene, input, options, lighting_, execution);
+    else if (options.shading == Shading::depth)
+      colorist_ = depth_colorist(depth_range(input.first(), execution), glm::vec3(input.first().view.forward()));
+    else
+      colorist_ = unlit_colorist(options.shading, scene.materials, execution.isa);
   }
 
   [[nodiscard]] const TriangleSource& source() const { return source_; }

@@ -15,7 +15,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "shade/geometry/triangle_setup.h"
+#include "shade/geometry/geometry.h"
 
 namespace frontmost::shading {
 

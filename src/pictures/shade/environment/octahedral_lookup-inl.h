@@ -49,6 +49,20 @@ inline TexelSquare texel_square(const OctahedralPlace& place, std::int32_t size)
   return {4 * (row * (size + 2) + column), x - float(column), y - float(row)};
 }
 
+/// Texel squares by fragment, or by texel of another map.
+template <int capacity>
+struct TexelSquares {
+  std::int32_t first[capacity];
+  float x[capacity], y[capacity];
+
+  HWY_INLINE void set(int i, const TexelSquare& square) {
+    first[i] = square.first;
+    x[i] = square.x;
+    y[i] = square.y;
+  }
+  [[nodiscard]] HWY_INLINE TexelSquare at(int i) const { return {first[i], x[i], y[i]}; }
+};
+
 /// The four channels of two adjacent texels, in one vector or in several parts.
 constexpr int kPairLanes = 8;
 using DTexels = hn::CappedTag<float, kPairLanes>;

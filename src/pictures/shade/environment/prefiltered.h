@@ -3,13 +3,80 @@
 #pragma once
 
 #include <array>
-#include <functional>
 
 #include "frontmost/image.h"
 #include "frontmost/pictures.h"
-#include "shade/environment/octahedral_map.h"
 
 namespace frontmost::shading {
+
+/// The colours of all directions on a square: the octahedron |x| + |y| + |z| = 1 seen from above, with its lower faces
+/// unfolded to the corners. Neighbours on the square are neighbours in direction, texels have similar sizes, and a
+/// look-up takes a single division.
+///
+///      +-------+-------+
+///      | down/ | \down |        the middle is straight up, the four corners are straight down;
+///      |   /   |   \   |        x to the right, z downwards
+///      +-------up------+
+///      |   \   |   /   |
+///      | down\ | /down |
+///      +-------+-------+
+///
+/// (E. Praun, H. Hoppe. Spherical Parametrization and Remeshing. SIGGRAPH 2003.)
+///
+/// Texels are four floats (red, green, blue, unused). The map has a border of one texel, which repeats the texels
+/// beyond the fold, so that two neighbours can be read at once anywhere.
+class OctahedralMap {
+ public:
+  static constexpr int channels = 4;
+
+  OctahedralMap() = default;
+  /// The texels are undefined.
+  explicit OctahedralMap(int size)
+      : size_(size), texels_(std::size_t(size + 2) * std::size_t(size + 2) * std::size_t(channels)) {}
+
+  [[nodiscard]] int size() const { return size_; }        ///< texels per side, without the border
+  [[nodiscard]] int stride() const { return size_ + 2; }  ///< texels per row, with the border
+  [[nodiscard]] const float* texels() const { return texels_.data(); }
+  /// x and y are -1 to size.
+  [[nodiscard]] float* texel(int x, int y) { return texels_.data() + index(x, y); }
+  [[nodiscard]] const float* texel(int x, int y) const { return texels_.data() + index(x, y); }
+  void set(int x, int y, const glm::vec3& color) {
+    float* const out = texel(x, y);
+    out[0] = color.r;
+    out[1] = color.g;
+    out[2] = color.b;
+    out[3] = 0;
+  }
+  [[nodiscard]] glm::vec3 color(int x, int y) const {
+    const float* const in = texel(x, y);
+    return {in[0], in[1], in[2]};
+  }
+  /// Bilinear look-up. `towards` has any length but zero.
+  [[nodiscard]] glm::vec3 color(const glm::vec3& towards) const;
+
+  /// Copies the texels beyond the folds into the border.
+  void close_border();
+  /// A map of half the size, with a border. Each texel is the mean of four, weighted by solid angle. Precondition: an
+  /// even size.
+  [[nodiscard]] OctahedralMap half() const;
+
+ private:
+  [[nodiscard]] std::size_t index(int x, int y) const {
+    return (std::size_t(y + 1) * std::size_t(stride()) + std::size_t(x + 1)) * std::size_t(channels);
+  }
+
+  int size_ = 0;
+  Buffer<float> texels_;
+};
+
+/// The point of the octahedron at u, v, which are 0 to 1 over the square: a direction, not of unit length.
+[[nodiscard]] glm::vec3 octahedron_point(float u, float v);
+/// The point of the octahedron at the middle of a texel.
+[[nodiscard]] inline glm::vec3 octahedron_point(int size, int x, int y) {
+  return octahedron_point((float(x) + 0.5f) / float(size), (float(y) + 0.5f) / float(size));
+}
+/// The solid angle of a texel there, as a multiple of its area on the square of side 2.
+[[nodiscard]] float solid_angle(const glm::vec3& octahedron_point);
 
 /// The light reflected by a white diffuse surface is a polynomial of its normal: mean + 2 first . n + 15/8 n . second
 /// n. These are spherical harmonics up to order 2, in a form that is easy to rotate.
@@ -36,6 +103,16 @@ struct PrefilteredEnvironment {
   Image picture;         ///< equirectangular; empty if the environment was made by code
 };
 
+/// One direction of the specular lobe of a rough surface at normal incidence. A lobe is a few dozen directions. One
+/// that stands for a wider part of the lobe is looked up in a coarser map, so that no light between directions is lost.
+/// (J. Krivanek, M. Colbert. Real-Time Shading with Filtered Importance Sampling. Eurographics Symposium on Rendering
+/// 2008.)
+struct LobeDirection {
+  glm::vec3 towards{0};  ///< unit; z along the normal
+  float weight = 0;      ///< all weights sum to 1
+  int map = 0;           ///< index of the map for the look-up
+};
+
 /// The data of an environment, for shading.
 [[nodiscard]] const PrefilteredEnvironment& prefiltered(const Environment& environment);
 
@@ -43,15 +120,9 @@ struct PrefilteredEnvironment {
 /// bits are the same on every machine.
 void prefilter(PrefilteredEnvironment& environment, const Execution& execution);
 
-/// Radiance from a direction of unit length.
-using Radiance = std::function<glm::vec3(const glm::vec3& towards)>;
-/// Level 0 from code: the radiance at the middle of every texel. In parallel.
-[[nodiscard]] OctahedralMap draw_map(int size, const Radiance& radiance, const Execution& execution);
 /// Level 0 from an equirectangular picture: the mean over each texel. In parallel.
 [[nodiscard]] OctahedralMap draw_map(const Image& equirectangular, const Execution& execution);
-
-/// Radiances of the environments that are made by code.
-[[nodiscard]] glm::vec3 studio_radiance(const glm::vec3& towards);
-[[nodiscard]] glm::vec3 sky_radiance(const glm::vec3& towards);
+/// The colour of one background pixel: bilinear in the equirectangular picture itself.
+[[nodiscard]] glm::vec3 equirectangular_color(const Image& picture, const glm::vec3& towards);
 
 }  // namespace frontmost::shading

@@ -1,41 +1,169 @@
 // SPDX-License-Identifier: Apache-2.0
-// From primitive ids to set-up triangles, and from these to the geometric data of each fragment.
+// Triangles of a scene and their attributes at fragments.
+//
+//   ids of a picture --> seen, large primitives --> smooth normals    (TriangleStore, view-independent)
+//                                                        |
+//   triangles of a tile --> TriangleSetup: corners, weights, attributes    (TriangleSource, for one view)
+//                                |
+//   fragments of a batch --> positions, normals, texture coordinates, colours    (interpolate_geometry)
 #pragma once
 
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "frontmost/scene.h"
 #include "frontmost/view.h"
 #include "shade/batch.h"
-#include "shade/bit_set.h"
-#include "shade/geometry/smooth_normals.h"
-#include "shade/geometry/triangle_setup.h"
 #include "surfaces/cluster_set.h"
+#include "view/ray_volumes.h"
 
 namespace frontmost::shading {
 
-/// The set of primitives that hold a sample. Reuses `memory` for the result if its size fits. O(samples), in parallel.
-[[nodiscard]] BitSet seen_primitives(const Surfaces& surfaces, const Visible& visible, const Execution& execution,
-                                     BitSet memory = {});
+/// A set of numbers to which many threads may add at once. The result does not depend on their order.
+class BitSet {
+ public:
+  BitSet() = default;
+  explicit BitSet(std::size_t size) : words_((size + 63) / 64) {}
 
-/// The set of the given ids. O(ids), in parallel.
+  void add(std::size_t i) {
+    const std::uint64_t bit = std::uint64_t(1) << (i % 64);
+    std::atomic<std::uint64_t>& word = words_[i / 64];
+    // Most numbers are added many times; reading first keeps the cache line shared.
+    if (!(word.load(std::memory_order_relaxed) & bit)) word.fetch_or(bit, std::memory_order_relaxed);
+  }
+  [[nodiscard]] bool contains(std::size_t i) const {
+    return (words_[i / 64].load(std::memory_order_relaxed) >> (i % 64)) & 1;
+  }
+  /// Whether the set contains all of `other`, which has the same size. Not while threads add to either.
+  [[nodiscard]] bool holds(const BitSet& other) const {
+    std::uint64_t missing = 0;
+    for (std::size_t w = 0; w < words_.size(); ++w)
+      missing |= other.words_[w].load(std::memory_order_relaxed) & ~words_[w].load(std::memory_order_relaxed);
+    return missing == 0;
+  }
+  /// Calls visit(i), in ascending order, for every number in this set that `known`, of the same size, lacks. Not while
+  /// threads add to either.
+  template <class Visit>
+  void visit_new(const BitSet& known, const Visit& visit) const {
+    for (std::size_t w = 0; w < words_.size(); ++w) {
+      const std::uint64_t old = known.words_[w].load(std::memory_order_relaxed);
+      for (std::uint64_t left = words_[w].load(std::memory_order_relaxed) & ~old; left != 0; left &= left - 1)
+        visit(64 * w + std::size_t(std::countr_zero(left)));
+    }
+  }
+  /// Adds all numbers of `other`, which has the same size.
+  void add_all(const BitSet& other) {
+    for (std::size_t w = 0; w < words_.size(); ++w)
+      words_[w].fetch_or(other.words_[w].load(std::memory_order_relaxed), std::memory_order_relaxed);
+  }
+  /// Empties the set, for numbers below `size`. Allocates nothing if the size is unchanged.
+  void clear(std::size_t size) {
+    if (words_.size() != (size + 63) / 64) words_ = std::vector<std::atomic<std::uint64_t>>((size + 63) / 64);
+    for (std::atomic<std::uint64_t>& word : words_) word.store(0, std::memory_order_relaxed);
+  }
+
+ private:
+  std::vector<std::atomic<std::uint64_t>> words_;
+};
+
+/// The set of the given ids. Reuses `memory` for the result if its size fits. O(ids), in parallel.
 [[nodiscard]] BitSet seen_primitives(std::size_t primitive_count, std::span<const PrimitiveId> ids,
                                      const Execution& execution, BitSet memory = {});
 
-/// The set of primitives whose first samples cover three pixels in a row or around a corner. On smaller ones a smooth
-/// normal hardly differs visibly from a flat one, so scans of millions of triangles are spared smoothing. Reuses
-/// `memory` for the result if its size fits. O(pixels + primitives / 64), in parallel.
-[[nodiscard]] BitSet large_primitives(std::size_t primitive_count, const Visible& visible, const Execution& execution,
-                                      BitSet memory = {});
-
-/// large_primitives() for `ids` in rows of `width` pixels.
+/// The set of primitives that cover three pixels in a row or around a corner, by the `ids` in rows of `width` pixels.
+/// On smaller ones a smooth normal hardly differs visibly from a flat one, so scans of millions of triangles are spared
+/// smoothing. Reuses `memory` for the result if its size fits. O(pixels + primitives / 64), in parallel.
 [[nodiscard]] BitSet large_primitives(std::size_t primitive_count, std::span<const PrimitiveId> ids, int width,
                                       const Execution& execution, BitSet memory = {});
+/// large_primitives() by the first samples.
+[[nodiscard]] inline BitSet large_primitives(std::size_t primitive_count, const Visible& visible,
+                                             const Execution& execution, BitSet memory = {}) {
+  return large_primitives(primitive_count, std::span(visible.primitives).first(visible.view.pixel_count()),
+                          visible.view.width, execution, std::move(memory));
+}
 
 /// For every material of the scene, whether a seen triangle that is not in `known` has it. O(primitives / 64 + new
 /// triangles).
 [[nodiscard]] std::vector<bool> seen_materials(const Surfaces& surfaces, const BitSet& seen, const BitSet& known);
+
+/// A value that is affine in the screen position, relative to a reference point.
+struct Affine {
+  float at_reference = 0, step_x = 0, step_y = 0;
+};
+
+struct TriangleSetup {
+  std::array<Affine, 3> weight;     ///< their sum at the reference is 1
+  glm::vec2 reference{0};           ///< screen
+  std::array<glm::vec3, 3> corner;  ///< world axes, from the eye
+  std::array<glm::vec3, 3> corner_world;
+  std::array<glm::vec3, 3> normal;  ///< world, unit, on the viewer's side
+  glm::vec3 plane_normal{0};        ///< unit, towards the viewer
+  bool is_smooth = false;           ///< the corner normals differ from the plane's
+  bool is_backside = false;         ///< the visible side is the back by the winding
+  PrimitiveId id = no_primitive;
+  std::uint32_t instance = no_index, mesh = no_index, triangle = no_index;
+  std::uint32_t material = no_index;  ///< number in the scene
+  std::array<glm::vec4, 3> color;
+  bool has_color = false;
+  std::array<bool, max_texcoord_sets> has_texcoord{};                ///< by set
+  std::array<std::array<glm::vec2, 3>, max_texcoord_sets> texcoord;  ///< zero in the first set if it is missing
+
+  /// The texture coordinates of corner k; zero if the mesh has no such set.
+  [[nodiscard]] glm::vec2 texcoord_at(std::uint32_t set, std::size_t k) const {
+    return has_texcoord[set] ? texcoord[set][k] : glm::vec2(0);
+  }
+};
+
+/// Fills weights, reference, corners, plane normal, and is_backside (for a triangle that was not mirrored).
+/// Triangles that are seen edge-on, and non-finite results, get equal weights everywhere.
+void set_up_plane(TriangleSetup& setup, const ScreenRays& rays, const std::array<glm::vec3, 3>& corners_world,
+                  const glm::vec2& reference);
+
+/// Weights at a screen position: none is negative and they sum to 1, so interpolation stays within the triangle.
+/// `divisor` is their sum before normalization, which gradients need.
+struct Barycentric {
+  glm::vec3 weight;
+  float divisor;
+};
+[[nodiscard]] inline Barycentric barycentric(const TriangleSetup& t, float x, float y) {
+  const float dx = x - t.reference.x, dy = y - t.reference.y;
+  glm::vec3 w;
+  for (int k = 0; k < 3; ++k) {
+    const Affine& a = t.weight[std::size_t(k)];
+    const float value = a.at_reference + dx * a.step_x + dy * a.step_y;
+    w[k] = value > 0.0f ? value : 0.0f;
+  }
+  const float sum = w.x + w.y + w.z;
+  const bool valid = sum > 1e-30f;
+  const float scale = valid ? 1.0f / sum : 0.0f;
+  const float rest = valid ? 0.0f : 1.0f / 3;
+  return {{w.x * scale + rest, w.y * scale + rest, w.z * scale + rest}, valid ? sum : 1.0f};
+}
+
+/// A direction in 4 bytes, to about 0.003 degrees: octahedral mapping to a square.
+struct PackedNormal {
+  std::int16_t x = 0, y = 0;
+};
+[[nodiscard]] PackedNormal pack(const glm::vec3& direction);
+/// The result is not normalized.
+[[nodiscard]] glm::vec3 unpack(PackedNormal packed);
+
+/// Facets that meet at a larger angle keep an edge between them.
+inline constexpr double crease_cosine = 0.766044443118978;  // 40 degrees
+
+/// Corner normals in mesh space, by triangle. Normals of triangles that were not requested are undefined.
+using PackedCornerNormals = Buffer<std::array<PackedNormal, 3>>;
+
+/// A normal for each corner of the triangles for which `is_wanted` is true: the mean of the facet normals at the
+/// corner's exact position, weighted by area and by the angle at the corner. Only facets within the crease angle of the
+/// corner's own facet count. Degenerate facets do not count; their normals are arbitrary. O(triangles).
+[[nodiscard]] PackedCornerNormals smooth_normals(const Mesh& mesh, const std::function<bool(std::uint32_t)>& is_wanted,
+                                                 const Execution& execution = {});
 
 /// A triangle to be set up, and its number in the batch.
 struct NewTriangle {
@@ -92,11 +220,10 @@ class TriangleSource {
  public:
   /// Borrows `store` and `large`. Large primitives of meshes without normals are smooth, and the store must have their
   /// normals. Other primitives of these meshes are flat; all are if `large` is null.
-  TriangleSource(const TriangleStore& store, const View& view, const BitSet* large)
-      : rays_(view), large_(large), store_(store) {}
+  /// Without texcoords, setups have none, for pictures that do not need them.
+  TriangleSource(const TriangleStore& store, const View& view, const BitSet* large, bool has_texcoords = true)
+      : rays_(view), large_(large), store_(store), has_texcoords_(has_texcoords) {}
 
-  /// Leaves out texture coordinates from now on, for pictures that do not need them.
-  void leave_out_texcoords() { has_texcoords_ = false; }
   /// Fills setups[number] of each triangle. One call with many triangles is faster than many calls.
   void set_up(std::span<const NewTriangle> triangles, std::vector<TriangleSetup>& setups) const;
   [[nodiscard]] const ScreenRays& rays() const { return rays_; }
@@ -111,7 +238,7 @@ class TriangleSource {
   ScreenRays rays_;
   const BitSet* large_;
   const TriangleStore& store_;
-  bool has_texcoords_ = true;
+  bool has_texcoords_;
 };
 
 /// Fills batch.geometry from batch.coverage, with the first set of texture coordinates. Fastest if the fragments of a

@@ -91,7 +91,7 @@ class VectorTriangles {
   const TriangleSetup* triangles_[kMaxLanes];
 };
 
-/// Lane form of barycentric() in triangle_setup.h.
+/// Lane form of barycentric() in geometry.h.
 struct Weights {
   VF3 weight;
   VF divisor;

@@ -3,8 +3,6 @@
 // thread works on it. Corners keep the order of their triangles, so sums do not depend on the number of threads.
 // Positions without a requested triangle are dropped first, which on a closed mesh saves about half of the work.
 
-#include "shade/geometry/smooth_normals.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -12,7 +10,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "shade/bit_set.h"
+#include "shade/geometry/geometry.h"
 
 namespace frontmost::shading {
 namespace {

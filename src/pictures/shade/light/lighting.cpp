@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/light/lighting.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "scene/turn.h"
+#include "shade/light/albedo.h"
 
 namespace frontmost::shading {
 namespace {
@@ -49,6 +52,66 @@ IrradiancePolynomial polynomial_of(const IrradianceMoments& moments, const glm::
   return p;
 }
 
+constexpr std::size_t kMostLights = 4096;
+
+/// The radiance of a white diffuse surface that faces the light; for lamps, at distance 1.
+glm::vec3 color_of(const Light& light) {
+  // Brighter lights would overflow floats in products with the mirrored share of smooth surfaces.
+  constexpr double brightest = 1e12;
+  glm::vec3 color;
+  for (int k = 0; k < 3; ++k)
+    color[k] = float(std::min(double(light.color[k]) * light.intensity / std::numbers::pi, brightest));
+  return color;
+}
+
+Lamp lamp_of(const Light& light, const glm::dvec3& eye) {
+  Lamp lamp;
+  lamp.position = glm::vec3(glm::dvec3(light.world_from_light[3]) - eye);
+  lamp.axis = -glm::vec3(light.world_from_light[2]);
+  lamp.color = color_of(light);
+  // Keeps squares of the range finite and above 0.
+  if (light.range) lamp.range = float(std::clamp(*light.range, 1e-18, 1e18));
+  if (light.kind != Light::Kind::spot) return lamp;
+  // Avoids a division by zero for cones without a soft edge, in the same way as the extension's reference code.
+  const double inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
+  lamp.cosine_outer = float(outer);
+  lamp.cone_scale = float(1 / std::max(0.001, inner - outer));
+  return lamp;
+}
+
+/// Schlick's approximation.
+float mirrored(float f0, float f90, float cosine) {
+  const float x = std::clamp(1 - cosine, 0.0f, 1.0f), x2 = x * x;
+  return f0 + (f90 - f0) * (x2 * x2 * x);
+}
+
+float cosine_of_view(const Geometry& g, int i) { return std::max(glm::dot(g.normal.at(i), g.to_viewer.at(i)), 1e-3f); }
+
+float greatest(const glm::vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
+
+/// The share of light that fibres leave for the surface below.
+float below_sheen(const FragmentBatch& batch, int i) {
+  const float roughness = shown_sheen_roughness(batch.layers.sheen_roughness[i]);
+  return 1 - greatest(batch.layers.sheen.at(i)) * sheen_albedo().at(cosine_of_view(batch.geometry, i), roughness);
+}
+
+/// The share of light that a varnish leaves for the surface below.
+float below_coat(const FragmentBatch& batch, int i) {
+  return 1 - batch.layers.coat[i] * mirrored(0.04f, 1, cosine_of_view(batch.coat->geometry, i));
+}
+
+/// The share of light that neither the surface nor a layer over it mirrors.
+float passes_surface(const FragmentBatch& batch, int i) {
+  const LayerLanes& layers = batch.layers;
+  const float cosine = cosine_of_view(batch.geometry, i);
+  glm::vec3 taken;
+  for (int c = 0; c < 3; ++c) taken[c] = mirrored(layers.f0.at(i)[c], layers.f90[i], cosine);
+  float passes = 1 - std::min(greatest(taken), 1.0f);
+  if (layers.has_sheen) passes *= below_sheen(batch, i);
+  if (layers.has_coat) passes *= below_coat(batch, i);
+  return passes;
+}
+
 }  // namespace
 
 void check_light(const LightOptions& options) {
@@ -87,6 +150,91 @@ Lighting lighting_for(const View& view, Axis up, const LightOptions& options, co
   lighting.around.world_from_environment = glm::mat3(turn);
   lighting.around.irradiance = polynomial_of(prefiltered(environment).irradiance, turn);
   return lighting;
+}
+
+BatchBounds bounds_of(const FragmentBatch& batch) {
+  const int count = batch.coverage.count;
+  const auto range = [&](const Lane& lane) { return std::minmax_element(lane.values, lane.values + count); };
+  const auto [low_x, high_x] = range(batch.geometry.position.x);
+  const auto [low_y, high_y] = range(batch.geometry.position.y);
+  const auto [low_z, high_z] = range(batch.geometry.position.z);
+  return {{*low_x, *low_y, *low_z}, {*high_x, *high_y, *high_z}};
+}
+
+bool may_reach(const Lamp& lamp, const BatchBounds& bounds) {
+  constexpr float spare = 1.0001f;  // margin for rounding
+  const glm::vec3 nearest = glm::clamp(lamp.position, bounds.low, bounds.high) - lamp.position;
+  if (lamp.range > 0 && glm::dot(nearest, nearest) > lamp.range * lamp.range * spare) return false;
+  if (lamp.cone_scale == 0) return true;
+  // Tests a sphere around the box against a cone of at most a half-space, by the distance of its centre from the cone.
+  const glm::vec3 centre = 0.5f * (bounds.low + bounds.high) - lamp.position;
+  const float radius = 0.5f * glm::length(bounds.high - bounds.low), size = glm::length(centre);
+  const float along = glm::dot(centre, lamp.axis);
+  const float across = std::sqrt(std::max(size * size - along * along, 0.0f));
+  const float sine_outer = std::sqrt(std::max(1 - lamp.cosine_outer * lamp.cosine_outer, 0.0f));
+  return across * lamp.cosine_outer - along * sine_outer <= radius + (spare - 1) * (size + radius);
+}
+
+void PictureLights::set(const DirectLight* key, std::span<const Light> lights, const glm::dvec3& eye) {
+  far.clear();
+  near.clear();
+  if (lights.size() > kMostLights)
+    throw Error(ErrorCode::limit_exceeded, "shade",
+                std::to_string(lights.size()) + " lights are more than " + std::to_string(kMostLights));
+  if (key) far.push_back({*key, nullptr});
+  for (const Light& light : lights) {
+    const glm::vec3 color = color_of(light);
+    if (color == glm::vec3(0)) continue;
+    if (light.kind == Light::Kind::sun)
+      far.push_back({{.to_light = glm::vec3(light.world_from_light[2]), .color = color}, &light});
+    else
+      near.push_back({lamp_of(light, eye), &light});
+  }
+}
+
+void begin_light(FragmentBatch& batch) {
+  batch.light = batch.material.emissive;
+  if (batch.layers.has_sheen) batch.layers.sheen_light = {};
+  if (batch.layers.has_coat) batch.coat->light = {};
+}
+
+void lay_layers_over(FragmentBatch& batch) {
+  const LayerLanes& layers = batch.layers;
+  const int count = batch.coverage.count;
+  for (int i = 0; i < count && layers.has_sheen; ++i)
+    batch.light.set(i, batch.light.at(i) * below_sheen(batch, i) + layers.sheen_light.at(i));
+  for (int i = 0; i < count && layers.has_coat; ++i)
+    batch.light.set(i, batch.light.at(i) * below_coat(batch, i) + batch.coat->light.at(i) * layers.coat[i]);
+}
+
+void let_through(FragmentBatch& batch, Mirroring mirroring) {
+  // Least opacity where light is mirrored: dividing by it stays finite, and it is invisible.
+  constexpr float least = 0x1p-20f;
+  const LayerLanes& layers = batch.layers;
+  for (int i = 0; i < batch.coverage.count; ++i) {
+    float& alpha = batch.material.alpha[i];
+    batch.alphas.set(i, glm::vec3(alpha));
+    const bool is_shown = layers.is_shown[i] > 0;
+    if (is_shown && !(layers.transmission[i] > 0)) continue;
+    const float passes = is_shown && mirroring == Mirroring::by_view ? passes_surface(batch, i) : 1.0f;
+    const glm::vec3 through = layers.filter.at(i) * (layers.transmission[i] * passes);
+    const glm::vec3 sent = is_shown ? batch.light.at(i) * alpha : glm::vec3(0);
+    glm::vec3 hidden = glm::clamp((1.0f - through) * alpha, 0.0f, 1.0f);
+    if (sent != glm::vec3(0)) hidden = glm::max(hidden, glm::vec3(least));
+    alpha = (hidden.x + hidden.y + hidden.z) * (1.0f / 3);
+    batch.alphas.set(i, hidden);
+    batch.light.set(i, alpha > 0 ? sent / alpha : glm::vec3(0));
+  }
+}
+
+void hide_by_highlights(FragmentBatch& batch) {
+  for (int i = 0; i < batch.coverage.count; ++i) {
+    const float brightest = greatest(batch.light.at(i));
+    if (!(brightest > 1)) continue;
+    batch.light.set(i, batch.light.at(i) / brightest);
+    batch.alphas.set(i, glm::min(batch.alphas.at(i) * brightest, glm::vec3(1)));
+    batch.material.alpha[i] = std::min(batch.material.alpha[i] * brightest, 1.0f);
+  }
 }
 
 }  // namespace frontmost::shading

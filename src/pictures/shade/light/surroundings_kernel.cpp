@@ -8,8 +8,7 @@
 #define HWY_TARGET_INCLUDE "shade/light/surroundings_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-#include "shade/light/mirrored_parts.h"
-#include "shade/light/sheen.h"
+#include "shade/light/albedo.h"
 // After Highway: a block of its own.
 #include "shade/environment/octahedral_lookup-inl.h"
 
@@ -20,25 +19,12 @@ namespace {
 
 constexpr int kLastLevel = PrefilteredEnvironment::level_count - 1;
 
-/// Texel squares by fragment.
-struct TexelSquares {
-  std::int32_t first[batch_capacity];
-  float x[batch_capacity], y[batch_capacity];
-
-  HWY_INLINE void set(int i, const TexelSquare& square) {
-    first[i] = square.first;
-    x[i] = square.x;
-    y[i] = square.y;
-  }
-  [[nodiscard]] HWY_INLINE TexelSquare at(int i) const { return {first[i], x[i], y[i]}; }
-};
-
 /// Addresses of the light that fragments mirror, and of the share that they mirror.
 struct MirroredPlaces {
-  TexelSquares smoother, rougher;      ///< in the maps of the two roughnesses
-  std::int32_t level[batch_capacity];  ///< of the smoother map
-  float blend[batch_capacity];         ///< weight of the rougher map
-  TexelSquares parts;                  ///< in MirroredParts
+  TexelSquares<batch_capacity> smoother, rougher;  ///< in the maps of the two roughnesses
+  std::int32_t level[batch_capacity];              ///< of the smoother map
+  float blend[batch_capacity];                     ///< weight of the rougher map
+  TexelSquares<batch_capacity> parts;              ///< in MirroredParts
 };
 
 /// The square of MirroredParts' entries around a place.
@@ -165,19 +151,6 @@ void AddToSurface(const Surroundings& around, const MirroredLight& mirrored, Fra
   }
 }
 
-}  // namespace
-
-void AddSurroundings(const Surroundings& around, FragmentBatch& batch) {
-  MirroredViews views;
-  MirroredPlaces places;
-  MirroredLight mirrored;
-  FindViews(around, batch, views);
-  FindPlaces(*around.environment, views, batch.coverage.count, places);
-  ReadMaps(*around.environment, places, batch.coverage.count, mirrored);
-  batch.layers.has_dielectric ? AddToSurface<LayeredSurface>(around, mirrored, batch)
-                              : AddToSurface<PlainSurface>(around, mirrored, batch);
-}
-
 /// Approximates the light that fibres scatter from all around by that of a diffuse surface times their albedo.
 void AddSheenAround(const Surroundings& around, FragmentBatch& batch) {
   LayerLanes& layers = batch.layers;
@@ -193,6 +166,23 @@ void AddSheenAround(const Surroundings& around, FragmentBatch& batch) {
   }
 }
 
+}  // namespace
+
+void AddSurroundings(const Surroundings& around, FragmentBatch& batch) {
+  MirroredViews views;
+  MirroredPlaces places;
+  MirroredLight mirrored;
+  FindViews(around, batch, views);
+  FindPlaces(*around.environment, views, batch.coverage.count, places);
+  ReadMaps(*around.environment, places, batch.coverage.count, mirrored);
+  batch.layers.has_dielectric ? AddToSurface<LayeredSurface>(around, mirrored, batch)
+                              : AddToSurface<PlainSurface>(around, mirrored, batch);
+  if (batch.layers.has_sheen) AddSheenAround(around, batch);
+  if (!batch.layers.has_coat) return;
+  batch.coat->material.occlusion = batch.material.occlusion;
+  AddSurroundings(around, *batch.coat);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace frontmost::shading
 HWY_AFTER_NAMESPACE();
@@ -201,15 +191,9 @@ HWY_AFTER_NAMESPACE();
 namespace frontmost::shading {
 
 FRONTMOST_KERNELS(AddSurroundings);
-FRONTMOST_KERNELS(AddSheenAround);
 
 void add_surroundings(const Surroundings& around, FragmentBatch& batch, Isa isa) {
-  if (!around.environment) return;
-  kernel_for(AddSurroundingsKernels, isa)(around, batch);
-  if (batch.layers.has_sheen) kernel_for(AddSheenAroundKernels, isa)(around, batch);
-  if (!batch.layers.has_coat) return;
-  batch.coat->material.occlusion = batch.material.occlusion;
-  kernel_for(AddSurroundingsKernels, isa)(around, *batch.coat);
+  if (around.environment) kernel_for(AddSurroundingsKernels, isa)(around, batch);
 }
 
 }  // namespace frontmost::shading

@@ -4,28 +4,101 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
+#include "frontmost/scene.h"
 #include "shade/batch.h"
-#include "shade/geometry/triangle_setup.h"
-#include "shade/material/material_layers.h"
+#include "shade/geometry/geometry.h"
 #include "shade/texture/texture_sampler.h"
 
 namespace frontmost::shading {
+
+/// One use of a normal texture, for the fragments of one batch: normals are turned along the directions in which
+/// texture coordinates grow on the triangle.
+class NormalMap {
+ public:
+  /// Borrows `slot` and `setups`. `scale` multiplies the bumps.
+  NormalMap(const TextureSlot& slot, float scale, const std::vector<TriangleSetup>& setups)
+      : slot_(slot), scale_(scale), setups_(setups) {}
+
+  /// Turns normal `i`. `texel` is the texture's value, 0 to 1. Triangles without coordinates keep their normals.
+  void turn(std::uint16_t triangle, const glm::vec4& texel, int i, Lane3& normals);
+
+ private:
+  /// The unit directions on a triangle in which u and v grow; zero where the coordinates do not span a plane.
+  struct TangentFrame {
+    glm::vec3 along_u{0}, along_v{0};
+  };
+  [[nodiscard]] TangentFrame frame_of(const TriangleSetup& triangle) const;
+
+  const TextureSlot& slot_;
+  float scale_;
+  const std::vector<TriangleSetup>& setups_;
+  int framed_ = -1;  ///< the triangle that frame_ belongs to
+  TangentFrame frame_;
+};
+
+/// The layers of a material: reflectance, layers on top, and transmission. Materials without layers have no LayerRow,
+/// and batches without layered materials pay nothing.
+struct LayerRow {
+  TextureSlot specular, specular_color, coat, coat_roughness, coat_normal, sheen_color, sheen_roughness, transmission,
+      thickness;
+  bool has_dielectric = false, has_coat = false, has_sheen = false, has_transmission = false;
+  float straight = 0.04f;   ///< reflectance at normal incidence, by the index of refraction
+  glm::vec3 absorption{0};  ///< log2 of the absorption, by channel and world unit of length
+};
+
+/// Null if the material has no layers. Textures are not set yet. Precondition: limit_numbers() was called.
+[[nodiscard]] std::unique_ptr<LayerRow> layers_of(const Material& material);
+
+/// The factor by which an instance scales lengths; 0 if it is flattened.
+[[nodiscard]] float length_scale_of(const Instance& instance);
+
+/// The data that all runs of fragments share.
+struct LayerInput {
+  const std::vector<TriangleSetup>& setups;
+  const std::vector<float>& length_scales;  ///< by instance
+};
+
+/// A run of fragments with the same layered material.
+class LayerRun {
+ public:
+  LayerRun(const Material& factors, const LayerRow& row, const LayerInput& input, FragmentBatch& batch)
+      : m_(factors),
+        row_(row),
+        input_(input),
+        batch_(batch),
+        coat_normal_(row.coat_normal, factors.clearcoat.normal_scale, input.setups) {}
+
+  /// Called before textures are looked up and normals turned.
+  void fill_factors(int begin, int end);
+  /// `sample(slot, use)` calls use(i, value) for the fragments of a part of the run.
+  template <class Sample>
+  void look_up(const Sample& sample);
+  /// Called when all other material data is known.
+  void settle(int begin, int end);
+
+ private:
+  /// Makes room for the material's layers; earlier fragments of the batch have none.
+  void begin_layers();
+  [[nodiscard]] glm::vec3 filter_at(int i) const;
+  [[nodiscard]] bool is_way_out(int i) const;
+
+  const Material& m_;
+  const LayerRow& row_;
+  const LayerInput& input_;
+  FragmentBatch& batch_;
+  NormalMap coat_normal_;
+  Lane thickness_;
+};
 
 struct MaterialRow {
   Material factors;
   TextureSlot base_color, metallic_roughness, normal, emissive, occlusion;
   std::unique_ptr<LayerRow> layers;  ///< null: none
   std::uint32_t further_sets = 0;    ///< bit k: a texture uses set k of coordinates, for k > 0
-
-  [[nodiscard]] bool has_textures() const {
-    return base_color.pyramid || metallic_roughness.pyramid || normal.pyramid || emissive.pyramid ||
-           occlusion.pyramid || (layers && layers->has_textures());
-  }
+  bool has_textures = false;         ///< some texture is prepared
 };
-
-/// The material of triangles without one: a light neutral grey whose shape shows on a white page.
-[[nodiscard]] Material default_material();
 
 class MaterialTable {
  public:

@@ -8,15 +8,94 @@
 
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
+#include "base/work_limit.h"
 #include "frontmost/pictures.h"
+#include "frontmost/raycast.h"
 #include "frontmost/zbuffer.h"
-#include "shade/light/lamps.h"
-#include "shade/seen_points.h"
-#include "shade/shadow/ray_shadows.h"
+#include "shade/geometry/geometry.h"
+#include "shade/light/lighting.h"
 #include "shade/shadow/shadow_map.h"
 
 namespace frontmost::shading {
+
+/// Whether any material of the scene is see-through.
+[[nodiscard]] bool has_see_through(const Scene& scene);
+
+/// The scene without see-through triangles. Copies the meshes that contain other triangles, and the textures that cut
+/// holes; materials keep their numbers. O(triangles).
+[[nodiscard]] Scene opaque_part(const Scene& scene);
+
+/// The fragments whose shadow is asked for.
+struct AskedFragments {
+  const std::vector<TriangleSetup>& setups;
+  const bool* is_asked;
+  FragmentBatch& batch;  ///< its `shadow` is filled
+};
+
+/// Shadows by rays: as sharp as the samples are dense, and exact for lights at infinite distance.
+///
+/// The rule at the terminator: a flat triangle that faces away from the light is in its own shadow, whatever its
+/// material's normals say. A triangle with smooth normals never shadows itself, and its points start on the curved
+/// surface that the normals suggest, so that facets do not show.
+///
+/// Segments to a lamp end beside the surface on the lamp's side, at a hundred-thousandth of their length and the
+/// rounding error of floats. So no surface casts a shadow on its own points.
+class RayShadows {
+ public:
+  /// The most rays of a picture, and the message of the error if there are more.
+  struct Limit {
+    std::uint64_t most;
+    std::string error;
+  };
+
+  /// Borrows all but the limit. The index holds the casters. If it has other ids than the shaded surfaces, `knows_ids`
+  /// is false, and triangles are identified by corners, which is slower. `samples` of a pixel are in 1/256 of it.
+  /// `view` is that of the picture, or a pinhole if the picture is a scan.
+  RayShadows(const RayIndex& index, bool knows_ids, std::span<const glm::ivec2> samples, const View& view,
+             const Execution& execution, Limit limit);
+
+  /// Treats fragments as single points, not as pixels.
+  void ask_at_points() { at_points_ = true; }
+
+  /// Fills batch.shadow of the asked fragments: the share of each fragment's samples that the light reaches.
+  /// \throws Error limit_exceeded.
+  void find_light(const DirectLight& light, const AskedFragments& asked) const;
+  void find_light(const Lamp& lamp, const AskedFragments& asked) const;
+
+ private:
+  class LightQuestions;
+  class LampQuestions;
+
+  /// Calls questions.add(point, fragment) for every sample of fragments whose triangle `may_face` the light.
+  template <class Questions, class MayFace>
+  void ask(Questions& questions, const MayFace& may_face, const AskedFragments& asked) const;
+
+  void count(std::size_t rays) const {
+    rays_.add(rays, [this] { return too_many_; });
+  }
+  /// Counts triangles that needed exact decisions. A few for each ray are usual and do not count.
+  void count_decided(std::uint64_t triangles, std::size_t rays) const {
+    const std::uint64_t usual = kUsualOfRay * rays;
+    if (triangles <= usual) return;
+    crowd_.add(triangles - usual, [this] {
+      return "too many of " + std::to_string(index_.triangle_count()) +
+             " triangles lie over each other for shadows by rays; ask for shadows by maps";
+    });
+  }
+
+  const RayIndex& index_;
+  glm::dvec3 eye_;
+  bool is_one_way_;  ///< one-sided triangles let light through from behind
+  Isa isa_;
+  bool knows_ids_, at_points_ = false;
+  std::span<const glm::ivec2> samples_;
+  static constexpr std::uint64_t kMostOfCrowd = std::uint64_t(1) << 24, kMostOfTriangle = 64, kUsualOfRay = 4;
+  mutable WorkLimit rays_, crowd_;
+  std::string too_many_;
+};
 
 /// The visible points of a view or a scan, and data that callers may have computed already.
 struct ShadedInput {
@@ -52,13 +131,10 @@ class LightShadows {
     if (rays_) rays_->ask_at_points();
   }
 
-  /// Whether a light of the picture casts shadows, by its index in lights.far or lights.near.
-  [[nodiscard]] bool has_far(std::size_t light) const { return rays_ || far_maps_[light]; }
-  [[nodiscard]] bool has_near(std::size_t light) const { return rays_ || near_maps_[light]; }
-  /// Fill batch.shadow of the asked fragments: the share of the light that arrives. Precondition: the light has
-  /// shadows.
-  void find_far(std::size_t light, const AskedFragments& asked, Isa isa) const;
-  void find_near(std::size_t light, const AskedFragments& asked, Isa isa) const;
+  /// Whether a light of the picture casts shadows. Lights are numbered: those in lights.far, then those in lights.near.
+  [[nodiscard]] bool has_shadows(std::size_t light) const { return rays_ || light_maps_[light]; }
+  /// Fills batch.shadow of the asked fragments: the share of the light that arrives. Precondition: has_shadows().
+  void find_arriving(std::size_t light, const AskedFragments& asked, Isa isa) const;
 
   /// The surfaces, or their opaque part. The first call makes the opaque part if some material is see-through.
   [[nodiscard]] const Surfaces& casters(const Execution& execution);
@@ -74,7 +150,6 @@ class LightShadows {
   };
 
   void draw_maps(const ShadedPicture& picture, const Execution& execution);
-  void take_map(const Visible& seen_by_light, const Execution& execution);
   /// The number of the map of a light of the file, by its place in the scene; none beyond the first sixteen.
   [[nodiscard]] std::optional<std::size_t> map_number(const Light& source) const;
   const ShadowMap* draw_map(std::size_t number, const std::optional<View>& light, const ShadedPicture& picture,
@@ -87,9 +162,9 @@ class LightShadows {
 
   const PictureLights* lights_ = nullptr;
   ZBuffer drawer_;
-  int drawn_directly_ = 0;                              ///< pictures of casters without clusters
-  std::vector<DrawnMap> maps_;                          ///< the key light's first, then those of the file
-  std::vector<const ShadowMap*> far_maps_, near_maps_;  ///< by light of the picture; null: no shadows
+  int drawn_directly_ = 0;                    ///< pictures of casters without clusters
+  std::vector<DrawnMap> maps_;                ///< the key light's first, then those of the file
+  std::vector<const ShadowMap*> light_maps_;  ///< by light of the picture; null: no shadows
   std::optional<RayIndex> index_;
   std::optional<RayShadows> rays_;
 };

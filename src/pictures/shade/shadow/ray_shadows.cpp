@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/shadow/ray_shadows.h"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -8,6 +6,7 @@
 
 #include "raycast/index/ray_tree.h"
 #include "raycast/query/queries.h"
+#include "shade/shadow/light_shadows.h"
 #include "view/facing_rule.h"
 
 namespace frontmost::shading {
@@ -21,12 +20,13 @@ bool lets_light_through(const View& view, const RayIndex& index) {
 
 }  // namespace
 
-RayShadows::RayShadows(const RayIndex& index, std::span<const glm::ivec2> samples, const View& view,
+RayShadows::RayShadows(const RayIndex& index, bool knows_ids, std::span<const glm::ivec2> samples, const View& view,
                        const Execution& execution, Limit limit)
     : index_(index),
       eye_(view.eye()),
       is_one_way_(lets_light_through(view, index)),
       isa_(execution.isa),
+      knows_ids_(knows_ids),
       samples_(samples),
       rays_(execution, limit.most, "shade"),
       crowd_(execution, kMostOfCrowd + kMostOfTriangle * index.triangle_count(), "shade"),

@@ -1,11 +1,75 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shadow map of one light: the light's view, drawn by the same z-buffer as pictures.
+// The views of lights: surfaces visible in such a view are lit, others are in shadow.
+//
+//   key light   along its direction, at the visible points; it moves with the camera
+//   sun         the same, but its window is larger and on a fixed grid: it stays while the camera moves a little
+//   spot        from the lamp along its cone; the same for every camera
 #pragma once
 
+#include <optional>
+
+#include "frontmost/raycast.h"
+#include "frontmost/scene.h"
 #include "frontmost/view.h"
 #include "shade/batch.h"
+#include "view/ray_volumes.h"
 
 namespace frontmost::shading {
+
+/// The visible points of a picture, for its lights: the eye, the resolution, and the places of the surfaces. Works for
+/// views and for scans alike.
+class SeenPoints {
+ public:
+  /// Both constructors borrow their argument.
+  SeenPoints(const Visible& visible) : view(visible.view), visible_(&visible), rays_(view) {}
+  SeenPoints(const RangeScan& scan) : view(view_in_pose(scan)), scan_(&scan), rays_(view) {}
+
+  /// For a scan: a pinhole in the scan's pose with as many pixels; its projection means nothing.
+  const View view;
+
+  /// Calls visit(point) for the first sample of every `stride`-th pixel of a row; `point` is in world axes from the
+  /// eye. Leaves out points that are too far away for sums of their coordinates.
+  template <class Visit>
+  void visit_row(int y, int stride, const Visit& visit) const {
+    constexpr double farthest = 1e30;
+    for (int x = 0; x < view.width; x += stride) {
+      if (visible_) {
+        const std::size_t i = visible_->index(x, y);
+        if (visible_->primitives[i] == no_primitive) continue;
+        const double depth = double(depth_of_key(view, visible_->keys[i]));
+        if (depth < farthest) visit(rays_.point(x + 0.5, y + 0.5, depth));
+      } else if (scan_->ranges[scan_->index(x, y)] < float(farthest)) {
+        visit(point_of(*scan_, x, y) - view.eye());
+      }
+    }
+  }
+
+ private:
+  static View view_in_pose(const RangeScan& scan) {
+    View view;
+    view.width = scan.width;
+    view.height = scan.height;
+    view.world_from_eye = scan.camera.world_from_eye;
+    return view;
+  }
+
+  const Visible* visible_ = nullptr;
+  const RangeScan* scan_ = nullptr;
+  ScreenRays rays_;
+};
+
+/// The view of the key light: along -to_light at the points of `visible`, with room for everything within `bounds` that
+/// may stand between. None if nothing is visible, or nothing can cast a shadow.
+[[nodiscard]] std::optional<View> view_of_light(const SeenPoints& visible, const Box& bounds,
+                                                const glm::dvec3& to_light, const Execution& execution);
+
+/// The view of a sun of the file, likewise.
+[[nodiscard]] std::optional<View> view_of_sun(const SeenPoints& visible, const Box& bounds, const Light& sun,
+                                              const Execution& execution);
+
+/// The view of a spot of the file, for pictures of this size. It reaches at most 75 degrees from the axis; points
+/// beyond have no shadow. None if nothing can cast a shadow.
+[[nodiscard]] std::optional<View> view_of_spot(const View& picture, const Box& bounds, const Light& spot);
 
 /// The data of a map in the form that the kernel reads.
 struct ShadowGrid {
@@ -36,7 +100,8 @@ struct ShadowPoints {
   int count;  ///< at most batch_capacity
 };
 
-/// Initially everything is lit. Maps drawn one after another reuse the memory.
+/// The shadow map of one light: the light's view, drawn by the same z-buffer as pictures. Initially everything is lit.
+/// Maps drawn one after another reuse the memory.
 class ShadowMap {
  public:
   /// Takes the light's view as drawn. Borrows the keys.
@@ -54,9 +119,6 @@ class ShadowMap {
   void find_light(const ShadowPoints& points, const bool* is_asked, float* light, Isa isa) const;
 
  private:
-  void measure_sun(const glm::dvec3& eye);
-  void measure_spot(const glm::dvec3& eye);
-
   View light_;
   ShadowGrid grid_;
   Buffer<float> nearest_, farthest_;

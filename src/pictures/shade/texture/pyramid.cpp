@@ -1,30 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/texture/pyramid.h"
-
 #include <algorithm>
 #include <array>
 #include <cstring>
 
 #include "base/parallel.h"
 #include "base/srgb.h"
+#include "shade/texture/texture_sampler.h"
 
 namespace frontmost::shading {
 namespace {
 
-using ByteTable = std::array<float, 256>;
-
+/// The light of each byte.
 const float* table_of(Encoding encoding) {
-  static const ByteTable srgb = [] {
-    ByteTable values{};
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = linear_of_srgb8(std::uint8_t(i));
+  static const auto tables = [] {
+    std::array<std::array<float, 256>, 2> values{};
+    for (std::size_t i = 0; i < 256; ++i) {
+      values[0][i] = linear_of_srgb8(std::uint8_t(i));
+      values[1][i] = float(i) / 255.0f;
+    }
     return values;
   }();
-  static const ByteTable linear = [] {
-    ByteTable values{};
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = float(i) / 255.0f;
-    return values;
-  }();
-  return encoding == Encoding::srgb ? srgb.data() : linear.data();
+  return tables[encoding == Encoding::srgb ? 0 : 1].data();
 }
 
 std::uint8_t linear_byte(float value) { return std::uint8_t(std::min(value, 1.0f) * 255.0f + 0.5f); }

@@ -1,9 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the scene of an excerpt: the visible triangles in the stream's order, with the stream's objects.
-//
-// Attributes are copied corner by corner. Triangles keep the stream's order, so at equal depths the same triangle has
-// the lower id. Everything computed from the excerpt is therefore the same as from the whole model.
-#include "stream/id_map.h"
 #include "stream/kept_triangles.h"
 
 namespace frontmost {
@@ -49,16 +44,6 @@ void move_mesh(Mesh& part, Mesh& whole) {
   move_to(part.material_ids, whole.material_ids);
 }
 
-/// Reserves memory for all pieces, so that growing arrays are not moved.
-void reserve(const KeptPieces& kept, Scene& scene) {
-  std::vector<std::size_t> counts(scene.meshes.size());
-  for (const auto& [number, piece] : kept) counts[scene.instances[piece.place.object].mesh] += piece.triangles.size();
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    scene.meshes[i].positions.reserve(3 * counts[i]);
-    scene.meshes[i].triangles.reserve(counts[i]);
-  }
-}
-
 }  // namespace
 
 void append_triangle(const Mesh& from, std::uint32_t triangle, Mesh& to) {
@@ -80,10 +65,17 @@ std::vector<PrimitiveId> ids_of(const KeptPieces& kept) {
 }
 
 Scene scene_of(Scene frame, KeptPieces kept) {
-  // The frame's material ids are for whole meshes; each piece brings its own.
-  for (Mesh& mesh : frame.meshes) mesh.material_ids.clear();
-  reserve(kept, frame);
-  for (auto& [number, piece] : kept) move_mesh(piece.mesh, frame.meshes[frame.instances[piece.place.object].mesh]);
+  const auto mesh_of = [&](const Kept& piece) { return frame.instances[piece.place.object].mesh; };
+  std::vector<std::size_t> counts(frame.meshes.size());
+  for (const auto& [number, piece] : kept) counts[mesh_of(piece)] += piece.triangles.size();
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    // The frame's material ids are for whole meshes; each piece brings its own.
+    frame.meshes[i].material_ids.clear();
+    // Memory for all pieces is reserved, so that growing arrays are not moved.
+    frame.meshes[i].positions.reserve(3 * counts[i]);
+    frame.meshes[i].triangles.reserve(counts[i]);
+  }
+  for (auto& [number, piece] : kept) move_mesh(piece.mesh, frame.meshes[mesh_of(piece)]);
   return frame;
 }
 

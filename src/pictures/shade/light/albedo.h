@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables of the light that surfaces reflect if it is 1 everywhere, and the formula of the sheen, which has one of them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "shade/powers.h"
+
+namespace frontmost::shading {
+
+/// The share of light that a surface mirrors if it is 1 everywhere, by view angle and roughness: the second factor of
+/// the split sum. (B. Karis. Real Shading in Unreal Engine 4. SIGGRAPH 2013 course.)
+///
+/// The lobe is GGX with Smith's correlated masking. Rows are by roughness and columns by the square root of N.V, both
+/// from 0 to 1. Bilinear look-ups are correct to 0.001; at N.V below 0.02 and roughness below 0.1, to 0.011.
+struct MirroredParts {
+  static constexpr int size = 32, channels = 4;  ///< four, like colours, so that both are read alike
+  /// Channels: the share mirrored by a surface that mirrors everything, the part of it with Schlick's (1 - V.H)^5, and
+  /// two unused zeros.
+  std::array<float, std::size_t(channels* size* size)> values;
+};
+
+[[nodiscard]] const MirroredParts& mirrored_parts();
+
+/// The least roughness: fibres that all stand in one direction would shine at a single angle.
+inline constexpr float least_sheen_roughness = 0.1f;
+/// Clamped to [least_sheen_roughness, 1]; `least_sheen_roughness` for NaN.
+[[nodiscard]] inline float shown_sheen_roughness(float roughness) {
+  const float bounded = roughness < 1.0f ? roughness : 1.0f;
+  return bounded > least_sheen_roughness ? bounded : least_sheen_roughness;
+}
+
+struct SheenAngles {
+  float n_l, n_v, n_h;  ///< N.V above 0, the others 0 or more
+};
+/// The sheen of fibres that stand out of a cloth, by KHR_materials_sheen: they mirror light if the half vector is
+/// perpendicular to them, and so shine at the rim.
+///
+///   distribution   (2 + 1/a) / 2 * sin(N.H)^(1/a), a = roughness squared    A. Estevez, C. Kulla. Production Friendly
+///                  (the factor 1 / pi is the light's)                       Microfacet Sheen BRDF. SIGGRAPH 2017.
+///   visibility     1 / (4 (N.L + N.V - N.L N.V))                            M. Ashikhmin, S. Premoze.
+///                                                                           Distribution-based BRDFs. 2007.
+///
+/// \returns the light that white fibres scatter from one direction, before the factor N.L.
+[[nodiscard]] inline float sheen_of(const SheenAngles& in, float shown_roughness) {
+  const float sharpness = 1.0f / (shown_roughness * shown_roughness);
+  const float sine2 = 1.0f - in.n_h * in.n_h;
+  const float lobe = exp2_of(0.5f * sharpness * log2_of(sine2 > 1e-20f ? sine2 : 1e-20f));
+  return (2.0f + sharpness) * lobe / (8.0f * (in.n_l + in.n_v - in.n_l * in.n_v));
+}
+
+/// The share of light that white fibres scatter if it is 1 everywhere, and so keep from the surface below.
+struct SheenAlbedo {
+  static constexpr int size = 24;
+  /// Rows by roughness, from the least one to 1, and columns by the square root of N.V.
+  std::array<float, std::size_t(size* size)> values;
+
+  /// Bilinear; correct to 0.015, and to 0.006 where the roughness is above 0.2.
+  [[nodiscard]] float at(float n_v, float shown_roughness) const;
+};
+[[nodiscard]] const SheenAlbedo& sheen_albedo();
+
+}  // namespace frontmost::shading
