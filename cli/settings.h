@@ -185,7 +185,7 @@ struct DrawingSettings {
   std::optional<bool> casts_shadows;
   bool frame = false;
   TitleTexts texts;
-  int number = 1, count = 1;  ///< of the sheet, if there are several models
+  int number = 1, count = 1;  ///< number of the sheet and of all sheets, if there are several models
   std::optional<PageFormat> format;
   std::vector<std::string> outputs;
   std::vector<std::string> books;  ///< files with the sheets of several models as pages

@@ -84,7 +84,7 @@ class HomogeneousTriangle {
 struct PixelDifference {
   WhyOther why = WhyOther::other;
   double border = 0;  ///< pixels
-  double steps = 0;   ///< of a 24-bit depth buffer
+  double steps = 0;   ///< steps of a 24-bit depth buffer
 };
 
 class PixelReasons {

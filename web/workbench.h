@@ -90,7 +90,7 @@ class Workbench {
   std::unique_ptr<Opening> opening_;
   std::unique_ptr<Model> model_;
   ZBuffer zbuffer_;
-  Visible visible_;  ///< of the last view, one sample a pixel
+  Visible visible_;  ///< answer of the last view, one sample a pixel
   bool is_current_ = false;
   int view_number_ = 0;
   View view_;

@@ -15,7 +15,7 @@ struct CullingRun {
   std::vector<double> times;                        ///< milliseconds a view
   std::uint64_t outside = 0, hidden = 0, open = 0;  ///< instances by verdict; open: may be visible
   std::uint64_t seen = 0;                           ///< instances that the z-buffer shows at a sample
-  std::uint64_t wrong = 0;                          ///< such instances that culling called outside or hidden; must be 0
+  std::uint64_t wrong = 0;  ///< visible instances that culling called outside or hidden; must be 0
 
   [[nodiscard]] std::uint64_t objects() const { return outside + hidden + open; }
 };

@@ -52,7 +52,7 @@ struct Cause {
 // Colours that differ in either kind of colour blindness, on dark grey.
 constexpr Cause causes[] = {
     {Difference::edge, false, {0.99f, 0.72f, 0.15f}, "edge within 1/128 pixel"},
-    {Difference::depth, false, {0.31f, 0.70f, 1.0f}, "depths closer than can be told"},
+    {Difference::depth, false, {0.31f, 0.70f, 1.0f}, "depths closer than floats resolve"},
     {Difference::translucent, false, {0.62f, 0.87f, 0.47f}, "seen through something translucent"},
     {Difference::unexplained, true, {0.80f, 0.80f, 0.86f}, "wrong by design"},
     {Difference::unexplained, false, {1.0f, 0.15f, 0.45f}, "unexplained"}};

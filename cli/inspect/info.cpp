@@ -43,7 +43,7 @@ struct NamedCount {
   std::uint64_t Oddities::*count;
 };
 constexpr NamedCount oddities[] = {
-    {"non_finite_triangles", "triangles with corners that are not finite", &Oddities::non_finite_triangles},
+    {"non_finite_triangles", "triangles with vertices that are not finite", &Oddities::non_finite_triangles},
     {"degenerate_triangles", "degenerate triangles", &Oddities::degenerate_triangles},
     {"duplicate_triangles", "duplicate triangles", &Oddities::duplicate_triangles},
     {"boundary_edges", "boundary edges", &Oddities::boundary_edges},
@@ -309,7 +309,7 @@ std::string info_text(const SceneReport& report, const std::optional<ModelUnit>&
     const glm::dvec3 size = size_of(report.bounds);
     text += fmt::format("  size       {:.6g} x {:.6g} x {:.6g}\n", size.x, size.y, size.z);
     text += fmt::format("  area       {:.6g}", report.area);
-    if (report.volume) text += fmt::format(", volume {:.6g} of what is closed", *report.volume);
+    if (report.volume) text += fmt::format(", volume {:.6g} of the closed meshes", *report.volume);
     text += "\n" + unit_line(unit, report.bounds);
     text += rounding_line(report);
   }

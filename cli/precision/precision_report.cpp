@@ -84,10 +84,10 @@ std::string wanted_text(const PrecisionRun& run) {
     const std::optional<double> near = near_for(run, setup);
     text += fmt::format("  {:14}", setup_name(setup));
     if (rounding_gap(setup, wanted.y, run.reach) >= wanted.x)
-      text += fmt::format("no format will do: positions add {:.3g}\n", rounding_gap(setup, wanted.y, run.reach));
+      text += fmt::format("no format resolves it: positions add {:.3g}\n", rounding_gap(setup, wanted.y, run.reach));
     else if (!near)
       text += "no near plane will do\n";
-    if (near && *near == 0) text += "any near plane will do\n";
+    if (near && *near == 0) text += "any near plane resolves it\n";
     if (near && *near > 0)
       text += fmt::format("near {:.4g} or farther{}\n", *near, *near <= setup.clip.near ? ": it is" : "");
   }
@@ -97,7 +97,7 @@ std::string wanted_text(const PrecisionRun& run) {
 std::string fights_text(const PrecisionRun& run) {
   const DepthFights& first = *run.results.front().fights;
   std::string text = fmt::format("\n{} of {} pixels covered", first.covered, first.view.pixel_count());
-  if (first.tied > 0) text += fmt::format("; in {}, several surfaces lie exactly in one place", first.tied);
+  if (first.tied > 0) text += fmt::format("; in {}, several surfaces coincide exactly", first.tied);
   text += "\nwrong surface seen\n";
   for (const PrecisionResult& result : run.results) {
     const DepthFights& fights = *result.fights;
@@ -176,7 +176,7 @@ std::string areas_text(const PrecisionRun& run) {
   std::string text = "\nat risk, in pixels squared     in one plane       close  clear value       folds\n";
   for (const PrecisionResult& result : run.results) {
     if (!result.areas) {
-      text += fmt::format("  {:24}too many to tell ({})\n", setup_name(result.setup), result.too_many);
+      text += fmt::format("  {:24}too many to count ({})\n", setup_name(result.setup), result.too_many);
       continue;
     }
     const auto area = [&](FightKind kind) { return visible_area(*result.areas, kind); };

@@ -88,7 +88,7 @@ constexpr glm::dvec2 default_elevations{-15, 15};
 
 RayPattern read_directions(const std::string& path, bool robot_axes) {
   RayPattern pattern;
-  const std::vector<double> n = read_number_lines(path, {3, "three numbers make a direction"});
+  const std::vector<double> n = read_number_lines(path, {3, "a direction needs three numbers"});
   pattern.directions.reserve(n.size() / 3);
   for (std::size_t i = 0; i < n.size(); i += 3) {
     const glm::vec3& direction = pattern.directions.emplace_back(robot_axes ? glm::dvec3(-n[i + 1], n[i + 2], -n[i])

@@ -39,7 +39,7 @@ struct PointPair {
 
 std::vector<PointPair> read_pairs(const std::string& path) {
   std::vector<PointPair> pairs;
-  const std::vector<double> n = read_number_lines(path, {6, "six numbers make a pair of points"});
+  const std::vector<double> n = read_number_lines(path, {6, "a pair of points needs six numbers"});
   pairs.reserve(n.size() / 6);
   for (std::size_t i = 0; i < n.size(); i += 6)
     pairs.push_back({glm::dvec3(n[i], n[i + 1], n[i + 2]), glm::dvec3(n[i + 3], n[i + 4], n[i + 5])});

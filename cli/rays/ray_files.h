@@ -12,7 +12,7 @@
 
 namespace frontmost::cli {
 
-/// The number of values on a line, and the reason, for error messages: "six numbers make a pair of points".
+/// The number of values on a line, and the reason, for error messages: "a pair of points needs six numbers".
 struct LineRule {
   std::size_t count;
   const char* text;

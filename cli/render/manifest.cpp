@@ -116,7 +116,7 @@ Manifest read_manifest(const std::string& path) {
       manifest->finished.push_back(std::move(*view));
     }
   }
-  if (!manifest) throw Error(ErrorCode::file_malformed, path, "line 1", "this is not a manifest of frontmost");
+  if (!manifest) throw Error(ErrorCode::file_malformed, path, "line 1", "this is not a manifest that frontmost wrote");
   return std::move(*manifest);
 }
 

@@ -21,7 +21,7 @@ constexpr double node_width = 140, node_height = 34, across = 164, down = 92;
 
 struct GraphNode {
   std::uint32_t object = 0, rank = 0;
-  double x = 0, y = 0;  ///< of its centre
+  double x = 0, y = 0;  ///< the centre
 };
 
 class HidingGraph {

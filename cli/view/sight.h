@@ -15,7 +15,7 @@ namespace frontmost::cli {
 
 struct SeenView {
   Visible visible;
-  Buffer<float> window_depths;  ///< of a depth buffer, in the order of `visible`; else empty
+  Buffer<float> window_depths;  ///< stored depths of a depth buffer, in the order of `visible`; else empty
 };
 
 /// The depth state with defaults, which depend on --reversed.

@@ -62,7 +62,7 @@ inline constexpr std::uint64_t most_fragments = std::uint64_t(1) << 30;
 
 /// Numbers of fragments that the A-buffer processes for a view.
 struct FragmentCounts {
-  std::uint64_t fragments = 0;  ///< of all pixels, including those behind opaque ones
+  std::uint64_t fragments = 0;  ///< fragments of all pixels, including those behind opaque ones
   std::uint32_t longest = 0;    ///< the most in one pixel
 };
 

@@ -141,10 +141,10 @@ struct StrokeOptions {
 
 /// A line from point to point, drawn without lifting the pen.
 struct Stroke {
-  EdgeKind kind = EdgeKind::boundary;  ///< of all parts; without by_kind, of the first one
+  EdgeKind kind = EdgeKind::boundary;  ///< kind of all parts; without by_kind, of the first part
   bool is_hidden = false;
-  bool is_outline = false;            ///< of all parts; false without by_outline
-  std::uint32_t instance = no_index;  ///< of all parts; without by_instance, of the first one
+  bool is_outline = false;            ///< whether all parts are outlines; false without by_outline
+  std::uint32_t instance = no_index;  ///< instance of all parts; without by_instance, of the first part
   std::uint32_t first = 0, count = 0;
   bool is_closed = false;  ///< the last point is joined to the first one
 };
@@ -345,7 +345,7 @@ struct Round {
   RoundKind kind = RoundKind::circle;
   glm::dvec3 from{0}, to{0};           ///< ends of the axis, world space; for a circle, both are its centre
   glm::dvec3 axis{0, 0, 1};            ///< unit length
-  double radius = 0;                   ///< of the circle through the vertices; of the largest circle if revolved
+  double radius = 0;                   ///< radius of the circle through the vertices; of the largest circle if revolved
   double turn = 0;                     ///< radians, at most 2 pi: the part of the circle that exists
   bool is_hollow = false;              ///< cylinders: the material lies outside, as around a bore
   std::uint32_t first = 0, count = 0;  ///< range of Rounds::triangles

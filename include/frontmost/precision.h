@@ -151,8 +151,8 @@ struct FightingObjects {
   std::uint32_t first = no_index, second = no_index;  ///< instances, first <= second; `clear` has no second
   FightKind kind = FightKind::close;
   std::uint64_t areas = 0;
-  double area = 0;          ///< of the union, in square pixels; measured along lines at least 1/16 pixel apart
-  double visible_area = 0;  ///< of the union, in square pixels: see FightingFaces
+  double area = 0;          ///< area of the union, in square pixels; measured along lines at least 1/16 pixel apart
+  double visible_area = 0;  ///< visible area of the union, in square pixels: see FightingFaces
   double distance = 0;      ///< planar depth of the nearest point
   double gap = 0;           ///< resolvable_gap() at that depth
 };
@@ -257,7 +257,8 @@ struct Agreement {
 
 /// Adds the reason `translucent`, for methods that answer in layers. Considers the samples that agree and where
 /// `behind` shows something: they become `translucent` if Material::is_see_through() holds for what `front` shows, else
-/// `unexplained`. O(samples). \throws Error bad_argument if the layers are of different views.
+/// `unexplained`. O(samples). \throws Error bad_argument if the layers were made for different views; all must have the
+/// same view.
 void see_through(Agreement& agreement, const Surfaces& surfaces, const Visible& front, const Visible& behind);
 
 }  // namespace frontmost

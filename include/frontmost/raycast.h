@@ -190,7 +190,7 @@ struct Fisheye {
 /// are included; a single column has azimuth `first`. A full turn (to 1e-9) does not repeat its first ray: its column k
 /// has azimuth first + k (last - first) / n. The scanner turns left if `last` is below `first`. Row r is ring r.
 struct Lidar {
-  std::vector<double> elevations;  ///< of the rings, in radians, -pi/2 to pi/2
+  std::vector<double> elevations;  ///< elevation of each ring, in radians, -pi/2 to pi/2
   int steps = 1024;                ///< number of azimuths, at least 1
   /// Radians to the right of straight ahead, -2 pi to 2 pi, at most a full turn apart.
   double first_azimuth = 0, last_azimuth = 2 * 3.14159265358979323846;

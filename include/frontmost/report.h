@@ -364,7 +364,7 @@ struct Remedy {
 /// Share of an object that another one hides.
 struct HiderShare {
   std::uint32_t object = no_index;
-  double share = 0;  ///< of the hidden object's samples in frame; more than 0
+  double share = 0;  ///< share of the hidden object's samples in frame; more than 0
 };
 
 /// Why one object is seen, or is not, in one view.

@@ -261,7 +261,7 @@ struct Scene {
   /// Position of the world's zero in the coordinates of the file: world point p is origin + p in the file. The origin
   /// is zero except for models that lie so far from zero for their size that floats would lose their details.
   glm::dvec3 origin{0};
-  std::vector<std::string> warnings;  ///< what the reader skipped: "file: place: what"
+  std::vector<std::string> warnings;  ///< things that the reader skipped: "file: place: what"
   SceneSource source;
 };
 

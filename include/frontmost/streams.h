@@ -88,7 +88,7 @@ using CornerSpan = std::span<const std::array<glm::vec3, 3>>;
 struct StreamNeeds {
   bool key_light = false;  ///< triangles that cast shadows in the first view, for lit pictures; takes a second pass
   bool smooth_normals = false;  ///< neighbours of visible triangles, for meshes without normals; takes a second pass
-  LightOptions light = {};      ///< those of the picture, which place the key light
+  LightOptions light = {};      ///< lights of the picture, which include the key light
   /// Called with triangles while nothing is seen in the first view. A view that stays blank gets all of them, to find
   /// the reason. Several threads may call it at once. It takes no pass of its own.
   std::function<void(CornerSpan)> unseen = nullptr;

@@ -151,7 +151,7 @@ enum class NamedView : std::uint8_t { front, back, left, right, top, bottom, iso
 
 /// The part of a scene that a picture is about, and the objects that reach far beyond it.
 struct Subject {
-  Box bounds;                           ///< of the subject, in world space; empty if nothing can be seen
+  Box bounds;                           ///< bounds of the subject, in world space; empty if nothing can be seen
   std::vector<std::uint32_t> left_out;  ///< objects beyond it, by number in Scene::instances, ascending; mostly none
 };
 
@@ -165,7 +165,7 @@ struct Subject {
 
 /// Objects that frame() shows whole.
 enum class FramedObjects : std::uint8_t {
-  subject,  ///< those of find_subject(); others may reach out of the picture
+  subject,  ///< objects of find_subject(); others may reach out of the picture
   all,
 };
 

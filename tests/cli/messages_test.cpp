@@ -45,8 +45,8 @@ TEST_F(Messages, OfSight) {
                 {"sight cube.stl --from 1,2", "--from: '1,2' has 2 values, 3 are needed, separated by commas"},
                 {"sight cube.stl --from 1,2,x --to 1,2,3", "--from: 'x' is not a number"}});
   expect_could_not(
-      {{"sight cube.stl --pairs three.txt", "three.txt: line 2: six numbers make a pair of points; there are 3"},
-       {"sight cube.stl --pairs seven.txt", "seven.txt: line 1: six numbers make a pair of points; there are 7"},
+      {{"sight cube.stl --pairs three.txt", "three.txt: line 2: a pair of points needs six numbers; there are 3"},
+       {"sight cube.stl --pairs seven.txt", "seven.txt: line 1: a pair of points needs six numbers; there are 7"},
        {"sight cube.stl --pairs far.txt", "far.txt: line 1: 1e39 is not between -3e+38 and 3e+38"},
        {"sight cube.stl --pairs none.txt", "none.txt: cannot open"},
        {"sight cube.stl --pairs folder", "folder: is a folder"}});
@@ -68,7 +68,7 @@ TEST_F(Messages, OfLidar) {
                 {"lidar cube.stl --from 0,0,9 -o a.ply -o a.ply", "a.ply: would be written twice"}});
   expect_could_not({{"lidar cube.stl --from 0,0,9 --json --directions empty.txt", "empty.txt: holds no direction"},
                     {"lidar cube.stl --from 0,0,9 --json --directions two.txt",
-                     "two.txt: line 1: three numbers make a direction; there are 2"},
+                     "two.txt: line 1: a direction needs three numbers; there are 2"},
                     {"lidar cube.stl --from 0,0,9 -o none/a.ply", "none/a.ply: the folder none does not exist"}});
   EXPECT_THAT(run({"lidar", "cube.stl", "--from", "0,0,9", "-o", ""}).err,
               testing::HasSubstr("--output: the file name is empty"));

@@ -68,7 +68,7 @@ TEST_F(Precision, AWantedGapNamesTheNearPlane) {
   const std::string text = succeed("precision --near 0.01 --far 1000 --gap 0.01,100").out;
   EXPECT_THAT(text, HasSubstr("to tell 0.01 apart at 100\n"));
   EXPECT_THAT(text, HasSubstr("D24           near 0.0610"));
-  EXPECT_THAT(text, HasSubstr("F32 reversed  any near plane will do\n"));
+  EXPECT_THAT(text, HasSubstr("F32 reversed  any near plane resolves it\n"));
   EXPECT_THAT(succeed("precision --near 1 --far 1000 --gap 0.01,100 --format D24").out, HasSubstr("or farther: it is"));
 }
 
@@ -78,7 +78,7 @@ TEST_F(Precision, WhatPositionsAddIsSaid) {
   EXPECT_LT(at_far["format_gap"], 1e-7);
   EXPECT_GT(at_far["gap"], 1e-4) << "floats are 7.6e-6 apart there";
   EXPECT_THAT(succeed(line).out, HasSubstr("the rounding of positions and transforms"));
-  EXPECT_THAT(succeed(line + " --gap 1e-6,100.5").out, HasSubstr("no format will do: positions add 0.00024"));
+  EXPECT_THAT(succeed(line + " --gap 1e-6,100.5").out, HasSubstr("no format resolves it: positions add 0.00024"));
   EXPECT_TRUE(succeed(line + " --gap 1e-6,100.5 --json").json()["buffers"][0]["near_for_gap"].is_null());
   // Far from the eye, positions are coarser.
   write("far.obj", "v 0 0 0\nv 1e4 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -173,7 +173,7 @@ TEST_F(Precision, MoreAreasAtRiskThanCanBeListedLeaveTheRestOfTheReport) {
   ASSERT_FALSE(buffer["remedies"].empty());
   EXPECT_LT(buffer["remedies"].back()["wrong_pixels"], buffer["fights"]["wrong_pixels"]);
   if (test::under_sanitizer) return;
-  EXPECT_THAT(succeed(line).out, HasSubstr("too many to tell (fighting faces: "));
+  EXPECT_THAT(succeed(line).out, HasSubstr("too many to count (fighting faces: "));
 }
 
 TEST_F(Precision, OneSurfaceInTwoPlacesIsTied) {

@@ -115,7 +115,7 @@ TEST(DeepImages, WrongBeginningsAndChannelsAreNamed) {
     EXPECT_EQ(error_of([&] { validate(image); }, &message), ErrorCode::bad_argument);
     return message;
   };
-  const char* const order = "a deep image's beginnings are not one a pixel and the end, in order";
+  const char* const order = "a deep image needs ascending beginnings, one for each pixel, and the end";
   DeepImage image = deep_image();
   image.first = Buffer<std::uint64_t>(2, 0);
   EXPECT_NE(complaint(image).find(order), std::string::npos) << message;

@@ -134,7 +134,7 @@ TEST(RefusedImages, SayWhatIsWrong) {
   EXPECT_EQ(complaint(image), "image: two channels are named Z");
   image.channels[1] = id_channel("primitive", {1, 2, 3});
   EXPECT_EQ(complaint(image), "image: channel primitive does not have width x height values");
-  EXPECT_EQ(complaint(Bitmap{2, 1, Buffer<std::uint8_t>(7)}), "image: a bitmap does not have four bytes a pixel");
+  EXPECT_EQ(complaint(Bitmap{2, 1, Buffer<std::uint8_t>(7)}), "image: a bitmap needs four bytes for each pixel");
   EXPECT_EQ(complaint(Bitmap{2, 1, Buffer<std::uint8_t>(8)}), "none");
   EXPECT_EQ(complaint(Bitmap{}), "image: 0 x 0 pixels");
 }
@@ -145,15 +145,15 @@ TEST(RefusedImages, DeepOnesToo) {
   deep.channels.push_back(float_channel("Z", {}));
   EXPECT_EQ(complaint(deep), "none") << "no pixel needs to have a sample";
   deep.first[1] = deep.first[2] = 1;
-  EXPECT_EQ(complaint(deep), "image: channel Z does not have one value a sample");
+  EXPECT_EQ(complaint(deep), "image: channel Z does not have one value for each sample");
   deep.channels[0] = float_channel("Z", {1});
   deep.channels.push_back(float_channel("Z", {1}));
   EXPECT_EQ(complaint(deep), "image: two channels are named Z");
   deep.channels.pop_back();
   deep.first[1] = 2;
-  EXPECT_EQ(complaint(deep), "image: a deep image's beginnings are not one a pixel and the end, in order");
+  EXPECT_EQ(complaint(deep), "image: a deep image needs ascending beginnings, one for each pixel, and the end");
   deep.first = Buffer<std::uint64_t>();
-  EXPECT_EQ(complaint(deep), "image: a deep image's beginnings are not one a pixel and the end, in order");
+  EXPECT_EQ(complaint(deep), "image: a deep image needs ascending beginnings, one for each pixel, and the end");
 }
 
 TEST(RefusedComparisons, NameSizesAndChannels) {

@@ -40,7 +40,7 @@ TEST_P(Foreseen, TooManyCuts) {
       (void)painter(surfaces, view, {.method = method}, watch.execution());
       ADD_FAILURE() << "no error";
     } catch (const Error& error) {
-      EXPECT_STREQ(error.what(), "painter: more than 1048576 cuts: too many triangles pass through each other");
+      EXPECT_STREQ(error.what(), "painter: more than 1048576 cuts: too many triangles intersect");
     }
     EXPECT_LT(watch.asked(), 100u) << "4096 steps each";
   }
@@ -141,7 +141,7 @@ TEST(Hostile, CutsEndAtTheirLimit) {
       ADD_FAILURE() << "no error";
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::limit_exceeded);
-      EXPECT_STREQ(error.what(), "painter: more than 2000 cuts: too many triangles pass through each other");
+      EXPECT_STREQ(error.what(), "painter: more than 2000 cuts: too many triangles intersect");
     }
 }
 

@@ -299,7 +299,7 @@ TEST(Explain, BetweenTheSamplesItsAreaIsTold) {
   EXPECT_EQ(why.reason, SightReason::no_sample);
   EXPECT_NEAR(why.pixels, 0.25, 1e-6);
   EXPECT_EQ(sentence(why, scene),
-            "panel is between the samples: its 0.25 square pixels cover none: draw 2 times as "
+            "panel is between the samples: its 0.25 square pixels contain no sample: draw 2 times as "
             "many pixels each way.");
   expect_seen_after_remedy(scene, parallel_view(), why);
   // A box's visible area is at most its silhouette.
@@ -500,7 +500,7 @@ TEST(Explain, RefusesWhatDoesNotBelongTogether) {
   EXPECT_EQ(test::code_of([&] { (void)explain(surfaces, View{}, 0); }), ErrorCode::bad_argument);
   EXPECT_EQ(test::refusal_of(ErrorCode::bad_argument,
                              [&] { (void)explain_all(surfaces, zbuffer(surfaces, level_view()), {}); }),
-            "explanations: the accounts are of other objects");
+            "explanations: the accounts were made for other objects");
   EXPECT_EQ(test::code_of([&] {
               (void)remedied(level_view(), {RemedyKind::enlarge, 1000, 0, 0, {}});
             }),

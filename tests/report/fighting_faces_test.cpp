@@ -359,7 +359,7 @@ TEST(TooMuch, PairsBehindAShieldAsLargeAsTheyAre) {
   view.projection = make_orthographic(-1.2, 1.2, -1.2, 1.2, {1, 10});
   EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { (void)find_fighting_faces(surfaces, view, DepthFormat::d24); }),
             "fighting faces: too many pairs of faces lie over each other: most faces, 800, are in the pixels from 0,0 "
-            "to 256,256; leave out what lies there many times");
+            "to 256,256; leave out faces that lie there many times");
 }
 
 }  // namespace

@@ -90,7 +90,8 @@ TEST(RefusedReports, AnswersOfDifferentViews) {
             "depth fights: the two results were made for different views; both must have the same view");
   EXPECT_EQ(words([&] { (void)find_depth_fights(surfaces, exact, a); }), "none");
   Agreement fine = check_agreement(surfaces, a, a);
-  EXPECT_EQ(words([&] { see_through(fine, surfaces, wider, wider); }), "agreement: the layers are of different views");
+  EXPECT_EQ(words([&] { see_through(fine, surfaces, wider, wider); }),
+            "agreement: the layers were made for different views; all must have the same view");
 }
 
 TEST(RefusedReports, DistancesAndGaps) {

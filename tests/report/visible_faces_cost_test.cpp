@@ -81,7 +81,7 @@ TEST(CostOfVisibleFaces, TooMuchIsRefusedAndSaysWhere) {
     EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded,
                          [&] { (void)faces_detail::find_faces(surfaces, view, sides, 1 << 22, {.threads = threads}); }),
               "visible faces: too many faces lie over each other to be cut by each other: most of them, 2000, in the "
-              "pixels from 0,0 to 32,32, among them face 0 of object 0; leave out what lies there many times");
+              "pixels from 0,0 to 32,32, among them face 0 of object 0; leave out faces that lie there many times");
 }
 
 }  // namespace

@@ -176,11 +176,12 @@ TEST(Validate, NamesTheLightThatGivesNoLight) {
   const std::string who = "part.glb: light 1 (lamp): ";
   EXPECT_EQ(lit_by([](Light&) {}), "none");
   for (const double bad : {-1.0, nan, infinity}) {
-    EXPECT_EQ(lit_by([&](Light& l) { l.intensity = bad; }), who + "its intensity is not a number from 0 on");
-    EXPECT_EQ(lit_by([&](Light& l) { l.color.y = float(bad); }), who + "its colour is not three numbers from 0 on");
+    EXPECT_EQ(lit_by([&](Light& l) { l.intensity = bad; }), who + "its intensity is not a number of at least 0");
+    EXPECT_EQ(lit_by([&](Light& l) { l.color.y = float(bad); }), who + "its colour is not three numbers of at least 0");
     EXPECT_EQ(lit_by([&](Light& l) { l.range = bad; }), who + "its range is not a positive number");
   }
-  const std::string cones = "its cones are not angles from 0 to a quarter turn, the inner one within the outer one";
+  const std::string cones =
+      "its cone angles are not between 0 and 90 degrees, or the inner one is greater than the outer one";
   EXPECT_EQ(lit_by([](Light& l) { l.inner_cone = 1; }), who + cones) << "reversed: the outer one is 45 degrees";
   EXPECT_EQ(lit_by([](Light& l) { l.outer_cone = 1.6; }), who + cones);
   EXPECT_EQ(lit_by([](Light& l) { l.outer_cone = 0; }), who + cones);

@@ -39,7 +39,7 @@ TEST(BlendGroups, HalvesOfAPaneStayTogetherWhateverIsBehind) {
   EXPECT_NEAR(area_of(figure, 2), 16, 1e-9);
 }
 
-/// As the front and the back of a box of glass are seen along an axis; in whatever order their halves come.
+/// The front and the back of a box of glass, seen along an axis; their halves come in any order.
 TEST(BlendGroups, PanesInOneOutlineStayWhole) {
   const Tile half{{{0, 0}, {0, 4}, {4, 4}}, kGlass}, other{{{0, 0}, {4, 4}, {4, 0}}, kGlass};
   for (const std::vector<Tile>& tiles :

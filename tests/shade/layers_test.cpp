@@ -231,7 +231,7 @@ TEST(SeeThrough, AlwaysGivesOpaqueScenesTheSubSamplesOfTheABuffer) {
 
 struct Difference {
   float farthest = 0;      ///< largest difference of any channel
-  std::size_t pixels = 0;  ///< that differ by more than rounding
+  std::size_t pixels = 0;  ///< pixels that differ by more than rounding
 };
 
 Difference difference_of(const Image& a, const Image& b) {

@@ -207,7 +207,7 @@ TEST_F(SheetOfBlock, WhatCannotBeMeantIsRefusedByTheNameOfItsField) {
       {{.views = {V::front}, .crease_angle = 4}, "crease_angle: "},
       {{.views = {V::front}, .shortest_stroke = -1}, "shortest_stroke: "},
       {{.views = {V::front}, .page = Paper{{0, 9}}}, "page: "},
-      {{.views = {V::front}, .page = fitting}, "page: one that fits the drawing needs a scale"},
+      {{.views = {V::front}, .page = fitting}, "page: a page fitted to the drawing needs a scale"},
       {{.views = {V::front}, .page = fitting, .scale = 1, .title_block = TitleBlock{}}, "page: a frame"},
       {{.views = {V::front}, .page = Paper{{100, 90}}, .title_block = TitleBlock{}}, "page: 100 x 90 mm have no room"},
       {{.views = {V::front, V::top}, .page = Paper{{25, 25}}, .margin = 6},

@@ -21,8 +21,8 @@ struct ShadowBand {
   std::size_t asked = 0;      ///< pixels whose plane faces the light
   std::size_t in_shadow = 0;  ///< by rays
   std::size_t differing = 0;  ///< the map is neither wholly lit nor wholly dark like the ray
-  std::size_t opposite = 0;   ///< of those, pixels where the map gives the opposite
-  std::size_t by_bias = 0;    ///< of those, pixels whose occluder is no higher than the bias
+  std::size_t opposite = 0;   ///< counted pixels where the map gives the opposite
+  std::size_t by_bias = 0;    ///< counted pixels whose occluder is no higher than the bias
   std::size_t unexplained = 0;
   double widest = 0;  ///< texels to the nearest differing line, along the worse axis
 };

@@ -222,7 +222,7 @@ TEST(Move, OtherScenesInstancesAndTransformsAreRefused) {
   Surfaces surfaces(scene);
   const glm::dmat4 before = scene.instances[0].world_from_mesh;
   EXPECT_EQ(refusal_of(ErrorCode::bad_argument, [&] { surfaces.move(other, 0, glm::dmat4(2.0)); }),
-            "move: the surfaces are of another scene");
+            "move: the surfaces were made for another scene");
   EXPECT_EQ(refusal_of(ErrorCode::bad_argument, [&] { surfaces.move(scene, 40, glm::dmat4(2.0)); }),
             "move: there is no instance 40");
   glm::dmat4 broken(1.0);

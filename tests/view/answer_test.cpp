@@ -71,7 +71,7 @@ TEST_F(Answer, PlanesOfAnotherSizeAreRefused) {
 TEST_F(Answer, IdsOfOtherSurfacesAreRefused) {
   const Visible strange = zbuffer(many, view);
   ASSERT_GT(many.primitive_count(), 24u);
-  const char* const other_surfaces = "the surfaces are not those that were seen";
+  const char* const other_surfaces = "the surfaces are not those of the Visible";
   for (const Shading shading :
        {Shading::lit, Shading::flat, Shading::normals, Shading::ids, Shading::depth, Shading::uv})
     expect_refused(other_surfaces, [&] { (void)shade(surfaces, strange, {.shading = shading}); });

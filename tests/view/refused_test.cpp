@@ -83,8 +83,8 @@ TEST(RefusedViews, PlanesAndSidesOfTheirProjection) {
   EXPECT_EQ(clipped(false, -1e-300, 5), "argument, near: must be greater than 0 in perspective");
   EXPECT_EQ(clipped(false, 1e-320, 5), "limit, near: must be at least 1.2e-38");
   EXPECT_EQ(clipped(false, 1e-39, 5), "limit, near: must be at least 1.2e-38");
-  EXPECT_EQ(clipped(false, 1, 1 + 1e-12), "limit, far: too close to near, or too far, to be told apart in floats");
-  EXPECT_EQ(clipped(true, 0, 1e39), "limit, far: must lie within the range of floats, and not at near");
+  EXPECT_EQ(clipped(false, 1, 1 + 1e-12), "limit, far: too close to near, or too large, for floats");
+  EXPECT_EQ(clipped(true, 0, 1e39), "limit, far: must be within the range of floats, and differ from near");
   EXPECT_EQ(changed([](View& v) { v.projection.right = v.projection.left; }),
             "argument, right: must be greater than left");
   EXPECT_EQ(changed([](View& v) { std::swap(v.projection.top, v.projection.bottom); }),
@@ -173,7 +173,7 @@ TEST(RefusedMerges, SayWhatIsNotTheSame) {
   EXPECT_EQ(outcome([&] { merge(into, seen, no_primitive - 8); }), "taken");
   EXPECT_EQ(into.primitives[5], no_primitive - 1);
   EXPECT_EQ(outcome([&] { merge(into, seen, no_primitive - 7); }),
-            "limit, merge: more triangles than ids can tell apart (4294967294)");
+            "limit, merge: more than 4294967294 triangles, the most that ids can number");
 }
 
 TEST(SampleOffsets, AreThoseOfDirect3D) {

@@ -299,12 +299,12 @@ TEST(DepthBuffer, BadArgumentsAreRefusedByName) {
   Bench bench;
   EXPECT_EQ(message([&] { bench.buffer.clear(nan); }), "clear: the depth must be a finite number");
   const Mesh mesh = full(0.5f);
-  EXPECT_EQ(message([&] { bench.draw(mesh, {.range_near = -0.1}); }), "depth range: both ends must be 0 to 1");
-  EXPECT_EQ(message([&] { bench.draw(mesh, {.range_far = nan}); }), "depth range: both ends must be 0 to 1");
+  EXPECT_EQ(message([&] { bench.draw(mesh, {.range_near = -0.1}); }), "depth range: both ends must be from 0 to 1");
+  EXPECT_EQ(message([&] { bench.draw(mesh, {.range_far = nan}); }), "depth range: both ends must be from 0 to 1");
   EXPECT_EQ(message([&] { bench.draw(mesh, {.offset = {nan, 0}}); }), "polygon offset: must be within 1e30");
   EXPECT_EQ(message([&] { bench.draw(mesh, {.func = DepthFunc(9)}); }), "depth function: there are eight");
   bench.ids = no_primitive - 1;
-  EXPECT_EQ(message([&] { bench.draw(mesh); }), "id offset: ids would pass 4294967294");
+  EXPECT_EQ(message([&] { bench.draw(mesh); }), "id offset: ids would exceed 4294967294");
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
   View view = flat_view();

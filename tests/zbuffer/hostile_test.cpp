@@ -32,7 +32,7 @@ double magnitude(Random& random, double low, double high) {
 enum class Where { origin, far_away, tiny, vast };
 
 struct Setting {
-  double size = 1;  ///< of the scene, in scene units
+  double size = 1;  ///< size of the scene, in scene units
   glm::dvec3 centre{0};
 };
 

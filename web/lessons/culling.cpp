@@ -9,7 +9,7 @@ namespace frontmost::web {
 namespace {
 
 struct Facing {
-  double cosine = 0;  ///< of the angle between the normal and the direction to the eye
+  double cosine = 0;  ///< cosine of the angle between the normal and the direction to the eye
   glm::dvec3 middle{0}, normal{0};
 };
 

@@ -32,7 +32,7 @@ struct LightMap {
 struct Judged {
   bool faces_light = false;
   bool lit_by_map = false, lit_by_ray = false;
-  double cosine = 0;    ///< of the angle between normal and light
+  double cosine = 0;    ///< cosine of the angle between normal and light
   double distance = 0;  ///< from the light's plane
   float stored = 0;     ///< depth in the map
   glm::ivec2 texel{0};

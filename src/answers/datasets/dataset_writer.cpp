@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 
 /// An object with samples in the picture.
 struct ObjectInFrame {
-  std::uint32_t number;  ///< of the instance
+  std::uint32_t number;  ///< number of the instance
   PixelMask mask;
 };
 

@@ -352,7 +352,8 @@ Agreement check_agreement(const Surfaces& surfaces, const Visible& a, const Visi
 void see_through(Agreement& agreement, const Surfaces& surfaces, const Visible& front, const Visible& behind) {
   check_views(front, behind);
   if (agreement.differences.size() != front.primitives.size())
-    throw Error(ErrorCode::bad_argument, "agreement", "the layers are of different views");
+    throw Error(ErrorCode::bad_argument, "agreement",
+                "the layers were made for different views; all must have the same view");
   const Scene& scene = surfaces.scene();
   const auto lets_light_through = [&](PrimitiveId id) {
     if (id >= surfaces.primitive_count()) return false;

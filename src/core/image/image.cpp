@@ -94,11 +94,11 @@ void validate(const DeepImage& image) {
   const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
   if (image.first.size() != pixels + 1 || image.first[0] != 0 ||
       !std::is_sorted(image.first.begin(), image.first.end()))
-    fail("a deep image's beginnings are not one a pixel and the end, in order");
+    fail("a deep image needs ascending beginnings, one for each pixel, and the end");
   std::set<std::string_view> names;
   for (const Channel& channel : image.channels) {
     if (value_count(channel) != image.first[pixels])
-      fail("channel " + channel.name + " does not have one value a sample");
+      fail("channel " + channel.name + " does not have one value for each sample");
     if (!names.insert(channel.name).second) fail("two channels are named " + channel.name);
   }
 }
@@ -106,7 +106,7 @@ void validate(const DeepImage& image) {
 void validate(const Bitmap& bitmap) {
   validate_size(bitmap.width, bitmap.height);
   if (bitmap.rgba.size() != 4 * std::size_t(bitmap.width) * std::size_t(bitmap.height))
-    fail("a bitmap does not have four bytes a pixel");
+    fail("a bitmap needs four bytes for each pixel");
 }
 
 std::uint64_t content_hash(const Image& image) {
@@ -199,7 +199,7 @@ Image id_image(const Surfaces& surfaces, const Visible& visible, IdKind kind) {
 
 Image id_image(const Surfaces& surfaces, const glm::ivec2& size, std::span<const PrimitiveId> primitives, IdKind kind) {
   if (size.x < 0 || size.y < 0 || primitives.size() != std::size_t(size.x) * std::size_t(size.y))
-    throw Error(ErrorCode::bad_argument, "id image", "the size does not fit the number of ids");
+    throw Error(ErrorCode::bad_argument, "id image", "the number of ids is not width x height");
   Buffer<std::uint32_t> ids(primitives.size());
   // Neighbours mostly show the same triangle, which need not be looked up again.
   PrimitiveId last_primitive = no_primitive;
@@ -210,7 +210,7 @@ Image id_image(const Surfaces& surfaces, const glm::ivec2& size, std::span<const
       last_primitive = last_id = primitive;
       if (primitive != no_primitive) {
         if (primitive >= surfaces.primitive_count())
-          throw Error(ErrorCode::bad_argument, "id image", "the surfaces are not those that were seen");
+          throw Error(ErrorCode::bad_argument, "id image", "the surfaces are not those of the Visible");
         if (kind != IdKind::primitive) last_id = id_of(surfaces.scene(), surfaces.source(primitive), kind);
       }
     }

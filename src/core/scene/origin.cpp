@@ -17,7 +17,7 @@
 namespace frontmost {
 namespace {
 
-constexpr double least_ratio = 4;  ///< of distance to extent: below it an origin saves two bits at most
+constexpr double least_ratio = 4;  ///< ratio of distance to extent: below it an origin saves two bits at most
 constexpr double least_distance = 1024;
 constexpr double always_ratio = 128;  ///< far at this ratio, however small the units are
 

@@ -115,13 +115,13 @@ bool is_rigid(const glm::dmat4& m) {
 
 /// The fault of a light, or null.
 const char* fault_of(const Light& light) {
-  if (!(light.intensity >= 0 && std::isfinite(light.intensity))) return "its intensity is not a number from 0 on";
+  if (!(light.intensity >= 0 && std::isfinite(light.intensity))) return "its intensity is not a number of at least 0";
   for (int k = 0; k < 3; ++k)
-    if (!(light.color[k] >= 0 && std::isfinite(light.color[k]))) return "its colour is not three numbers from 0 on";
+    if (!(light.color[k] >= 0 && std::isfinite(light.color[k]))) return "its colour is not three numbers of at least 0";
   if (light.range && !is_positive_and_finite(*light.range)) return "its range is not a positive number";
   if (!(light.inner_cone >= 0 && light.inner_cone <= light.outer_cone && light.outer_cone > 0 &&
         light.outer_cone <= 0.5 * std::numbers::pi))
-    return "its cones are not angles from 0 to a quarter turn, the inner one within the outer one";
+    return "its cone angles are not between 0 and 90 degrees, or the inner one is greater than the outer one";
   if (!is_rigid(light.world_from_light)) return "its placement is not rigid";
   return nullptr;
 }

@@ -38,7 +38,7 @@ struct SurfacePoint {
 /// A rectangle of quads, bent so that its first and last row, or column, may coincide. Outer side: (along j) x (along
 /// i).
 struct SurfaceGrid {
-  int rows = 1, columns = 1;    ///< of quads; i counts rows, j columns
+  int rows = 1, columns = 1;    ///< rows and columns of quads; i counts rows, j columns
   bool closed_rows = false;     ///< row `rows` is row 0
   bool closed_columns = false;  ///< column `columns` is column 0
   bool poles = false;           ///< the first and the last row are one point each

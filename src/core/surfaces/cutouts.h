@@ -17,7 +17,7 @@ namespace frontmost {
 struct CutoutPattern {
   float alpha = 1, cutoff = 0.5f;  ///< alpha factor, and the least alpha that is solid
   TexcoordTransform transform{TextureUse{}};
-  int width = 0, height = 0;  ///< of the texture; 0 if there is none
+  int width = 0, height = 0;  ///< size of the texture; 0 if there is none
   std::vector<std::uint8_t> alphas;
   Texture::Wrap wrap_u = Texture::Wrap::repeat, wrap_v = Texture::Wrap::repeat;
   bool nearest = false;

@@ -115,7 +115,7 @@ struct PlacedScene {
                                               ///< swapped
   std::shared_ptr<Cutouts> cutouts;           ///< null if no triangle may have holes
   std::shared_ptr<const MaterialSides> sides;
-  std::vector<MeshRange> ranges;  ///< of all triangles, in the order of their ids
+  std::vector<MeshRange> ranges;  ///< ranges of all triangles, in the order of their ids
   std::vector<Box> boxes;         ///< boxes of a few consecutive triangles each, those with finite vertices
   std::vector<Box> instance_bounds;
   /// Boxes around 16 consecutive boxes of the level below, the lowest level around instances; up to a single box.

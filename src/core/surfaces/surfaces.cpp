@@ -52,7 +52,7 @@ void Surfaces::move(Scene& scene, std::uint32_t instance, const glm::dmat4& worl
 
 void Surfaces::move(Scene& scene, std::span<const Placement> placements, const Execution& execution) {
   PlacedScene& placed = state_->placed;
-  if (&scene != placed.scene) throw Error(ErrorCode::bad_argument, "move", "the surfaces are of another scene");
+  if (&scene != placed.scene) throw Error(ErrorCode::bad_argument, "move", "the surfaces were made for another scene");
   for (const auto& [instance, world_from_mesh] : placements) {
     if (instance >= scene.instances.size())
       throw Error(ErrorCode::bad_argument, "move", "there is no instance " + std::to_string(instance));

@@ -76,7 +76,7 @@ void check_ids(std::span<const PrimitiveId> ids, std::uint32_t primitive_count, 
     for (std::size_t i = begin; i < end; ++i) most = std::max(most, ids[i] + 1);
     if (most > primitive_count) is_of_others = true;
   });
-  if (is_of_others) throw Error(ErrorCode::bad_argument, std::string(who), "the surfaces are not those that were seen");
+  if (is_of_others) throw Error(ErrorCode::bad_argument, std::string(who), "the surfaces are not those of the Visible");
 }
 
 void check_answer(const Visible& visible, std::uint32_t primitive_count, const char* who, const Execution& execution) {
@@ -131,7 +131,8 @@ void merge(Visible& into, const Visible& other, PrimitiveId first_id, const Exec
   parallel_for(execution, into.keys.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
     if (merge_run(into, other, first_id, begin, end) >= no_primitive) is_full = true;
   });
-  if (is_full) throw Error(ErrorCode::limit_exceeded, "merge", "more triangles than ids can tell apart (4294967294)");
+  if (is_full)
+    throw Error(ErrorCode::limit_exceeded, "merge", "more than 4294967294 triangles, the most that ids can number");
 }
 
 Buffer<std::uint64_t> pack(const Visible& visible, PrimitiveId first_id, const Execution& execution) {
@@ -147,14 +148,16 @@ Buffer<std::uint64_t> pack(const Visible& visible, PrimitiveId first_id, const E
     }
     if (greatest >= no_primitive) is_full = true;
   });
-  if (is_full) throw Error(ErrorCode::limit_exceeded, "pack", "more triangles than ids can tell apart (4294967294)");
+  if (is_full)
+    throw Error(ErrorCode::limit_exceeded, "pack", "more than 4294967294 triangles, the most that ids can number");
   return packed;
 }
 
 Visible unpack(const View& view, std::span<const std::uint64_t> packed, const Execution& execution) {
   validate(view);
   if (packed.size() != view.sample_count())
-    throw Error(ErrorCode::bad_argument, "unpack", "the numbers are not as many as the samples of the view");
+    throw Error(ErrorCode::bad_argument, "unpack",
+                "the number of packed values is not the number of samples of the view");
   Visible visible{view, Buffer<PrimitiveId>(packed.size()), Buffer<float>(packed.size())};
   std::atomic<bool> is_wrong{false};
   parallel_for(execution, packed.size(), packed_at_once, [&](std::size_t begin, std::size_t end) {
@@ -166,7 +169,7 @@ Visible unpack(const View& view, std::span<const std::uint64_t> packed, const Ex
     }
     if (greatest > bits_of_one) is_wrong = true;
   });
-  if (is_wrong) throw Error(ErrorCode::bad_argument, "unpack", "a key is not within 0 and 1");
+  if (is_wrong) throw Error(ErrorCode::bad_argument, "unpack", "a key is not between 0 and 1");
   return visible;
 }
 

@@ -135,7 +135,7 @@ Figure figure_of(shading::PreparedScene& scene, const ShadeInput& input, const F
   check_planes(*input.visible, "figure");
   shading::check_opacity(options.shade);
   if (input.view().samples != 1)
-    throw Error(ErrorCode::bad_argument, "figure", "what is visible must have one sample a pixel");
+    throw Error(ErrorCode::bad_argument, "figure", "the Visible must have one sample a pixel");
   if (!(options.tolerance >= 0 && options.tolerance <= 255))
     throw Error(ErrorCode::bad_argument, "figure: tolerance", "must be 0 to 255");
   const VisibleParts parts = parts_of(surfaces, input.first().view, options, execution);

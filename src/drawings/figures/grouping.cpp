@@ -349,7 +349,7 @@ class BlendSorter {
   std::vector<std::uint32_t> below_;  ///< number of unpainted nodes below a node
   std::vector<State> states_;
   std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> opaque_;
-  DisjointSets<std::greater<>> patches_;      ///< of translucent nodes that are ready
+  DisjointSets<std::greater<>> patches_;      ///< patches of translucent nodes that are ready
   std::vector<std::size_t> open_sides_;       ///< by patch: pairs of one of its nodes with a waiting one
   std::vector<std::uint32_t> next_in_patch_;  ///< rings of nodes
   std::set<std::pair<std::size_t, std::uint32_t>> by_open_sides_;

@@ -127,7 +127,7 @@ struct TonedScene {
 struct HatchTask {
   const std::vector<HatchSet>& sets;
   bool by_instance = true;
-  const DotGrid* dots = nullptr;  ///< of sets[0]: then pieces are dots
+  const DotGrid* dots = nullptr;  ///< dots of sets[0]: then pieces are dots
   /// One bit for each set of a material; the last entry is for triangles without material. Empty: all have all sets.
   std::vector<std::uint32_t> sets_by_material{};
 };
@@ -431,7 +431,7 @@ std::vector<Stipple> stipple(const Surfaces& surfaces, const View& view, const S
   if (!(options.spacing >= 0.5 && options.spacing <= 1000))
     throw Error(ErrorCode::bad_argument, "stipple", "the spacing must be from 0.5 to 1000 pixels");
   if (double(view.width) * view.height / (options.spacing * options.spacing) > most_dots)
-    throw Error(ErrorCode::limit_exceeded, "stipple", "there would be room for more than 20000000 dots");
+    throw Error(ErrorCode::limit_exceeded, "stipple", "more than 20000000 dots would fit; give a larger spacing");
   const IeeeScope ieee;
   report_progress(execution, "hatching", 0);
   const TonedScene scene(surfaces, view, options.tone, execution);

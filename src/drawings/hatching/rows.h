@@ -149,7 +149,7 @@ class HatchRows {
   }
 
   glm::dvec2 size_;
-  glm::dvec2 direction_, across_;  ///< of unit length
+  glm::dvec2 direction_, across_;  ///< unit length
   double spacing_, offset_, near_;
   bool is_parallel_;
   glm::dvec3 plane_;

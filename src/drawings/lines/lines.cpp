@@ -128,7 +128,7 @@ Error with_place(const Error& error, const OccluderGrid& grid, const WeldedMesh&
   return {error.code(), error.file(), error.place(),
           error.reason() + ": most of them, " + std::to_string(crowd.count) + ", in one place, among them face " +
               std::to_string(surfaces.source(id).triangle) + " of object " +
-              std::to_string(surfaces.source(id).instance) + "; leave out what lies there many times"};
+              std::to_string(surfaces.source(id).instance) + "; leave out faces that lie there many times"};
 }
 
 /// Closes the mesh's seams.

@@ -31,7 +31,7 @@ struct PassedCell {
 /// Equal squares side by side, row by row.
 struct SquareGrid {
   glm::dvec2 low{0};
-  double size = 1;  ///< of a square
+  double size = 1;  ///< side of a square
   int columns = 1, rows = 1;
 
   [[nodiscard]] std::size_t count() const { return std::size_t(columns) * std::size_t(rows); }

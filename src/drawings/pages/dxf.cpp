@@ -325,7 +325,7 @@ void save_dxf(const Page& page, OutputFile& file, const Execution& execution) {
   for (const PageLayer& layer : page.layers)
     for (const PageGroup& group : layer.groups)
       if (!group.fills.empty())
-        throw Error(ErrorCode::unsupported, file.name(), "", "DXF holds lines alone, no filled polygons");
+        throw Error(ErrorCode::unsupported, file.name(), "", "DXF holds only lines, and this page has filled polygons");
   DxfWriter(page, file, execution).write();
 }
 

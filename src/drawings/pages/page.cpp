@@ -33,7 +33,7 @@ void check_group(const PageGroup& group, const std::string& where) {
   if (group.points.size() > 0xFFFFFFFFu) throw Error(ErrorCode::limit_exceeded, where, "over 2^32 points");
   for (const glm::dvec2& p : group.points)
     if (!(std::abs(p.x) <= farthest && std::abs(p.y) <= farthest))
-      refuse(where, "a point is not finite, or further than 1000 m from the page");
+      refuse(where, "a point is not finite, or farther than 1000 m from the page");
   if (!group.bulges.empty() && group.bulges.size() != group.points.size())
     refuse(where, "bulges and points differ in number");
   for (const double bulge : group.bulges)
@@ -42,7 +42,7 @@ void check_group(const PageGroup& group, const std::string& where) {
     refuse(where, "fills and paths differ in number");
   for (const PagePath& path : group.paths)
     if (path.count == 0 || path.first >= group.points.size() || path.count > group.points.size() - path.first)
-      refuse(where, "a path has no points, or points that are not there");
+      refuse(where, "a path has no points, or points beyond the last one of the page");
   if (!group.paths.empty() && group.paths[0].is_part) refuse(where, "the first path is part of none");
 }
 

@@ -87,7 +87,7 @@ inline constexpr double kWidestCosine = 0.93963;
 
 struct SmoothMesh {
   WeldedMesh mesh;
-  Buffer<glm::dvec3> normals;  ///< of unit length; zero where rounding leaves no direction
+  Buffer<glm::dvec3> normals;  ///< unit length; zero where rounding leaves no direction
   EdgeNeighbours neighbours;
   double noise = 0;  ///< by how much corners may be off their places: what six digits leave open
 

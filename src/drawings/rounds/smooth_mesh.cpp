@@ -162,7 +162,7 @@ class Chainer {
   const std::vector<SharpEdge>& edges_;
   std::vector<SharpChain>& chains_;
   std::vector<ChainEnd> next_;  ///< by end: the end that continues it, or no_index
-  double least_cosine_;         ///< of a turn
+  double least_cosine_;         ///< cosine of the largest turn
 };
 
 }  // namespace

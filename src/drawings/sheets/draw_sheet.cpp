@@ -78,13 +78,14 @@ void check_section_views(const SheetOptions& o) {
     const SectionView& section = o.sections[i];
     if (is_at_an_angle(section.direction))
       refuse_option("sections", quoted(section.direction) + " looks along no axis");
-    if (section.at && !std::isfinite(*section.at)) refuse_option("sections", "a plane must be at a finite place");
+    if (section.at && !std::isfinite(*section.at)) refuse_option("sections", "the position of a plane must be finite");
     for (std::size_t k = 0; k < i; ++k)
       if (section.direction == o.sections[k].direction && section.at == o.sections[k].at)
         refuse_option("sections", quoted(section.direction) + " is there twice at one place");
   }
   if (o.style == DrawingStyle::figure) refuse_option("sections", "figures have none");
-  if (o.hatch || o.stipple) refuse_option("sections", "hatching says what is cut; leave out hatch and stipple");
+  if (o.hatch || o.stipple)
+    refuse_option("sections", "hatching marks the cut faces of sections; leave out hatch and stipple");
 }
 
 void check_paper(const SheetOptions& o) {
@@ -93,9 +94,9 @@ void check_paper(const SheetOptions& o) {
     check_range("page", o.page->size.x, 1, 1e5);
     check_range("page", o.page->size.y, 1, 1e5);
   } else if (o.title_block) {
-    refuse_option("page", "a frame needs a page of its own size, and not one that fits the drawing");
+    refuse_option("page", "a frame needs a page of a given size, not one fitted to the drawing");
   } else if (!o.scale) {
-    refuse_option("page", "one that fits the drawing needs a scale");
+    refuse_option("page", "a page fitted to the drawing needs a scale");
   }
 }
 
@@ -104,7 +105,7 @@ void validate_for_view(const SheetOptions& o, const Projection& projection) {
   if (has_named_views(o)) refuse_option("views", "the view is given; draw_sheet() draws named ones");
   if (o.hidden_views) refuse_option("hidden_views", "the view is given; needs named ones");
   if (projection.orthographic) return;
-  if (o.scale || o.standard_scale.value_or(false)) refuse_option("scale", "in perspective nothing has a scale");
+  if (o.scale || o.standard_scale.value_or(false)) refuse_option("scale", "a perspective view has no scale");
   if (o.centre_lines.value_or(false)) refuse_option("centre_lines", "perspective has none");
 }
 

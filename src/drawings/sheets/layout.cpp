@@ -53,9 +53,10 @@ Paper named_paper(std::string_view name) {
     paper.may_turn = !landscape && !portrait;
     return paper;
   }
-  throw Error(ErrorCode::bad_argument, "'" + std::string(name) +
-                                           "' is no paper: a0 to a6, letter, legal or tabloid, perhaps with -portrait "
-                                           "or -landscape");
+  throw Error(ErrorCode::bad_argument,
+              "'" + std::string(name) +
+                  "' is no paper size: a0 to a6, letter, legal or tabloid, perhaps with -portrait "
+                  "or -landscape");
 }
 
 std::string paper_name(const glm::dvec2& size) {

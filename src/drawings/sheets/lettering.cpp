@@ -25,7 +25,7 @@ namespace {
 /// to the right: "5,6 ((((0,6" is the upper half of a circle.
 struct Glyph {
   char32_t code;
-  double width;  ///< of the strokes, which stay within [0, width]
+  double width;  ///< width of the glyph; its strokes stay within [0, width]
   const char* strokes;
 };
 

@@ -18,10 +18,10 @@ namespace frontmost::detail {
 
 struct PlannedView : DrawnView {
   std::optional<NamedView> direction;    ///< empty if the view was given
-  CuttingPlane plane;                    ///< of a section
-  std::string letter;                    ///< of a section: "A"
+  CuttingPlane plane;                    ///< cutting plane of a section
+  std::string letter;                    ///< letter of a section: "A"
   double millimetres_per_pixel = 1;      ///< at scale 1:1; meaningless by itself in perspective
-  std::shared_ptr<const Rounds> rounds;  ///< of the surfaces; null if not needed
+  std::shared_ptr<const Rounds> rounds;  ///< circles of the surfaces; null if not needed
   /// Millimetres of paper on the left and below that marks of sections occupy.
   glm::dvec2 taken{0};
 };

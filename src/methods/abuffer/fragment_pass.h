@@ -82,7 +82,7 @@ class PreparedFrame {
 struct PixelLists {
   std::vector<std::uint32_t> begin;  ///< by pixel of the rectangle, row by row; then the end of the last list
   std::vector<Fragment> fragments;
-  std::vector<std::uint32_t> numbers;  ///< of each fragment in Arrived
+  std::vector<std::uint32_t> numbers;  ///< number of each fragment in Arrived
   const GatherScratch* scratch = nullptr;
 
   /// The key of fragment i at a place in 1/256 pixel from the rectangle's corner, exactly as compared. Valid only until

@@ -24,7 +24,7 @@ struct OccluderPart {
   bool is_whole = true;   ///< no triangle of the mesh's part is missing for hiding nothing
   bool is_closed = true;  ///< every side of a triangle has a neighbour
   bool has_double_sided = false, has_one_sided = false;  ///< whether the mesh's part has such triangles
-  Box bounds;                      ///< of all triangles of the mesh's part, and of hiding triangles that touch it
+  Box bounds;  ///< bounds of all triangles of the mesh's part, and of hiding triangles that touch it
   std::vector<std::uint32_t> own;  ///< its triangles with finite vertices, by number in the mesh
 };
 

@@ -149,7 +149,7 @@ void check(const Surfaces& surfaces, const PaintOrder& order) {
   for (const PaintPolygon& polygon : order.polygons)
     if (polygon.id >= surfaces.primitive_count() || polygon.first_corner > order.corners.size() ||
         polygon.corner_count > order.corners.size() - polygon.first_corner)
-      throw Error(ErrorCode::bad_argument, "paint", "the order is not of these surfaces");
+      throw Error(ErrorCode::bad_argument, "paint", "the order was made for other surfaces");
 }
 
 }  // namespace

@@ -352,9 +352,8 @@ class Orderer {
   }
 
   [[noreturn]] void refuse_more_cuts() const {
-    throw Error(
-        ErrorCode::limit_exceeded, "painter",
-        "more than " + std::to_string(options_.most_cuts) + " cuts: too many triangles pass through each other");
+    throw Error(ErrorCode::limit_exceeded, "painter",
+                "more than " + std::to_string(options_.most_cuts) + " cuts: too many triangles intersect");
   }
 
   /// Throws early the error that would come after all cuts. Called before sorting, which would compare every two

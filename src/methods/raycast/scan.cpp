@@ -214,7 +214,7 @@ void validate(const RayCamera& camera) {
   std::visit([](const auto& model) { check(model); }, camera.model);
   check_samples(camera);
   if (!(camera.nearest >= 0 && camera.nearest <= camera.farthest))
-    throw Error(ErrorCode::bad_argument, "ray camera: ranges", "the least must be from 0 to the greatest");
+    throw Error(ErrorCode::bad_argument, "ray camera: ranges", "the least range must be from 0 to the greatest range");
   const glm::dmat4 pose = world_from_eye(camera.world_from_eye, PoseConvention::opengl_camera_to_world);
   for (int i = 0; i < 3; ++i)
     if (!std::isfinite(float(pose[3][i])))

@@ -85,7 +85,7 @@ struct LayerLanes {
   bool has_dielectric = false;  ///< some fragment has a reflectance other than 0.04, or transmits light
   Lane is_dielectric;           ///< 1 for those fragments, else 0
   Lane3 f0;                     ///< reflectance of the non-metallic part at normal incidence
-  Lane f90;                     ///< the same at grazing incidence
+  Lane f90;                     ///< reflectance at grazing incidence
   Lane transmission;            ///< share of the light below the surface that passes through
 
   bool has_transmission = false;

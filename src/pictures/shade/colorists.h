@@ -19,7 +19,7 @@ struct Lit {
   const MaterialTable& materials;
   const Lighting& lighting;
   const PictureLights& lights;
-  const LightShadows& shadows;  ///< of these lights
+  const LightShadows& shadows;  ///< shadows of these lights
   Isa isa;
   const DepthOcclusion* occlusion = nullptr;  ///< null: none
   void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;

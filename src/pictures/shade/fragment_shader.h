@@ -148,7 +148,7 @@ class FragmentShader {
   const Colorist* colorist_ = nullptr;
   Isa isa_ = Isa::best;
   TriangleCache cache_;
-  std::vector<NewTriangle> new_triangles_;  ///< of the batch, still to be set up
+  std::vector<NewTriangle> new_triangles_;  ///< triangles of the batch that are still to be set up
   FragmentBatch batch_;                     ///< in the order of arrival; `pixel` is the caller's number
 };
 

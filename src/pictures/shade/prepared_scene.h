@@ -24,7 +24,7 @@ namespace frontmost::shading {
 /// \throws Error bad_argument unless exactly one of both inputs is given and it is valid.
 inline void check_given(const ShadeInput& input, const char* who) {
   if (!input.visible == !input.pixels)
-    throw Error(ErrorCode::bad_argument, who, "either what is visible or its pixels must be given");
+    throw Error(ErrorCode::bad_argument, who, "give either a Visible or VisiblePixels");
 }
 /// \throws Error bad_argument.
 inline void check_opacity(const ShadeOptions& options) {
@@ -116,7 +116,7 @@ struct PreparedScene {
   PictureLights lights;
   Pool<TileWork> works;
   Pool<ScanTileWork> scan_works;
-  std::optional<RayIndex> index;  ///< of the surfaces, for scans that see through them and bring none
+  std::optional<RayIndex> index;  ///< index of the surfaces, for scans that see through them and bring no index
   BitSet seen, large;
 };
 

@@ -167,7 +167,7 @@ void check(const PictureRequest& request) {
   check_ambient_occlusion(request.options);
   check_light(request.options.light);
   if (request.options.light.shows_environment && request.options.pixels.blend != Blend::linear)
-    throw Error(ErrorCode::unsupported, "shade", "an environment is shown as background by the blend linear alone");
+    throw Error(ErrorCode::unsupported, "shade", "an environment as background needs linear blending");
   const ShadeInput& input = request.input;
   check_given(input, "shade");
   const PrimitiveId count = request.scene.surfaces.primitive_count();
@@ -257,7 +257,7 @@ const Image& Shader::shade(const ScanInput& input, const ShadeOptions& options, 
 
 DeepImage Shader::shade_deep(const ShadeInput& input, const ShadeOptions& options, const Execution& execution) {
   if (!shows_materials(options.shading))
-    throw Error(ErrorCode::unsupported, "shade", "deep images are lit, flat, or of normals");
+    throw Error(ErrorCode::unsupported, "shade", "deep images need shading lit, flat or normals");
   ShadeOptions in_layers = options;
   in_layers.layers.see_through = SeeThrough::always;
   const PictureRequest request{state_->now(execution), input, in_layers, execution};

@@ -82,8 +82,8 @@ class TileWork {
   const VisiblePixels* mixed_ = nullptr;  ///< null if `visible_` holds all samples
   int samples_ = 1;
   ShadingRate rate_ = ShadingRate::each_pixel;
-  int width_ = 0;                        ///< of the tile
-  std::array<glm::vec2, 16> offsets_{};  ///< of the samples within a pixel
+  int width_ = 0;                        ///< width of the tile
+  std::array<glm::vec2, 16> offsets_{};  ///< positions of the samples within a pixel
   glm::vec2 centre_{0};                  ///< mean of the offsets
   FragmentShader fragments_;
   std::vector<glm::vec4> pixels_;

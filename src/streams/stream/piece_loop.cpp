@@ -28,7 +28,7 @@ void refuse_pipe(const std::string& path) {
   if (path != "-" && (!std::filesystem::exists(path, ignored) || std::filesystem::is_regular_file(path, ignored)))
     return;
   throw Error(ErrorCode::unsupported, path == "-" ? "standard input" : path, "",
-              "several ranks can read ordinary files alone");
+              "several ranks can read only ordinary files");
 }
 
 }  // namespace

@@ -154,7 +154,7 @@ struct Stream::State {
   Models models;
   int passes = 0;
   std::optional<Box> bounds;                    ///< set by the first pass that finds them
-  std::optional<std::uint64_t> triangle_count;  ///< of all ranks, once they have exchanged facts
+  std::optional<std::uint64_t> triangle_count;  ///< triangles of all ranks, once the ranks have exchanged facts
 };
 
 Stream::Stream(const std::vector<std::string>& paths, const StreamOptions& options, const Execution& execution)

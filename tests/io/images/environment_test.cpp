@@ -82,7 +82,7 @@ TEST_F(Environment, OddValuesHaveAStatedMeaning) {
 TEST_F(Environment, OtherShapesAreRefused) {
   for (const auto& [width, height] : {std::pair(4, 4), {2, 12}, {12, 2}, {3, 4}, {4, 3}, {2, 4}, {5, 2}})
     EXPECT_EQ(refusal(random_floats(width, height, {"R", "G", "B"}), "a.pfm"),
-              ": an environment is twice as wide as high (equirectangular), not " + std::to_string(width) + " x " +
+              ": an environment must be twice as wide as high (equirectangular), not " + std::to_string(width) + " x " +
                   std::to_string(height));
 }
 

@@ -64,17 +64,17 @@ TEST(ExrHeader, ChannelListsAreCounted) {
             "malformed, m: EXR: the channel list ends before its attribute");
   EXPECT_EQ(image_error(header(attribute("channels", "chlist", channel("Z").substr(0, 9)))),
             "malformed, m: EXR: the header is cut short");
-  EXPECT_EQ(image_error(header(window(0, 0, 1, 1))), "limit, m: EXR: 0 channels, not 1 to 1024");
+  EXPECT_EQ(image_error(header(window(0, 0, 1, 1))), "limit, m: EXR: 0 channels; expected 1 to 1024");
   std::string many;
   for (int i = 0; i < 1025; ++i) many += channel("c" + std::to_string(i));
   EXPECT_EQ(image_error(header(window(0, 0, 1, 1) + attribute("channels", "chlist", many + '\0'))),
-            "limit, m: EXR: 1025 channels, not 1 to 1024");
+            "limit, m: EXR: 1025 channels; expected 1 to 1024");
   // Two lists of 600 channels, which the library would add up.
   std::string half;
   for (int i = 0; i < 600; ++i) half += channel("c" + std::to_string(i));
   const std::string list = attribute("channels", "chlist", half + '\0'),
                     more = attribute("others", "chlist", half + '\0');
-  EXPECT_EQ(image_error(header(window(0, 0, 1, 1) + list + more)), "limit, m: EXR: 1200 channels, not 1 to 1024");
+  EXPECT_EQ(image_error(header(window(0, 0, 1, 1) + list + more)), "limit, m: EXR: 1200 channels; expected 1 to 1024");
 }
 
 TEST(ExrHeader, WindowsAreHeldAgainstTheFile) {

@@ -90,7 +90,7 @@ TEST(Radiance, PicturesMayBeginAtAnyCorner) {
   EXPECT_THAT(red("-Y 2 -X 2"), ElementsAre(20, 10, 40, 30));
   EXPECT_THAT(red("+Y 2 -X 2"), ElementsAre(40, 30, 20, 10));
   EXPECT_EQ(image_error(radiance_header("+X 2 -Y 2") + pixels),
-            "unsupported, m: Radiance: pictures that go column by column are not supported");
+            "unsupported, m: Radiance: pictures stored column by column are not supported");
 }
 
 TEST(Radiance, HeadersAsTheyAreWritten) {

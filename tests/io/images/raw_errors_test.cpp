@@ -107,8 +107,8 @@ TEST(NpyHeader, ChannelsGetTheNamesOfTheirNumber) {
   EXPECT_EQ(names(5, "<f4"), "0 1 2 3 4 ");
   EXPECT_EQ(names(1, "<u4"), "primitive ");
   EXPECT_EQ(names(3, "<u4"), "0 1 2 ") << "integers are no colours";
-  EXPECT_EQ(names(0, "<f4"), "m: NPY: 0 channels, not 1 to 1024");
-  EXPECT_EQ(names(1025, "<f4"), "m: NPY: 1025 channels, not 1 to 1024");
+  EXPECT_EQ(names(0, "<f4"), "m: NPY: 0 channels; expected 1 to 1024");
+  EXPECT_EQ(names(1025, "<f4"), "m: NPY: 1025 channels; expected 1 to 1024");
   EXPECT_EQ(names(1024, "<f4").substr(0, 6), "0 1 2 ");
 }
 

@@ -245,7 +245,7 @@ TEST_F(GltfMeshopt, BytesThatCannotHoldTheViewGetNoMemory) {
   };
   EXPECT_EQ(error_of(1000), ": 81 bytes cannot hold 8000");
   EXPECT_EQ(error_of(std::uint64_t(1) << 40),
-            ": 8796093022208 elements are far more than a file of this size should make");
+            ": 8796093022208 elements are far more than a file of this size can hold");
 }
 
 // ---- Hostile, and builds without ----

@@ -73,8 +73,8 @@ TEST(GltfContainer, HeadersThatLie) {
   EXPECT_EQ(with(49, 2), "malformed: GLB header: the length is stated as 49 bytes, the file has 48");
   EXPECT_EQ(with(0xFFFFFFFF, 2), "malformed: GLB header: the length is stated as 4294967295 bytes, the file has 48");
   EXPECT_EQ(with(19, 2), "malformed: GLB header: no room for a chunk");
-  EXPECT_EQ(with(20, 2), "malformed: GLB chunk 0: its length is stated as 28 bytes, 0 are left");
-  EXPECT_EQ(with(47, 2), "malformed: GLB chunk 0: its length is stated as 28 bytes, 27 are left");
+  EXPECT_EQ(with(20, 2), "malformed: GLB chunk 0: its header states a length of 28 bytes, 0 are left");
+  EXPECT_EQ(with(47, 2), "malformed: GLB chunk 0: its header states a length of 28 bytes, 27 are left");
 }
 
 TEST(GltfContainer, ChunksComeInOneOrder) {
@@ -339,9 +339,9 @@ TEST(GltfMesh, AttributesOfTheWrongTypeNameTheirPlace) {
   EXPECT_EQ(second("NORMAL", {}, 4), place + "NORMAL: 4 elements where others have 3");
   EXPECT_EQ(second("JOINTS_0", {"VEC4", 5126, ""}), place + "JOINTS_0: is not of unsigned bytes or shorts");
   EXPECT_EQ(second("JOINTS_0", {"VEC4", 5121, ""}),
-            "malformed: meshes[0].primitives[0].attributes: joints without weights, or the reverse");
+            "malformed: meshes[0].primitives[0].attributes: joints without weights, or weights without joints");
   EXPECT_EQ(second("WEIGHTS_0", {"VEC4", 5126, ""}),
-            "malformed: meshes[0].primitives[0].attributes: joints without weights, or the reverse");
+            "malformed: meshes[0].primitives[0].attributes: joints without weights, or weights without joints");
 }
 
 TEST(GltfMesh, IndicesAreUnsignedScalars) {
@@ -437,9 +437,9 @@ TEST(GltfNodes, CopiesHaveAsManyElementsOfEachKind) {
   EXPECT_EQ(copies_outcome({{"TRANSLATION", four}}, {2}), place + "TRANSLATION: the accessor's type does not fit");
   EXPECT_EQ(copies_outcome({{"ROTATION", three}}, {2}), place + "ROTATION: the accessor's type does not fit");
   EXPECT_EQ(copies_outcome({{"TRANSLATION", three}, {"SCALE", three}}, {2, 1}),
-            place + "SCALE: has another number of elements than the attributes before");
+            place + "SCALE: has another number of elements than earlier attributes");
   EXPECT_EQ(copies_outcome({{"TRANSLATION", three}, {"ROTATION", four}, {"SCALE", three}}, {0, 2, 2}),
-            place + "ROTATION: has another number of elements than the attributes before")
+            place + "ROTATION: has another number of elements than earlier attributes")
       << "none is a number too: the elements of the others are not in the first one's view";
   EXPECT_EQ(copies_outcome({{"TRANSLATION", three}, {"SCALE", three}}, {0, 0}), "read");
 }

@@ -187,8 +187,9 @@ TEST(GltfLayers, NumbersOutOfRangeAreToldAndLimited) {
   EXPECT_GT(m.volume.attenuation_distance, 0.0f);
   EXPECT_EQ(m.volume.attenuation_color, glm::vec3(1, 0, 1));
   EXPECT_THAT(scene.warnings, SizeIs(12));
-  EXPECT_THAT(scene.warnings,
-              Contains("t.glb: materials[0] (m): transmissionFactor is out of range, the nearest in range counts"));
+  EXPECT_THAT(
+      scene.warnings,
+      Contains("t.glb: materials[0] (m): transmissionFactor is out of range; the nearest value in range is used"));
   EXPECT_EQ(with_layers(R"("KHR_materials_ior":{"ior":0})").materials.at(0).ior, 0.0f) << "a mirror";
   EXPECT_THAT(with_layers(R"("KHR_materials_ior":{"ior":0})").warnings, SizeIs(0));
 }
@@ -206,7 +207,8 @@ TEST(GltfLayers, NumbersOfTheMaterialItselfAreToldAndLimited) {
   EXPECT_THAT(scene.warnings, SizeIs(5)) << "each told once";
   EXPECT_THAT(
       scene.warnings,
-      Contains("t.glb: materials[0] (m): occlusionTexture.strength is out of range, the nearest in range counts"));
+      Contains(
+          "t.glb: materials[0] (m): occlusionTexture.strength is out of range; the nearest value in range is used"));
 }
 
 // A factor is the maximum that its texture scales down: without the texture, a model with one window would be all
@@ -273,7 +275,7 @@ TEST(GltfLayers, WhatIsNotDoneIsNamedOnce) {
     maker.add("materials", R"({"extensions":{"KHR_materials_anisotropy":{},"KHR_materials_clearcoat":{}}})");
   const Scene scene = load_glb(maker);
   ASSERT_THAT(scene.warnings, SizeIs(2));
-  EXPECT_EQ(scene.warnings[0], "t.glb: extensionsUsed: KHR_materials_anisotropy is not supported and passed over");
+  EXPECT_EQ(scene.warnings[0], "t.glb: extensionsUsed: KHR_materials_anisotropy is not supported, and ignored");
   EXPECT_THAT(scene.warnings[1], HasSubstr("KHR_materials_iridescence"));
 }
 

@@ -119,11 +119,11 @@ TEST(GltfLights, ThatAreWrongAreToldAndMadeSenseOf) {
       {R"({"type":"point","intensity":-2})", "lights[0]: its intensity is negative, the light is left out", false},
       {R"({"type":"point","color":[1,-1,1]})", "lights[0]: its colour is out of range, the light is left out", false},
       {R"({"type":"point","color":[1,1e300,1]})", "its colour is out of range, the light is left out", false},
-      {R"({"type":"point","range":0})", "lights[0].range: is not positive, the light reaches everywhere", true},
+      {R"({"type":"point","range":0})", "lights[0].range: is not positive; the light reaches everywhere", true},
       {R"({"type":"spot","spot":{"innerConeAngle":1,"outerConeAngle":0.5}})",
-       "lights[0].spot.innerConeAngle: is not between 0 and outerConeAngle, the nearest is taken", true},
+       "lights[0].spot.innerConeAngle: is not between 0 and outerConeAngle; the nearest such angle is used", true},
       {R"({"type":"spot","spot":{"outerConeAngle":3}})",
-       "lights[0].spot.outerConeAngle: is not between 0 and a quarter turn, the nearest is taken", true},
+       "lights[0].spot.outerConeAngle: is not between 0 and 90 degrees; the nearest such angle is used", true},
       {R"({"type":"spot","spot":{"outerConeAngle":-1}})", "outerConeAngle: is not between 0 and a quarter turn", true}};
   for (const OddLight& one : odd) {
     const Scene scene = load_lights({one.json});

@@ -93,7 +93,8 @@ void expect_no_glow_and_no_metal(const Scene& scene, const std::string& who) {
   EXPECT_THAT(scene.warnings,
               testing::Contains("t.glb: " + who + ": the emissive texture is missing, so the material does not glow"));
   EXPECT_THAT(scene.warnings,
-              testing::Contains("t.glb: " + who + ": is no metal without its metallic-roughness texture"));
+              testing::Contains("t.glb: " + who +
+                                ": its metallic-roughness texture is missing, so the material is not metallic"));
 }
 
 // An emissive factor is usually white and its texture mostly black: without the texture the glow would outshine all

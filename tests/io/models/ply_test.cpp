@@ -162,7 +162,7 @@ TEST(Ply, NegativeNumbersOfEveryWidthAreOutOfRange) {
         "element vertex 0\n" + xyz + "element face 1\nproperty list " + std::string(type) + " uchar vertex_indices\n",
         "binary_little_endian");
     put_as(type, -1, lengths);
-    EXPECT_THAT(error_of(lengths.text, ModelFormat::ply), HasSubstr("face 0: a list of negative length"));
+    EXPECT_THAT(error_of(lengths.text, ModelFormat::ply), HasSubstr("face 0: the length of a list is negative"));
   }
 }
 
@@ -212,7 +212,7 @@ TEST(Ply, LineEndsOfEverySystem) {
 TEST(Ply, ErrorsNameHeaderLineOrRow) {
   const auto error = [](const std::string& text) { return error_of(text, ModelFormat::ply); };
   EXPECT_EQ(error("plx\n"), "model: line 1: a PLY file starts with \"ply\"");
-  EXPECT_EQ(error("ply\nformat ascii 2.0\n"), "model: line 2: only version 1.0 is known");
+  EXPECT_EQ(error("ply\nformat ascii 2.0\n"), "model: line 2: only PLY version 1.0 is supported");
   EXPECT_EQ(error("ply\nformat ascii 1.0\nelement vertex 3\nproperty real x\n"),
             "model: line 4: unknown type \"real\"");
   EXPECT_EQ(error("ply\nformat ascii 1.0\nproperty float x\n"), "model: line 3: a property before the first element");
@@ -222,7 +222,7 @@ TEST(Ply, ErrorsNameHeaderLineOrRow) {
   EXPECT_EQ(error(square_with("3 0 1 4\n", 1)), "model: line 14: face 0: vertex 4 is out of range, there are 4");
   EXPECT_EQ(error(square_with("3 0 1 -1\n", 1)), "model: line 14: face 0: vertex -1 is out of range, there are 4");
   EXPECT_EQ(error(square_with("3 0 1\n3 0 1 2\n", 2)), "model: line 14: face 0: the row has too few values");
-  EXPECT_EQ(error(square_with("-3 0 1 2\n", 1)), "model: line 14: face 0: a list of negative length");
+  EXPECT_EQ(error(square_with("-3 0 1 2\n", 1)), "model: line 14: face 0: the length of a list is negative");
   EXPECT_THAT(error(square_with("3 0 1 2\n", 2)), HasSubstr("face 1: the file ends before the row"));
   EXPECT_EQ(error(header("element face 1\n" + corner_list + "element vertex 1\n" + xyz) + "3 0 1 2\n0 0 0\n"),
             "model: line 10: face 0: vertex 0 is out of range, there are 0 before the faces");

@@ -164,7 +164,8 @@ TEST(ThreeMf, WithoutAnItemWhatNoneHoldsIsShown) {
                                     R"(</object><object id="2"><components><component objectid="1"/></components>
 </object></resources><build/>)"));
   EXPECT_EQ(scene.instances.size(), 1u);
-  EXPECT_THAT(scene.warnings, ElementsAre("model: 3D/3dmodel.model: nothing is built, all objects are shown"));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre("model: 3D/3dmodel.model: the build list is empty, so all objects are shown"));
 }
 
 const std::string two_materials =
@@ -240,7 +241,7 @@ TEST(ThreeMf, WrongLooksAreWarnings) {
       warnings(
           {},
           R"(<basematerials id="5"/><basematerials id="5"><base name="a" displaycolor="#000000"/></basematerials>)"),
-      ElementsAre(line + "id \"5\" is that of an earlier group, too, which counts"));
+      ElementsAre(line + "id \"5\" is also the id of an earlier group, which is used"));
   EXPECT_THAT(warnings(R"(pid="5" pindex="0")", R"(<basematerials><base/></basematerials>)"),
               ElementsAre(line + "displaycolor is missing",
                           line + "triangle 0 of the object: property group 5 does not exist"));
@@ -294,7 +295,7 @@ TEST(ThreeMf, ThePackageNamesItsModel) {
   EXPECT_EQ(triangle_count(read(by_type)), 4u);
 
   EXPECT_EQ(error_of(ZipMaker().add("word/document.xml", "<a/>")),
-            "model: _rels/.rels: no part of the archive is said to be a 3D model, so it is no 3MF file");
+            "model: _rels/.rels: the archive names no part as its 3D model, so the file is not 3MF");
   EXPECT_EQ(error_of(ZipMaker().add("_rels/.rels", test::relationships)),
             "model: 3D/3dmodel.model: there is no such part in the archive");
 }
@@ -362,7 +363,7 @@ TEST(ThreeMf, XmlThatGrowsIsRefused) {
   for (int i = 0; i < 5000; ++i) attributes += " b" + std::to_string(i) + "=''";
   EXPECT_THAT(error_of(model_of("<a" + attributes + "/>")), HasSubstr("more than 4096 different names"));
   EXPECT_THAT(error_of(model_of("<a b='" + std::string(3 << 20, 'x') + "'/>")),
-              HasSubstr("a tag of more than a megabyte"));
+              HasSubstr("a tag is longer than a megabyte"));
 }
 
 TEST(ThreeMf, ComponentsOfComponentsAreBounded) {

@@ -22,7 +22,7 @@ TEST(SceneErrors, NameThePlaceAndTheReason) {
   EXPECT_THAT(error(R"({"objects": [})"), StartsWith("JSON: parse error at line 1, column 14"));
   EXPECT_EQ(error(R"({"objects": [], "view": 1})"),
             R"(JSON: "view" is not known here; known are objects, up, metres_per_unit, categories, materials)");
-  EXPECT_EQ(error(R"({"objects": [], "up": "w"})"), R"(up: "w" is not an axis; x, y, z, -x, -y and -z are)");
+  EXPECT_EQ(error(R"({"objects": [], "up": "w"})"), R"(up: "w" is not an axis; expected x, y, z, -x, -y or -z)");
   EXPECT_EQ(error(R"({"objects": [], "metres_per_unit": 0})"),
             "metres_per_unit: the number is not between 1e-12 and 1e12");
   EXPECT_EQ(error(R"({"objects": [], "categories": ["a", "a"]})"), "categories[1]: the name is there twice");
@@ -35,10 +35,9 @@ TEST(SceneErrors, NameThePlaceAndTheReason) {
   const auto object = [&](const std::string& text) { return folder.error_of_object(text); };
   EXPECT_EQ(object("{}"), "objects[0]: 'model' is missing");
   EXPECT_EQ(object(R"({"model": "corner.off", "name": ""})"), "objects[0].name: the name is empty");
-  EXPECT_EQ(object(R"({"model": "corner.off", "up": "z"})"),
-            "objects[0].up: the file does not say which way is up in the scene");
+  EXPECT_EQ(object(R"({"model": "corner.off", "up": "z"})"), "objects[0].up: the scene file has no up axis");
   EXPECT_EQ(object(R"({"model": "corner.off", "metres_per_unit": 1})"),
-            "objects[0].metres_per_unit: the file does not say the unit of the scene");
+            "objects[0].metres_per_unit: the scene file has no unit");
   EXPECT_EQ(object(R"({"model": "corner.off", "material": "red"})"),
             R"(objects[0].material: "red" is none of the file's materials)");
   EXPECT_EQ(error(R"({"materials": {"red": {}}, "objects": [{"model": "pair.obj", "material": {"brass": "red"}}]})"),
@@ -57,8 +56,7 @@ TEST(SceneErrors, PosesAreNumbersThatPlaceSomething) {
   };
   EXPECT_EQ(error(R"("pose": [1, 2])"), "objects[0].pose: 2 numbers; a pose is 16 (or 12), row by row");
   EXPECT_EQ(error(R"("pose": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,2])"), "objects[0].pose: the last row is not 0 0 0 1");
-  EXPECT_EQ(error(R"("pose": [1,0,0,0, 1,0,0,0, 0,0,1,0])"),
-            "objects[0].pose: the pose flattens what it places, or is too large");
+  EXPECT_EQ(error(R"("pose": [1,0,0,0, 1,0,0,0, 0,0,1,0])"), "objects[0].pose: the pose is singular, or too large");
   EXPECT_EQ(error(R"("pose": [1,0,0,1e31, 0,1,0,0, 0,0,1,0])"),
             "objects[0].pose[3]: the number is not between -1e30 and 1e30");
   EXPECT_THAT(error(R"("pose": [1e999,0,0,0, 0,1,0,0, 0,0,1,0])"), HasSubstr("number overflow"));
@@ -72,10 +70,10 @@ TEST(SceneErrors, PosesAreNumbersThatPlaceSomething) {
   EXPECT_EQ(error(R"("pose_convention": "model-to-world")"), "objects[0].pose_convention: there is no pose");
   EXPECT_EQ(error(R"("pose": [1,0,0,0, 0,1,0,0, 0,0,1,0], "pose_convention": "opencv")"),
             "objects[0].pose_convention: must be model-to-world or world-to-model");
-  EXPECT_EQ(error(R"("rotation": [0, 0, 0, 0])"), "objects[0].rotation: the quaternion has no length");
+  EXPECT_EQ(error(R"("rotation": [0, 0, 0, 0])"), "objects[0].rotation: the quaternion is zero");
   EXPECT_EQ(error(R"("rotation": [1,0,0, 0,1,0, 0,0,2])"), "objects[0].rotation: is not a rotation");
-  EXPECT_EQ(error(R"("rotation": [1,0,0, 0,1,0, 0,0,-1])"), "objects[0].rotation: is a rotation and a mirror");
-  EXPECT_EQ(error(R"("scale": 0)"), "objects[0].scale: the pose flattens what it places, or is too large");
+  EXPECT_EQ(error(R"("rotation": [1,0,0, 0,1,0, 0,0,-1])"), "objects[0].rotation: mirrors; expected a rotation");
+  EXPECT_EQ(error(R"("scale": 0)"), "objects[0].scale: the pose is singular, or too large");
 }
 
 TEST(SceneErrors, KeysThatAreThereTwiceAreRefusedWhereverTheyAre) {
@@ -109,8 +107,8 @@ TEST(SceneErrors, NothingOutsideTheFolderIsOpened) {
   const auto error = [&](const std::string& model) { return folder.error_of_object(R"({"model": ")" + model + "\"}"); };
   for (const char* const outside : {"../model.stl", "/etc/passwd", "a/../../b.stl", "C:\\\\a.stl"})
     EXPECT_THAT(error(outside), HasSubstr("lies outside the scene file's folder")) << outside;
-  EXPECT_THAT(error("link.off"), HasSubstr("links to a place outside"));
-  EXPECT_THAT(error("zero.off"), HasSubstr("links to a place outside"));
+  EXPECT_THAT(error("link.off"), HasSubstr("is a link to a place outside"));
+  EXPECT_THAT(error("zero.off"), HasSubstr("is a link to a place outside"));
   EXPECT_THAT(error("pipe.off"), HasSubstr("is not an ordinary file"));
   EXPECT_THAT(refusal_of(ErrorCode::file_unreadable,
                          [] {
@@ -166,9 +164,9 @@ TEST(SceneErrors, SceneFilesPlaceNoSceneFilesSoThereAreNoCycles) {
   SceneFolder folder;
   folder.write("other.json", R"({"objects": []})");
   EXPECT_EQ(folder.error_of_object(R"({"model": "scene.json"})"),
-            "objects[0].model: scene.json: is a scene file itself; scene files place models alone");
+            "objects[0].model: scene.json: is a scene file; a scene file can place only models");
   EXPECT_EQ(folder.error_of_object(R"({"model": "other.json"})"),
-            "objects[0].model: other.json: is a scene file itself; scene files place models alone");
+            "objects[0].model: other.json: is a scene file; a scene file can place only models");
 }
 
 TEST(SceneErrors, CountsAreLimitedBeforeMemoryIsAskedFor) {

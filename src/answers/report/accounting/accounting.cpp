@@ -137,7 +137,7 @@ class BandReader {
 /// A picture that was read.
 struct ReadPicture {
   SeenObjects objects;
-  std::vector<SeenTally> tallies;  ///< of the objects that are seen, in no order
+  std::vector<SeenTally> tallies;  ///< tallies of the visible objects, in no order
   std::uint64_t background = 0;    ///< samples that see no object
 };
 

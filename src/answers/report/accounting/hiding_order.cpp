@@ -92,7 +92,7 @@ class CycleSearch {
 HidingOrder find_hiding_order(std::size_t object_count, std::span<const HiddenSamples> pairs) {
   for (const HiddenSamples& pair : pairs)
     if (pair.object >= object_count || pair.hider >= object_count || pair.object == pair.hider)
-      throw Error(ErrorCode::bad_argument, "hiding order", "a pair must be of two different objects");
+      throw Error(ErrorCode::bad_argument, "hiding order", "a pair needs two different objects");
   return CycleSearch(object_count, pairs).order();
 }
 

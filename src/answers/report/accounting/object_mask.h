@@ -80,7 +80,7 @@ class SeenRows {
 struct SeenObjects {
   static constexpr int rows_in_band = 32;
 
-  glm::ivec2 margin{0};         ///< of the canvas around the picture
+  glm::ivec2 margin{0};         ///< pixels of the canvas around the picture
   std::vector<SeenRows> bands;  ///< by sample number, then from top to bottom
   std::size_t bands_in_sample = 0;
 
@@ -108,8 +108,8 @@ struct MaskPlane {
   std::uint64_t* words;
   std::size_t stride;
   int width, height;   ///< pixels
-  std::size_t number;  ///< of the sample within its pixel
-  glm::ivec2 place;    ///< of the sample within its pixel, in 1/256 pixel
+  std::size_t number;  ///< number of the sample within its pixel
+  glm::ivec2 place;    ///< position of the sample within its pixel, in 1/256 pixel
 
   [[nodiscard]] std::uint64_t* row(int y) const { return words + std::size_t(y) * stride; }
 };
@@ -152,7 +152,7 @@ struct ObjectCanvas {
   PixelRect frame;            ///< the picture, or the part of it, on the canvas
   View view;                  ///< only its size, samples and culling are the canvas'
   ScreenTransform transform;  ///< relative to the canvas' top left corner
-  ScreenRays rays;            ///< of the picture, relative to the picture's top left corner
+  ScreenRays rays;            ///< rays of the picture, relative to its top left corner
 
   /// `scale`: AccountingOptions::canvas. Preconditions: the view is valid, and the scale in range.
   ObjectCanvas(const View& picture, double scale);

@@ -20,7 +20,7 @@ namespace frontmost::faces_detail {
 /// A face of one of the largest cells. Such faces lie side by side in memory.
 struct GatheredFace {
   ScreenPoint corners[3];
-  Range x, y;  ///< of the whole face, also outside the cell
+  Range x, y;  ///< extent of the whole face, also outside the cell
   std::uint32_t face;
   std::uint8_t ending;
 };

@@ -263,7 +263,7 @@ ViewedFaces joined(const std::vector<FacePart>& parts, Buffer<ScreenPoint> verti
   std::size_t points = vertices.size(), faces = 0;
   for (const FacePart& part : parts) points += part.clipped.size(), faces += part.faces.size();
   if (points >= no_index || faces >= no_index)
-    throw Error(ErrorCode::limit_exceeded, "visible faces", "more than 4294967294 faces or corners within the view");
+    throw Error(ErrorCode::limit_exceeded, "visible faces", "more than 4294967294 faces or vertices within the view");
   ViewedFaces all{Buffer<ScreenPoint>(), Buffer<ViewedFace>(faces), Buffer<std::uint8_t>(faces)};
   const std::size_t vertex_count = vertices.size();
   if (points == vertex_count) {

@@ -465,7 +465,7 @@ class CellSolver {
   std::vector<std::uint16_t> parts_of_faces_;  ///< by face of `order_`: parts of the cell that its box meets, as bits
   std::size_t least_looked_at_ = 0;            ///< faces from here on in the order are hidden in some part
   std::vector<GatheredFace> gathered_;
-  std::vector<FaceInBox> list_;  ///< of the current cell, after those of the larger cells around it
+  std::vector<FaceInBox> list_;  ///< faces of the current cell, after those of the larger cells around it
   std::vector<std::uint32_t> members_;
 };
 
@@ -481,7 +481,7 @@ std::string too_many_faces(const CellLists& lists, const FacesOfView& faces, con
          std::to_string(lists[fullest].size()) + ", in the pixels from " + std::to_string(int(box.left)) + "," +
          std::to_string(int(box.top)) + " to " + std::to_string(int(box.right)) + "," +
          std::to_string(int(box.bottom)) + ", among them face " + std::to_string(surfaces.source(id).triangle) +
-         " of object " + std::to_string(surfaces.source(id).instance) + "; leave out what lies there many times";
+         " of object " + std::to_string(surfaces.source(id).instance) + "; leave out faces that lie there many times";
 }
 
 /// Visible parts of the faces of a view.

@@ -108,7 +108,7 @@ class FaceCells {
     const std::size_t x = fullest % columns, y = fullest / columns;
     return "too many " + things + ": most faces, " + std::to_string(lists_.of(fullest).size()) +
            ", are in the pixels from " + at(x, view_.width) + "," + at(y, view_.height) + " to " +
-           at(x + 1, view_.width) + "," + at(y + 1, view_.height) + "; leave out what lies there many times";
+           at(x + 1, view_.width) + "," + at(y + 1, view_.height) + "; leave out faces that lie there many times";
   }
 
   /// Appends the pairs that are found in this cell.

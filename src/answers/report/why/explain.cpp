@@ -283,7 +283,7 @@ std::vector<Explanation> explain_all(const Surfaces& surfaces, const Visible& vi
   check_answer(visible, surfaces.primitive_count(), "explanations", execution);
   const std::size_t count = surfaces.scene().instances.size();
   if (accounts.objects.size() != count)
-    throw Error(ErrorCode::bad_argument, "explanations", "the accounts are of other objects");
+    throw Error(ErrorCode::bad_argument, "explanations", "the accounts were made for other objects");
   std::vector<std::uint32_t> objects(count);
   for (std::size_t i = 0; i < count; ++i) objects[i] = std::uint32_t(i);
   return Explainer(surfaces, visible.view, accounts, execution).explain(objects);

@@ -47,7 +47,7 @@ struct ObjectPlaces {
   std::uint64_t clear = 0;     ///< number of triangles in view with an opacity of 0
   ValueRange nearer, farther;  ///< distances of the triangles nearer than near, and beyond far
   LargestTriangle behind, outside;
-  ValueRange columns, rows;  ///< of the triangles in view, in pixels
+  ValueRange columns, rows;  ///< extent of the triangles in view, in pixels
   double widest = 0;         ///< greatest radius of a circle inside a triangle in view, in pixels
 
   void add(const ObjectPlaces& other);

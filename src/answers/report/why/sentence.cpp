@@ -146,7 +146,7 @@ std::string reason_text(const Explanation& why, const ObjectNames& names) {
              mixture_text(triangles);
     case SightReason::no_sample:
       if (why.pixels == 0) return "seen edge on, so that it has no area" + mixture_text(triangles);
-      return "between the samples: its " + general_text(why.pixels, 3) + " square pixels cover none" +
+      return "between the samples: its " + general_text(why.pixels, 3) + " square pixels contain no sample" +
              mixture_text(triangles);
     case SightReason::hidden: return "hidden by " + hiders_text(why.hiders, 1, names) + mixture_text(triangles);
     case SightReason::seen: return seen_text(why, names) + mixture_text(triangles);

@@ -311,8 +311,9 @@ void check_float_range(const View& view) {
   };
   if (!all_finite(t.eye)) refuse("pose", "the eye is farther from the origin than floats reach");
   if (!t.orthographic && !(t.near >= std::numeric_limits<float>::min())) refuse("near", "must be at least 1.2e-38");
-  if (!(t.near < t.far)) refuse("far", "too close to near, or too far, to be told apart in floats");
-  if (!all_finite<2>({t.far, t.inverse_range})) refuse("far", "must lie within the range of floats, and not at near");
+  if (!(t.near < t.far)) refuse("far", "too close to near, or too large, for floats");
+  if (!all_finite<2>({t.far, t.inverse_range}))
+    refuse("far", "must be within the range of floats, and differ from near");
   if (!all_finite(t.x_row) || !all_finite(t.y_row) || !all_finite<2>({t.x_offset, t.y_offset}))
     refuse("projection", "its sides are too close together, or too far from the axis, for floats");
 }

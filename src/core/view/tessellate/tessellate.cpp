@@ -363,7 +363,7 @@ class Plan {
     throw Error(ErrorCode::limit_exceeded,
                 place_in(scene) + "instance " + std::to_string(instance) + ", mesh " +
                     std::to_string(scene.instances[instance].mesh),
-                "so small a tessellation error takes more than 2^26 triangles");
+                "this tessellation error needs more than 2^26 triangles; give a larger one");
   }
 
  private:
@@ -400,7 +400,7 @@ class Tessellator {
   }
 
   Scene out_;
-  std::vector<bool> is_made_;                ///< of the scene's meshes
+  std::vector<bool> is_made_;                ///< by mesh of the scene: it has new triangles
   std::map<Plan::Key, std::uint32_t> made_;  ///< number of the mesh made for a key
 };
 

@@ -166,7 +166,7 @@ class PolygonColors {
   struct Kept {
     glm::vec4 color;
     std::vector<glm::dvec2> corners;
-    std::uint32_t group = 0;  ///< of pieces of nearly one colour
+    std::uint32_t group = 0;  ///< group of pieces of nearly one colour
   };
   struct Polygon {
     PaintPolygon outline;

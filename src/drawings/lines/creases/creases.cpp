@@ -330,7 +330,7 @@ struct FoldSide {
   TurnedTriangle triangle;
   std::uint32_t tip;
   glm::dvec3 normal, ahead;  ///< `ahead`: along the surface and away from the edge
-  glm::dvec2 direction;      ///< of the normal, in the cross-section
+  glm::dvec2 direction;      ///< direction of the normal, in the cross-section
   double width;
 };
 

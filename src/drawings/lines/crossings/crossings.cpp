@@ -438,7 +438,7 @@ std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& fea
       const std::size_t all = found.crossings.size() + found.contacts.size();
       if ((segments += all - counted) > most_segments)
         throw Error(ErrorCode::limit_exceeded, "lines",
-                    "more than " + std::to_string(most_segments) + " segments where triangles pass through each other");
+                    "more than " + std::to_string(most_segments) + " segments in which triangles intersect");
       counted = all;
     };
     for (std::size_t group = begin; group < end; ++group) {
@@ -448,9 +448,8 @@ std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& fea
         if (const std::optional<Crossing> segment = crossing(mesh, {&one, &two}, found))
           found.crossings.push_back(*segment);
         if (++asked % kPairsPerPoll != 0) return;
-        work.add(kStepsOfPair * kPairsPerPoll, [] {
-          return std::string("too many triangles come near each other to find where they pass through each other");
-        });
+        work.add(kStepsOfPair * kPairsPerPoll,
+                 [] { return std::string("too many triangles are close to each other to find where they intersect"); });
         count();
       });
     }

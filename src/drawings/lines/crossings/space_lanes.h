@@ -66,8 +66,8 @@ struct SpaceProbes {
   std::size_t first;
   alignas(64) std::uint32_t spread[3][kSpaceLanes];             ///< the vertices; no_index for those with kNotSpread
   alignas(64) float low[3][kSpaceLanes], high[3][kSpaceLanes];  ///< the boxes
-  alignas(64) float normal[3][kSpaceLanes];                     ///< of any length, each component to 2^-22 of `size`
-  alignas(64) float size[3][kSpaceLanes];  ///< at least the sum of absolute values of the terms of `normal`
+  alignas(64) float normal[3][kSpaceLanes];  ///< normal of any length, each component to 2^-22 of `size`
+  alignas(64) float size[3][kSpaceLanes];    ///< at least the sum of absolute values of the terms of `normal`
 };
 
 /// For each probe, bit i stands for triangle i of sixteen.

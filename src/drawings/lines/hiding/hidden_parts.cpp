@@ -166,7 +166,7 @@ struct EdgeQuestion {
   const EdgeInEye& edge;
   const Interval span;
   const Asked asked;
-  const glm::dvec2 begin, end;  ///< of the span, in cells
+  const glm::dvec2 begin, end;  ///< ends of the span, in cells
   const float farthest;         ///< occluders that are no nearer do not matter
 
   EdgeQuestion(const EdgeOccluders& occlusion, const EdgeInEye& its_edge, const Interval& its_span, Asked what)

@@ -36,7 +36,7 @@ class HiddenIntervals {
  public:
   struct Hidden {
     Interval interval;
-    std::uint32_t triangle;  ///< of united intervals, the triangle that came first
+    std::uint32_t triangle;  ///< the triangle that hides the interval; the first one of united intervals
   };
 
   /// Removes all intervals.

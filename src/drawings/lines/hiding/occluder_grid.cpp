@@ -159,7 +159,7 @@ class CellDepth {
   };
 
   Linear linear_, sides_[3];  ///< the sides are positive inside
-  double low_, high_;         ///< of the distances of all corners
+  double low_, high_;         ///< range of the distances of all vertices
   bool is_parallel_;
   bool has_sides_ = false, has_plane_ = false;  ///< false if the triangle is seen almost edge-on or reaches too far
 };
@@ -206,9 +206,9 @@ class GridPlan {
   const Execution& execution;
   SquareGrid grid;                   ///< over the picture, with squares of size 1
   double scale = 1;                  ///< cells per pixel
-  Buffer<Footprint> footprints;      ///< of triangles that are seen, in the order of their first cells
-  Buffer<CellRange> ranges;          ///< of the footprints
-  Buffer<Occluder> occluders;        ///< of the footprints
+  Buffer<Footprint> footprints;      ///< footprints of visible triangles, in the order of their first cells
+  Buffer<CellRange> ranges;          ///< cells of each footprint
+  Buffer<Occluder> occluders;        ///< occluder of each footprint
   std::vector<std::uint32_t> large;  ///< indices of footprints whose ranges are large
 
   [[nodiscard]] CellDepth depth_of(std::uint32_t triangle) const {
@@ -414,7 +414,7 @@ class GridPlan {
     }
   }
 
-  Buffer<glm::dvec3> places_;  ///< of vertices: x and y in cells, z the planar distance
+  Buffer<glm::dvec3> places_;  ///< by vertex: x and y in cells, z the planar distance
   double entries_ = 0;         ///< an upper bound on the cells that all footprints take
 };
 

@@ -31,7 +31,7 @@ struct WeldedMesh {
   Positions positions;
   /// Three different vertices each, counter-clockwise seen from the front.
   Buffer<glm::uvec3> triangles;
-  Buffer<PrimitiveId> ids;  ///< of the triangles
+  Buffer<PrimitiveId> ids;  ///< ids of the triangles
 };
 
 /// Leaves out triangles with a vertex that is not finite, and those with two vertices at one place. Vertices are

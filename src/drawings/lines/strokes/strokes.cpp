@@ -232,7 +232,8 @@ class PartReader {
 
 void check(const StrokeOptions& options) {
   if (!(options.apart >= 0.002 && options.apart <= 1))
-    throw Error(ErrorCode::bad_argument, "strokes", "lines that count as one must be apart by from 0.002 to 1 pixel");
+    throw Error(ErrorCode::bad_argument, "strokes",
+                "the greatest distance of lines that count as one must be from 0.002 to 1 pixel");
   if (!(options.tolerance >= 1e-4 && options.tolerance <= 1))
     throw Error(ErrorCode::bad_argument, "strokes", "the tolerance must be from 0.0001 to 1 pixel");
   if (!(options.arc_tolerance >= 0 && options.arc_tolerance <= 100))

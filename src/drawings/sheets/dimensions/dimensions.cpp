@@ -43,7 +43,7 @@ struct Extent {
 
 struct MeasuredView {
   bool is_empty = true;
-  PageBox box;                        ///< of all drawn lines
+  PageBox box;                        ///< the box of all drawn lines
   std::vector<SeenCircle> circles;    ///< seen along their axes, and drawn to at least a fifth
   std::vector<const Round*> undrawn;  ///< cylinders that are seen along their axes, but drawn less
   std::vector<const Round*> prisms;   ///< of Rounds::prisms, seen along their axes

@@ -18,7 +18,7 @@ namespace frontmost::detail {
 struct DimensionedView {
   const SheetView* sheet = nullptr;  ///< its place on the page is final
   const Drawing* drawing = nullptr;  ///< in parallel projection
-  const Rounds* rounds = nullptr;    ///< of the drawing's surfaces; null for no diameters
+  const Rounds* rounds = nullptr;    ///< circles of the drawing's surfaces; null for no diameters
   bool with_hidden = true;           ///< hidden circles get diameters
   bool is_dimensioned = true;        ///< false: only an obstacle, like views at an angle
   glm::dvec2 taken{0};               ///< millimetres on the left and below that other marks occupy

@@ -140,7 +140,8 @@ void check_exr_header(std::span<const std::byte> bytes, const std::string& name)
     throw Error(ErrorCode::unsupported, name, "EXR", "tiled, deep and multi-part files are not read");
   const ExrSizes sizes = read_sizes(cursor, name);
   if (sizes.channels < 1 || sizes.channels > most_exr_channels)
-    throw Error(ErrorCode::limit_exceeded, name, "EXR", std::to_string(sizes.channels) + " channels, not 1 to 1024");
+    throw Error(ErrorCode::limit_exceeded, name, "EXR",
+                std::to_string(sizes.channels) + " channels; expected 1 to 1024");
   check_image_size(name, sizes.width, sizes.height, bytes.size(), std::numeric_limits<double>::infinity(), "EXR");
   if (sizes.width * sizes.height * sizes.channels * 4 > sizes.most_memory(bytes.size()))
     fail_exr(name, std::to_string(bytes.size()) + " bytes cannot hold " + std::to_string(sizes.width) + " x " +

@@ -86,7 +86,7 @@ Buffer<float> take_light(Image& image, const char* name, const std::string& file
 Image environment_of(Image image, const std::string& file) {
   if (image.width != 2 * image.height)
     throw Error(ErrorCode::unsupported, file, "",
-                "an environment is twice as wide as high (equirectangular), not " + std::to_string(image.width) +
+                "an environment must be twice as wide as high (equirectangular), not " + std::to_string(image.width) +
                     " x " + std::to_string(image.height));
   Image environment{image.width, image.height, {}};
   for (const char* name : {"R", "G", "B"}) {

@@ -68,7 +68,7 @@ RadianceSize size_of(std::string_view line, const std::string& name) {
   for (const char axis : {'Y', 'X'}) {
     const bool is_signed = end - place > 3 && (place[0] == '-' || place[0] == '+') && place[2] == ' ';
     if (is_signed && axis == 'Y' && place[1] == 'X')
-      fail_radiance(name, "pictures that go column by column are not supported", ErrorCode::unsupported);
+      fail_radiance(name, "pictures stored column by column are not supported", ErrorCode::unsupported);
     std::uint32_t pixels = 0;
     const auto [rest, error] = std::from_chars(is_signed ? place + 3 : place, end, pixels);
     if (!is_signed || place[1] != axis || error != std::errc())

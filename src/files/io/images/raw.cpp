@@ -72,7 +72,8 @@ std::vector<std::string> default_channel_names(std::size_t count, bool integers)
 Image read_raw(std::span<const std::byte> bytes, const RawLayout& layout, const std::string& name, const char* format) {
   constexpr std::size_t most_channels = 1024;
   if (layout.channels < 1 || layout.channels > most_channels)
-    throw Error(ErrorCode::limit_exceeded, name, format, std::to_string(layout.channels) + " channels, not 1 to 1024");
+    throw Error(ErrorCode::limit_exceeded, name, format,
+                std::to_string(layout.channels) + " channels; expected 1 to 1024");
   // The density has no limit, because the exact number of bytes is checked below.
   check_image_size(name, layout.width, layout.height, bytes.size(), std::numeric_limits<double>::infinity(), format);
   const std::size_t expected = layout.height * layout.row_values() * value_size;

@@ -14,7 +14,7 @@ namespace {
 
 ImageFormat format_of(const std::string& path, const SaveOptions& options) {
   if (options.format) return *options.format;
-  if (path == "-") throw Error(ErrorCode::bad_argument, "standard output", "", "the image format must be given");
+  if (path == "-") throw Error(ErrorCode::bad_argument, "standard output", "", "give the image format");
   const std::string suffix = lower_suffix(path);
   if (suffix == ".png") return ImageFormat::png;
   if (suffix == ".exr") return ImageFormat::exr;

@@ -18,7 +18,7 @@ constexpr const char* lower_half = "\xE2\x96\x84";
 /// Source pixels that one target pixel covers along one axis; the first and the last are covered in part.
 struct PixelSpan {
   int first = 0, end = 0;
-  double first_weight = 1, last_weight = 1;  ///< of the end pixels; the pixels between have weight 1
+  double first_weight = 1, last_weight = 1;  ///< weights of the end pixels; the pixels between have weight 1
 
   PixelSpan(int target, int target_size, int source_size) {
     const double from = double(target) * source_size / target_size;

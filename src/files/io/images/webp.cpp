@@ -72,7 +72,7 @@ void import_rows(const PictureRows& rows, WebPPicture& picture, const Execution&
 const char* reason_of(VP8StatusCode status) {
   switch (status) {
     case VP8_STATUS_NOT_ENOUGH_DATA: return "ends too early";
-    case VP8_STATUS_UNSUPPORTED_FEATURE: return "uses a feature that libwebp does not have";
+    case VP8_STATUS_UNSUPPORTED_FEATURE: return "uses a feature that libwebp does not support";
     default: return "is damaged";
   }
 }

@@ -512,7 +512,7 @@ void save(const Scene& scene, const std::string& path, const Table& of_triangles
   const ModelFile kind = model_file_of(path);
   validate(scene);
   if (!of_triangles.columns.empty() && kind != ModelFile::ply)
-    throw Error(ErrorCode::unsupported, path, "", "only PLY holds numbers of triangles");
+    throw Error(ErrorCode::unsupported, path, "", "only PLY stores properties of triangles");
   validate(of_triangles);
   if (!of_triangles.columns.empty() && of_triangles.row_count() != triangle_count(scene))
     throw Error(ErrorCode::bad_argument, path, "",

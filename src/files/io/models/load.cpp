@@ -56,7 +56,7 @@ bool has_asset(Bytes bytes) { return text_of(bytes).find("\"asset\"") != std::st
 std::string points_told(const Scene& scene) {
   std::size_t points = 0;
   for (const Mesh& mesh : scene.meshes) points += mesh.positions.size();
-  return points == 0 ? "" : "; its " + std::to_string(points) + " points have no surface that hides anything";
+  return points == 0 ? "" : "; its " + std::to_string(points) + " points are not drawn, because a point has no surface";
 }
 
 constexpr std::string_view builtin_prefix = "builtin:";
@@ -163,7 +163,7 @@ Scene load_named(const std::string& reference, const ModelSource& scene_file) {
   if (const auto conversion = conversion_by_suffix(reference)) refuse(source, *conversion);
   auto format = format_of_suffix(reference);
   if (!format) format = format_of_content(file.bytes());
-  if (format == ModelFormat::scene) refuse(source, "is a scene file itself; scene files place models alone");
+  if (format == ModelFormat::scene) refuse(source, "is a scene file; a scene file can place only models");
   Scene scene = read_any(file.bytes(), source, format, {});
   scene.source.files = opened->paths();
   return scene;

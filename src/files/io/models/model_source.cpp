@@ -79,7 +79,7 @@ fs::path ModelSource::path_of(const std::string& reference) const {
   if (slashed.empty() || slashed.size() > longest || slashed.find('\0') != std::string::npos) refuse("not a file name");
   const bool leaves = leaves_folder(slashed);
   const std::string is_outside =
-      std::string(leaves ? "lies outside" : "links to a place outside") +
+      std::string(leaves ? "lies outside" : "is a link to a place outside") +
       (allowed_ ? " the scene file's folder, so it is not read unless --allow-outside names the folder that it is in"
                 : " the model's folder, so it is not read");
   if (leaves && (!allowed_ || allowed_->empty())) refuse(is_outside);

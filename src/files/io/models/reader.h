@@ -94,7 +94,8 @@ class ModelSource {
   std::string name_;
   Execution execution_;
   const ImageDecoder* image_decoder_ = nullptr;
-  std::optional<std::vector<std::filesystem::path>> allowed_;  ///< of scene files: allowed folders, without links
+  std::optional<std::vector<std::filesystem::path>>
+      allowed_;  ///< folders from which a scene file may load, without links
   const InputFile* file_ = nullptr;
   std::filesystem::path path_;
   std::shared_ptr<OpenedFiles> opened_;
@@ -109,7 +110,7 @@ class Budget {
   /// \throws Error limit_exceeded.
   void charge(std::uint64_t count, std::uint64_t size, const std::string& place, const ModelSource& source) {
     if (count > left_ / size)
-      source.fail_limit(place, std::to_string(count) + " elements are far more than a file of this size should make");
+      source.fail_limit(place, std::to_string(count) + " elements are far more than a file of this size can hold");
     left_ -= count * size;
   }
   /// Charges triangles that are placed again. They take no memory here, but code that transforms them to world space

@@ -149,7 +149,7 @@ void lose_metallic_roughness_texture(Material& material, const std::string& who,
   material.metallic_roughness_texture = {};
   if (material.metallic == 0) return;
   material.metallic = 0;
-  warnings.push_back(who + ": is no metal without its metallic-roughness texture");
+  warnings.push_back(who + ": its metallic-roughness texture is missing, so the material is not metallic");
 }
 
 }  // namespace frontmost

@@ -181,7 +181,7 @@ glm::dmat4 matrix_by_rows(const JsonValue& place, const std::vector<double>& num
 
 void refuse_singular(const JsonValue& place, const glm::dmat4& pose) {
   const double volume = glm::determinant(glm::dmat3(pose));
-  if (!(std::abs(volume) > 0 && std::isfinite(volume))) place.fail("the pose flattens what it places, or is too large");
+  if (!(std::abs(volume) > 0 && std::isfinite(volume))) place.fail("the pose is singular, or too large");
 }
 
 glm::dmat4 inverse_of(const JsonValue& place, const glm::dmat4& pose) {
@@ -211,7 +211,7 @@ glm::dmat4 rotation_by_rows(const JsonValue& place, const std::vector<double>& n
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k)
       if (!(std::abs(square[i][k] - (i == k ? 1 : 0)) <= tolerance)) place.fail("is not a rotation");
-  if (!(glm::determinant(rotation) > 0)) place.fail("is a rotation and a mirror");
+  if (!(glm::determinant(rotation) > 0)) place.fail("mirrors; expected a rotation");
   return glm::dmat4(rotation);
 }
 
@@ -222,7 +222,7 @@ glm::dmat4 read_rotation(const JsonValue& value) {
     value.fail(std::to_string(numbers.size()) + " numbers; a rotation is 4 (x, y, z, w) or 9, row by row");
   const glm::dvec4 quaternion(numbers[0], numbers[1], numbers[2], numbers[3]);
   const double length = glm::length(quaternion);
-  if (!(length > 0 && std::isfinite(length))) value.fail("the quaternion has no length");
+  if (!(length > 0 && std::isfinite(length))) value.fail("the quaternion is zero");
   return gltf::compose(glm::dvec3(0), quaternion, glm::dvec3(1));
 }
 
@@ -319,7 +319,7 @@ Axis read_axis(const JsonValue& value) {
   const std::string text = value.to_string();
   for (const auto& [name, axis] : axes)
     if (text == name) return axis;
-  value.fail(in_quotes(text) + " is not an axis; x, y, z, -x, -y and -z are");
+  value.fail(in_quotes(text) + " is not an axis; expected x, y, z, -x, -y or -z");
 }
 
 double read_unit(const JsonValue& value) {
@@ -382,11 +382,11 @@ PlacedModel read_object(const JsonValue& json, const SceneFile& file, CategoryNa
   if (const auto category = json.find("category")) object.category = categories.get(*category);
   object.scene_from_model = read_pose(json);
   if (const auto up = json.find("up")) {
-    if (!file.up) up->fail("the file does not say which way is up in the scene");
+    if (!file.up) up->fail("the scene file has no up axis");
     object.up = read_axis(*up);
   }
   if (const auto unit = json.find("metres_per_unit")) {
-    if (!file.metres_per_unit) unit->fail("the file does not say the unit of the scene");
+    if (!file.metres_per_unit) unit->fail("the scene file has no unit");
     object.metres_per_unit = read_unit(*unit);
   }
   if (const auto material = json.find("material")) object.replacement = looks.read(*material);

@@ -273,7 +273,7 @@ class PlacedMeshes {
   Scene& scene_;
   Budget budget_;
   std::uint32_t first_material_ = 0;
-  std::vector<std::string> names_;  ///< of the model's materials
+  std::vector<std::string> names_;  ///< names of the model's materials
   std::map<std::pair<bool, Replacement>, std::vector<std::uint32_t>> known_;
 };
 

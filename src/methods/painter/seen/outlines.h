@@ -118,7 +118,7 @@ class OutlineClipper {
   /// Leaves the inner part of inside_ relative to a line, and puts the rest into outside_. \returns where inside_ was.
   Place split(const Line& line);
 
-  std::vector<PaintCorner> corners_;  ///< of all parts since begin(), including removed ones
+  std::vector<PaintCorner> corners_;  ///< corners of all parts since begin(), including removed parts
   std::vector<Part> parts_;
   std::vector<PaintCorner> rest_, inside_, outside_;
   std::vector<double> distances_;

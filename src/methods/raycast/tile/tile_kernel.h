@@ -40,7 +40,7 @@ struct RayTileScratch {
   // Blocks of 4 x 4 pixels, row by row, and within a block its pixels row by row.
   alignas(64) float keys[kPixels];
   alignas(64) PrimitiveId ids[kPixels];
-  alignas(64) float farthest[kPixels / 16];  ///< of each block
+  alignas(64) float farthest[kPixels / 16];  ///< farthest depth of each block
   std::vector<Waiting> stack;
 };
 

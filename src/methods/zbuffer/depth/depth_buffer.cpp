@@ -25,7 +25,7 @@ void check(bool is_good, const char* place, const char* complaint) {
 
 void check_state(const DepthState& state) {
   const auto is_depth = [](double value) { return value >= 0 && value <= 1; };
-  check(is_depth(state.range_near) && is_depth(state.range_far), "depth range", "both ends must be 0 to 1");
+  check(is_depth(state.range_near) && is_depth(state.range_far), "depth range", "both ends must be from 0 to 1");
   for (const double value : {state.offset.factor, state.offset.units, state.offset.clamp})
     check(std::abs(value) <= 1e30, "polygon offset", "must be within 1e30");
   check(state.func <= DepthFunc::always, "depth function", "there are eight");
@@ -142,7 +142,7 @@ void DepthBuffer::draw(const Surfaces& surfaces, const View& view, const DepthDr
     throw Error(ErrorCode::bad_argument, "view", "width, height and samples must be those of the depth buffer");
   const PrimitiveId end = std::min(call.end, surfaces.primitive_count());
   if (end > call.begin && call.id_offset > no_primitive - end)
-    throw Error(ErrorCode::bad_argument, "id offset", "ids would pass 4294967294");
+    throw Error(ErrorCode::bad_argument, "id offset", "ids would exceed 4294967294");
   const IeeeScope ieee;
   const DepthRules rules = rules_for(call.state, format_, ScreenTransform(view));
   if (!rules.passes_less && !rules.passes_equal && !rules.passes_greater) return;  // never

@@ -45,7 +45,7 @@ struct PixelRect {
 
 /// The planes that a VisiblePixels is written to. Borrows everything.
 struct PixelPlanes {
-  PrimitiveId* primitives;  ///< of sample 0
+  PrimitiveId* primitives;  ///< ids of sample 0
   float* keys;
   std::uint16_t* mixed;
   std::uint32_t* places;

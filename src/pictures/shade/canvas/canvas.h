@@ -38,7 +38,7 @@ struct Painting {
   TileCanvas& canvas;
   const FragmentShader::Colorist& colorist;
   glm::vec4 background;  ///< value of an empty pixel
-  float opacity = 1;     ///< of all surfaces, unless the A-buffer applies it
+  float opacity = 1;     ///< factor of all opacities, unless the A-buffer applies it
   ShadingRate rate = ShadingRate::each_pixel;
 };
 

@@ -87,7 +87,7 @@ class LayerShader {
   const FragmentShader::Colorist& colorist_;
   ShadingRate rate_;
   Isa isa_;
-  std::vector<glm::vec2> positions_;  ///< of the masks' bits
+  std::vector<glm::vec2> positions_;  ///< position of the sub-sample of each bit of the masks
   mutable Pool<FragmentShader> shaders_;
 };
 

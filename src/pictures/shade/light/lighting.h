@@ -60,7 +60,7 @@ struct Lamp {
   glm::vec3 axis{0, 0, -1};  ///< unit, the direction in which it shines
   glm::vec3 color{1};        ///< radiance of a white diffuse surface that faces it at distance 1
   float range = 0;           ///< 0: unlimited
-  float cosine_outer = -1;   ///< of the outer cone; -1 for points, which have none
+  float cosine_outer = -1;   ///< cosine of the outer cone; -1 for points, which have no cone
   float cone_scale = 0;      ///< 1 / (cosine of the inner cone - cosine of the outer one); points: 0
 };
 

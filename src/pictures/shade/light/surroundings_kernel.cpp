@@ -22,7 +22,7 @@ constexpr int kLastLevel = PrefilteredEnvironment::level_count - 1;
 /// Addresses of the light that fragments mirror, and of the share that they mirror.
 struct MirroredPlaces {
   TexelSquares<batch_capacity> smoother, rougher;  ///< in the maps of the two roughnesses
-  std::int32_t level[batch_capacity];              ///< of the smoother map
+  std::int32_t level[batch_capacity];              ///< level of the smoother map
   float blend[batch_capacity];                     ///< weight of the rougher map
   TexelSquares<batch_capacity> parts;              ///< in MirroredParts
 };
@@ -38,7 +38,7 @@ HWY_INLINE TexelSquare parts_square(float column, float row) {
 /// For each fragment, the mirrored view direction as a place in the maps, the level, and the place in MirroredParts.
 struct MirroredViews {
   float u[batch_capacity], v[batch_capacity], level[batch_capacity];
-  float column[batch_capacity], row[batch_capacity];  ///< of MirroredParts
+  float column[batch_capacity], row[batch_capacity];  ///< position in MirroredParts
 };
 
 void FindViews(const Surroundings& around, const FragmentBatch& batch, MirroredViews& out) {

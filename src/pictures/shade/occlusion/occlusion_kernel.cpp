@@ -26,7 +26,7 @@ constexpr float kOne = 0.98078528f, kThree = 0.83146961f, kFive = 0.55557023f, k
 constexpr float kSlices[][2] = {{kOne, kSeven},  {kThree, kFive},  {kFive, kThree},  {kSeven, kOne},
                                 {-kSeven, kOne}, {-kFive, kThree}, {-kThree, kFive}, {-kOne, kSeven}};
 constexpr int kSteps = 8;            ///< per side
-constexpr float kMostOfSide = 0.5f;  ///< of the picture's longer side: the greatest distance of a step
+constexpr float kMostOfSide = 0.5f;  ///< greatest distance of a step, as a part of the picture's longer side
 
 struct EyeVector {
   VF x, y, z;

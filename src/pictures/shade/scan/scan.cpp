@@ -332,7 +332,8 @@ void ScanTileWork::flush() {
 void check_scan(const ScanRequest& request) {
   check_opacity(request.options);
   if (request.options.light.ambient_occlusion || request.options.pixels.blend != Blend::linear)
-    throw Error(ErrorCode::unsupported, "shade", "scans have neither ambient occlusion nor another blend than linear");
+    throw Error(ErrorCode::unsupported, "shade",
+                "pictures of scans need linear blending, and have no ambient occlusion");
   check_light(request.options.light);
   if (request.options.light.shows_environment)
     throw Error(ErrorCode::unsupported, "shade", "pictures of scans cannot show an environment as background");

@@ -72,7 +72,7 @@ struct ScanLayer {
   bool merges;              ///< rays of a pixel that hit the same primitive become one fragment
   const RayIndex* through;  ///< null: nothing is see-through
   const Surfaces& surfaces;
-  float opacity;  ///< of all surfaces
+  float opacity;  ///< factor of all opacities
 };
 
 /// A rectangle of a scan's pixels that one thread shades: hits of rays become fragments on the faces of the cube, which
@@ -115,9 +115,9 @@ class ScanTileWork {
   const FragmentShader::Colorist* colorist_ = nullptr;
   Isa isa_ = Isa::best;
   FragmentShader shader_;
-  PixelSteps pixel_steps_;  ///< of the fragments in the shader
+  PixelSteps pixel_steps_;  ///< steps of the fragments in the shader
   std::vector<Fragment> fragments_;
-  ScanDirections::Steps steps_;  ///< of the current pixel
+  ScanDirections::Steps steps_;  ///< steps of the current pixel
   std::vector<glm::vec4> pixels_;
   glm::vec3 arriving_{1};  ///< share of the current ray that earlier fragments leave, by channel
 };

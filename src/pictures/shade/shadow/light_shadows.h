@@ -111,7 +111,7 @@ struct ShadedInput {
 struct ShadedPicture {
   ShadedInput input;
   const ShadeOptions& options;
-  std::span<const glm::ivec2> samples;  ///< of a pixel, in 1/256
+  std::span<const glm::ivec2> samples;  ///< samples of a pixel, in 1/256 pixel
 };
 
 /// Shadows of opaque materials, for successive pictures of the same surfaces. The casters, the memory of the maps, and
@@ -138,14 +138,14 @@ class LightShadows {
 
   /// The surfaces, or their opaque part. The first call makes the opaque part if some material is see-through.
   [[nodiscard]] const Surfaces& casters(const Execution& execution);
-  /// What a view sees of the casters; reuses `planes`, of any size.
+  /// The casters that a view sees; reuses `planes`, of any size.
   [[nodiscard]] Visible draw_casters(const View& view, Visible&& planes, const Execution& execution);
 
  private:
   /// The map of one light; its address does not change.
   struct DrawnMap {
     ShadowMap map;
-    Visible planes;          ///< of view map.view(), if drawn here
+    Visible planes;          ///< planes of map.view(), if drawn here
     bool has_drawn = false;  ///< the map shows the casters
   };
 

@@ -73,7 +73,7 @@ class SeenPoints {
 
 /// The data of a map in the form that the kernel reads.
 struct ShadowGrid {
-  static constexpr int taps = 8;     ///< of the filter along each axis
+  static constexpr int taps = 8;     ///< taps of the filter along each axis
   static constexpr int block = 4;    ///< texels per side that share a number of `nearest` and `farthest`
   static constexpr int window = 12;  ///< texels per side from which such a number is computed
 

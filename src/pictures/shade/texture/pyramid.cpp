@@ -49,7 +49,7 @@ std::uint64_t pair_at(const glm::u8vec4* texels) {
 struct Halving {
   Encoding encoding;
   const float* color_of_byte;
-  int width, height;  ///< of the finer level
+  int width, height;  ///< size of the finer level
   const glm::u8vec4* texels;
 
   void row(int y, glm::u8vec4* out) const {

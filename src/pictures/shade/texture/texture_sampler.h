@@ -52,7 +52,7 @@ class Pyramid {
   Encoding encoding_;
   std::vector<Level> levels_;
   std::vector<std::array<float, 4>> sizes_;        ///< by level
-  std::vector<std::vector<glm::u8vec4>> storage_;  ///< of levels 1 and up
+  std::vector<std::vector<glm::u8vec4>> storage_;  ///< texels of levels 1 and up
 };
 
 inline constexpr int most_taps = 8;         ///< per fragment
@@ -80,7 +80,7 @@ struct Taps {
   float blend[sampled_at_once];         ///< weight of the next level
   Fours place;                          ///< texture coordinates; later the fraction between the first and the second
                                         ///< texel
-  Fours size;                           ///< of the levels, in texels
+  Fours size;                           ///< size of the levels, in texels
   FourTexels first, second;             ///< texels on either side
 };
 

@@ -58,7 +58,7 @@ void read_range(const JsonValue& json, Light& light, std::vector<std::string>& w
   if (range->to_number() > 0)
     light.range = range->to_number();
   else
-    warnings.push_back(range->place() + ": is not positive, the light reaches everywhere");
+    warnings.push_back(range->place() + ": is not positive; the light reaches everywhere");
 }
 
 void read_cones(const JsonValue& json, Light& light, std::vector<std::string>& warnings) {
@@ -69,10 +69,12 @@ void read_cones(const JsonValue& json, Light& light, std::vector<std::string>& w
   // Exporters that use floats write angles slightly beyond a quarter turn, and cones without a soft edge.
   constexpr double tolerance = 1e-6, narrow = 1e-3;
   if (!(outer > 0 && outer <= quarter_turn + tolerance))
-    warnings.push_back(spot->place() + ".outerConeAngle: is not between 0 and a quarter turn, the nearest is taken");
+    warnings.push_back(spot->place() +
+                       ".outerConeAngle: is not between 0 and 90 degrees; the nearest such angle is used");
   light.outer_cone = outer > 0 ? std::min(outer, quarter_turn) : narrow;
   if (!(inner >= 0 && inner <= outer + tolerance))
-    warnings.push_back(spot->place() + ".innerConeAngle: is not between 0 and outerConeAngle, the nearest is taken");
+    warnings.push_back(spot->place() +
+                       ".innerConeAngle: is not between 0 and outerConeAngle; the nearest such angle is used");
   light.inner_cone = std::clamp(inner, 0.0, light.outer_cone);
 }
 
@@ -135,7 +137,7 @@ void place_cameras(const JsonValue& root, const NodeTree& tree, Scene& scene) {
     std::optional<Camera> camera = read_camera(json);
     const std::optional<glm::dmat4> pose = rigid(node.world);
     if (!camera || !pose) {
-      scene.warnings.push_back((camera ? node.place : json.place()) + ": a camera that sees nothing is left out");
+      scene.warnings.push_back((camera ? node.place : json.place()) + ": a camera whose picture is empty is left out");
       continue;
     }
     camera->world_from_eye = *pose;

@@ -44,7 +44,7 @@ enum class Component : std::uint16_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5
 struct ByteExtent {
   Bytes bytes;               ///< empty if not present
   std::uint64_t length = 0;  ///< as stated in the file
-  std::size_t stride = 0;    ///< of views; 0: elements are tightly packed
+  std::size_t stride = 0;    ///< stride of the buffer view; 0: elements are tightly packed
   bool present = false;      ///< false: the file provides no contents, which is an error if they are read
 };
 

@@ -175,7 +175,7 @@ void check_extensions(const JsonValue& root, std::vector<std::string>& warnings)
                 printable(list) + ": not supported" + absent + (advice ? "; " + *advice : ""));
   }
   for (const std::string& name : unsupported(root, "extensionsUsed"))
-    warnings.push_back("extensionsUsed: " + name + " is not supported and passed over");
+    warnings.push_back("extensionsUsed: " + name + " is not supported, and ignored");
 }
 
 /// Each element costs some hundred bytes of memory, even an empty one ("{}").
@@ -231,7 +231,7 @@ Container open_container(Bytes bytes, const ModelSource& source) {
     const std::uint32_t length = little_endian(rest, 0), type = little_endian(rest, 4);
     rest = rest.subspan(chunk_header_size);
     if (length > rest.size())
-      source.fail(place, "its length is stated as " + std::to_string(length) + " bytes, " +
+      source.fail(place, "its header states a length of " + std::to_string(length) + " bytes, " +
                              std::to_string(rest.size()) + " are left");
     take_chunk(container, type, rest.first(length), number, source);
     rest = rest.subspan(length);

@@ -81,7 +81,8 @@ class MaterialReader {
     for (const MaterialNumber& number : numbers_of(material)) {
       if (*number.value == number.in_range()) continue;
       if (number.name != told)
-        warnings_.push_back(described(json) + ": " + number.name + " is out of range, the nearest in range counts");
+        warnings_.push_back(described(json) + ": " + number.name +
+                            " is out of range; the nearest value in range is used");
       told = number.name;
       *number.value = number.in_range();
     }
@@ -122,7 +123,7 @@ class MaterialReader {
     else if (mode == "BLEND")
       material.alpha = Material::Alpha::blend;
     else if (!mode.empty() && mode != "OPAQUE")
-      warnings_.push_back(json.place() + ".alphaMode: " + printable(mode) + " is unknown, taken as OPAQUE");
+      warnings_.push_back(json.place() + ".alphaMode: " + printable(mode) + " is unknown; OPAQUE is used");
     material.alpha_cutoff = float(json.number_or("alphaCutoff", 0.5));
   }
 
@@ -219,7 +220,8 @@ MaterialList read_materials(const JsonValue& root, TextureTable& textures, std::
   };
   if (std::any_of(out.materials.begin(), out.materials.end(), spreads_light))
     warnings.push_back(
-        "KHR_materials_transmission: light passes straight on: what is seen through is neither blurred nor bent");
+        "KHR_materials_transmission: light passes straight through; rough glass does not blur, and thick glass does "
+        "not refract");
   return out;
 }
 

@@ -156,7 +156,7 @@ class MeshBuilder {
         primitive.indices != no_index ? data_.accessor(primitive.indices).count : primitive.vertex_count;
     const bool is_list = primitive.mode == Mode::triangles;
     const std::size_t count = is_list ? corner_count / 3 : std::max<std::size_t>(corner_count, 2) - 2;
-    if (is_list && corner_count % 3 != 0) warnings.push_back(primitive.place + ": the last triangle is not whole");
+    if (is_list && corner_count % 3 != 0) warnings.push_back(primitive.place + ": the last triangle is incomplete");
     budget_.charge(count, sizeof(glm::uvec3) + sizeof(std::uint32_t), primitive.place, source_);
     const std::size_t first = mesh_.triangles.size();
     mesh_.triangles.resize(first + count);

@@ -53,8 +53,7 @@ std::uint32_t copy_attribute(const JsonValue& attributes, const char* key, int c
   if (accessor.components != components) json->fail("the accessor's type does not fit");
   // The test is for an earlier attribute, not for its elements, because later code uses one count for all attributes.
   const bool is_first = copies.translation == no_index && copies.rotation == no_index && copies.scale == no_index;
-  if (!is_first && copies.count != accessor.count)
-    json->fail("has another number of elements than the attributes before");
+  if (!is_first && copies.count != accessor.count) json->fail("has another number of elements than earlier attributes");
   copies.count = accessor.count;
   return id;
 }

@@ -153,7 +153,8 @@ class Planner {
     for (std::size_t set = 0; set < max_joint_sets; ++set) {
       const std::uint32_t joints = reader.find("JOINTS_" + std::to_string(set), {4, 4, true});
       const std::uint32_t weights = reader.find("WEIGHTS_" + std::to_string(set), {4, 4, false});
-      if ((joints == no_index) != (weights == no_index)) attributes.fail("joints without weights, or the reverse");
+      if ((joints == no_index) != (weights == no_index))
+        attributes.fail("joints without weights, or weights without joints");
       // Sets are numbered without gaps; sets behind a gap are ignored.
       if (joints == no_index) break;
       vertices.joints.push_back(joints);

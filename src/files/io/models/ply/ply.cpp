@@ -75,7 +75,7 @@ class PlyHeaderReader {
     } else {
       text_.fail("unknown format " + in_quotes(name));
     }
-    if (version != "1.0") text_.fail("only version 1.0 is known");
+    if (version != "1.0") text_.fail("only PLY version 1.0 is supported");
     has_format_ = true;
   }
 

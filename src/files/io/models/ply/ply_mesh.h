@@ -299,7 +299,7 @@ bool read_float(Rows& rows, const Column& column, FloatRow& row) {
 template <class Rows>
 std::uint64_t list_size(Rows& rows, const PlyProperty& property) {
   const std::int64_t size = rows.integer(property.count_type);
-  if (size < 0) rows.fail("a list of negative length");
+  if (size < 0) rows.fail("the length of a list is negative");
   rows.room_for(property.type, std::uint64_t(size));
   return std::uint64_t(size);
 }
@@ -373,8 +373,8 @@ inline void check_index_type(const PlyElement& element, const Columns& columns, 
       source.fail("header", "the corners of element " + in_quotes(element.name) + " must be integers");
 }
 
-/// Reads faces and strips. `Rows` is a class of ply_rows.h. `Vertices` tells the file's number of vertices and converts
-/// their numbers to those of the mesh.
+/// Reads faces and strips. `Rows` reads the rows of an element, as text or binary. `Vertices` tells the file's number
+/// of vertices and converts their numbers to those of the mesh.
 template <class Rows, class Vertices>
 class FaceReader {
  public:

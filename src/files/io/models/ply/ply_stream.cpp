@@ -201,13 +201,13 @@ class PlyStream final : public ModelStream {
     for (const PlyElement& element : header_.elements) {
       const bool is_face = element.name == "face" || element.name == "tristrips";
       if (element.name == "vertex") {
-        if (vertices_.element || faces_) refuse("a stream takes one element of vertices, before the faces");
+        if (vertices_.element || faces_) refuse("a stream needs one element of vertices, before the faces");
         reader_.emplace(element, source_);
         vertices_ = {{}, &element, &*reader_, &source_, endian()};
         vertex_offset_ = std::size_t(offset);
       } else if (is_face && Columns(element).has(Role::corners)) {
         if (element.name == "tristrips") refuse("triangle strips cannot be streamed");
-        if (!vertices_.element || faces_) refuse("a stream takes one element of faces, after the vertices");
+        if (!vertices_.element || faces_) refuse("a stream needs one element of faces, after the vertices");
         faces_ = &element;
         face_offset_ = offset;
       }

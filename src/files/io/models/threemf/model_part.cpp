@@ -299,7 +299,7 @@ class ModelPartReader : public XmlPart {
 
   void start_group(PropertyGroup::Kind kind, const TagReader& tags, std::string_view name) {
     const auto [entry, is_new] = part_.groups.try_emplace(tags.look_index_or("id", no_index));
-    if (!is_new) tags.warn("id", "is that of an earlier group, too, which counts");
+    if (!is_new) tags.warn("id", "is also the id of an earlier group, which is used");
     group_ = is_new ? &entry->second : &repeated_group_;
     group_->kind = kind;
     group_->first_material = std::uint32_t(scene_.materials.size());
@@ -407,7 +407,7 @@ class ModelPartReader : public XmlPart {
   PropertyGroup* group_ = nullptr;
   PropertyGroup repeated_group_;  ///< receives a group whose number is taken
   Object* object_ = nullptr;
-  std::vector<glm::dvec3> vertices_;  ///< of the current mesh
+  std::vector<glm::dvec3> vertices_;  ///< vertices of the current mesh
   std::size_t placed_count_ = 0;
 };
 

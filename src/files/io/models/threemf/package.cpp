@@ -210,7 +210,7 @@ void XmlPart::feed(std::string_view text, bool is_last) {
   if (failure_) std::rethrow_exception(failure_);
   if (status != XML_STATUS_OK) fail(XML_ErrorString(XML_GetErrorCode(parser_.get())));
   // The parser holds a tag in memory until the tag ends.
-  if (since_event_ > longest_tag) source_.fail_limit(place(), "a tag of more than a megabyte");
+  if (since_event_ > longest_tag) source_.fail_limit(place(), "a tag is longer than a megabyte");
 }
 
 std::string find_start_part(Package& package, const ModelSource& source) {
@@ -220,7 +220,7 @@ std::string find_start_part(Package& package, const ModelSource& source) {
     reader.read(package);
     if (!reader.found().empty()) return reader.found();
   }
-  source.fail("_rels/.rels", "no part of the archive is said to be a 3D model, so it is no 3MF file");
+  source.fail("_rels/.rels", "the archive names no part as its 3D model, so the file is not 3MF");
 }
 
 }  // namespace frontmost::threemf

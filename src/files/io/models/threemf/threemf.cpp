@@ -178,7 +178,7 @@ class ItemPlacer {
   /// State of the objects above the current one.
   struct Above {
     glm::dmat4 world_from_outer;
-    std::string name;  ///< of the nearest object with a name
+    std::string name;  ///< name of the nearest object with a name
     int level;
   };
 
@@ -227,7 +227,7 @@ class ItemPlacer {
     for (const auto& [id, object] : root_.objects)
       if (used.count(id) == 0) place(root_, {"", id, glm::dmat4(1.0), object.line}, {glm::dmat4(1.0), "", 0});
     if (!root_.objects.empty())
-      scene_.warnings.push_back(printable(root_.name) + ": nothing is built, all objects are shown");
+      scene_.warnings.push_back(printable(root_.name) + ": the build list is empty, so all objects are shown");
   }
 
   const ModelParts& parts_;
