@@ -220,7 +220,7 @@ class TriangleSource {
  public:
   /// Borrows `store` and `large`. Large primitives of meshes without normals are smooth, and the store must have their
   /// normals. Other primitives of these meshes are flat; all are if `large` is null.
-  /// Without texcoords, setups have none, for pictures that do not need them.
+  /// If `has_texcoords` is false, setups have no texture coordinates: not all pictures need them.
   TriangleSource(const TriangleStore& store, const View& view, const BitSet* large, bool has_texcoords = true)
       : rays_(view), large_(large), store_(store), has_texcoords_(has_texcoords) {}
 
