@@ -93,11 +93,12 @@ constexpr Command table[] = {
      run_batch_merge},
     {"precision", for_precision, "[MODEL]",
      "Report which gaps a depth buffer resolves, and where a model suffers z-fighting.",
-     "Prints the smallest gap between surfaces that a depth buffer always resolves, by distance, for --format or for "
-     "the common formats. With MODEL also reports z-fighting: the pixels at which the buffer shows a surface that is "
-     "not the nearest, and the areas of faces where a slightly different picture may do so. With --format also names "
-     "the objects, and the planes, format or polygon offset that remove the wrong pixels, each tried by drawing. The "
-     "view options of render give the camera; planes that are not given are fitted to the model.",
+     "For several distances, prints the smallest gap between surfaces that a depth buffer always resolves, with "
+     "--format or with the common formats. With MODEL also reports z-fighting: the pixels at which the buffer shows a "
+     "surface that is not the nearest, and the areas of faces where such pixels may appear if the view changes a "
+     "little. With --format also names the objects, and suggests clipping planes, a format or a polygon offset that "
+     "removes the wrong pixels; each suggestion is tested by drawing. The view options of render give the camera; "
+     "clipping planes that are not given are fitted to the model.",
      "frontmost precision --near 0.1 --far 1000\n"
      "frontmost precision --near 0.01 --infinite --format D24 --gap 0.05,800 --plot gaps.svg\n"
      "frontmost precision city.glb --near 0.01 --format D16 --heat-map fights.png",

@@ -39,7 +39,7 @@ std::string single_view(const std::vector<Cost>& costs) {
   std::string text =
       fmt::format("One view: {} is quickest, {:.2f} ms from surfaces to answer", title(sorted[0]), sorted[0].once);
   for (std::size_t i = 1; i < sorted.size(); ++i)
-    text += fmt::format("{} {} takes {} times that", i == 1 ? ";" : ",", title(sorted[i]),
+    text += fmt::format("{} {} takes {} times as long", i == 1 ? ";" : ",", title(sorted[i]),
                         times(sorted[i].once / sorted[0].once));
   return text + ".";
 }

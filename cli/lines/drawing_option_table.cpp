@@ -100,8 +100,8 @@ constexpr Option drawing_options[] = {
        s.drawing.sheet.crease_angle = glm::radians(g.number({0, 180}));
      }},
     {"shortest-stroke", 0, "MM",
-     "Leave out shorter strokes, unless they hold other strokes or are pieces of outlines, 0 to 10; 0.5 by default "
-     "with --plot, 0 otherwise.",
+     "Leave out strokes shorter than this, 0 to 10, except pieces of outlines and strokes that connect others; 0.5 by "
+     "default with --plot, 0 otherwise.",
      Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.shortest_stroke = g.number(); }},
     {"hatch", 0, "MM",
      "Hatch dark surfaces with lines this far apart, 0.2 to 50. Darker surfaces have twice as many lines; other lines "

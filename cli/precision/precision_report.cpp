@@ -84,7 +84,8 @@ std::string wanted_text(const PrecisionRun& run) {
     const std::optional<double> near = near_for(run, setup);
     text += fmt::format("  {:14}", setup_name(setup));
     if (rounding_gap(setup, wanted.y, run.reach) >= wanted.x)
-      text += fmt::format("no format resolves it: positions add {:.3g}\n", rounding_gap(setup, wanted.y, run.reach));
+      text += fmt::format("no format resolves it: rounding of positions alone adds {:.3g}\n",
+                          rounding_gap(setup, wanted.y, run.reach));
     else if (!near)
       text += "no near plane will do\n";
     if (near && *near == 0) text += "any near plane resolves it\n";

@@ -57,7 +57,7 @@ constexpr Option output_options[] = {
      "Leave hidden polygons out of .svg and .pdf, and cut partly hidden ones; yes by default.", Group::output,
      for_render, [](Settings& s, const Given& g) { s.output.visible_only = g.choice<int>() == 0; }},
     {"color-tolerance", 0, "STEPS",
-     "Cut polygons of .svg and .pdf whose colour varies by more than so many of 255 steps; 6 by default; 255 cuts "
+     "In .svg and .pdf, divide a polygon if its colour varies by more than STEPS of 255; 6 by default; 255 divides "
      "none.",
      Group::output, for_render,
      [](Settings& s, const Given& g) {
@@ -66,7 +66,7 @@ constexpr Option output_options[] = {
     {"merge-neighbours", 0, "",
      "Join adjacent polygons of one colour into one path in .svg and .pdf, if nothing is painted over them.",
      Group::output, for_render, [](Settings& s, const Given&) { s.output.merges_neighbours = true; }},
-    {"most-polygons", 0, "N", "Refuse to write .svg and .pdf files with more polygons; 2000000 by default.",
+    {"most-polygons", 0, "N", "Refuse to write .svg and .pdf files with more than N polygons; 2000000 by default.",
      Group::output, for_render,
      [](Settings& s, const Given& g) {
        s.output.most_polygons = std::size_t(g.integer({1, 1000000000}));

@@ -49,8 +49,8 @@ constexpr Option report_options[] = {
      "JSON file that gives each object its category, for --coco and --bop, in place of the categories of a scene file.",
      Group::report, for_report, [](Settings& s, const Given& g) { s.report.categories = g.file_name(); }},
     {"masks", 0, "FOLDER",
-     "Write two masks as PNG of every object in the picture: of its visible part, and of the whole object. A missing "
-     "folder is made.",
+     "Write two PNG masks for every object in the picture, one of its visible part and one of the whole object. The "
+     "folder is made if it does not exist.",
      Group::report, for_report, [](Settings& s, const Given& g) { s.report.masks = folder_name(g); }},
     {"bop", 0, "FOLDER",
      "Write a scene in the format of BOP, an image for each view: poses, masks, depth. A missing folder is made.",

@@ -38,9 +38,9 @@ std::vector<ViewSettings> views_of_file(const Settings& settings) {
       check_view_of_report(one.view, settings.report);
       const auto [known, is_new] = numbers.emplace(view_name(one.view), views.size());
       if (settings.report.coco && !is_new)
-        throw UsageError(
-            fmt::format("is called {} as views[{}] is, and --coco needs a picture for each: give it a name",
-                        printable_name(known->first), known->second));
+        throw UsageError(fmt::format(
+            "has the name {}, like views[{}], but --coco needs a picture for each view: give it another name",
+            printable_name(known->first), known->second));
     } catch (const UsageError& error) {
       throw UsageError(fmt::format("{}: views[{}]: {}", *settings.report.views, views.size(), error.what()));
     }

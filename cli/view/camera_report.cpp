@@ -127,8 +127,10 @@ std::string camera_text(const View& view, const glm::dvec3& target, const glm::d
     const Intrinsics k = intrinsics_of(p, view.width, view.height, PixelRule::centre_at_integer);
     text += fmt::format("view angle  {:.6g} horizontal, {:.6g} vertical (degrees)\n", angle(p.left, p.right),
                         angle(p.bottom, p.top));
-    text += fmt::format("intrinsics  {},{},{},{} (first pixel centre at 0,0; add 0.5 to the last two for 0.5,0.5)\n",
-                        k.fx, k.fy, k.cx, k.cy);
+    text += fmt::format(
+        "intrinsics  {},{},{},{} (for a first pixel centre at 0,0; for one at 0.5,0.5 add 0.5 to the last two "
+        "numbers)\n",
+        k.fx, k.fy, k.cx, k.cy);
   }
   const glm::dmat4 world_from_eye = in_file(view.world_from_eye, origin);
   text += "world from camera, opengl (x right, y up, looks down -z)\n" + text_of(world_from_eye);

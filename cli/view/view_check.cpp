@@ -26,7 +26,8 @@ void exclude(const Flag& one, std::initializer_list<Flag> others) {
   }
 }
 
-/// Refuses options that only pinholes have. Rays see both sides of all surfaces, however near or far.
+/// Refuses options that only pinhole cameras have, if another camera is asked for. The rays of other cameras see both
+/// sides of all surfaces, at any distance.
 void check_camera_model(const ViewSettings& s) {
   const Flag model{"camera-model", s.camera_model != CameraModel::pinhole};
   exclude(model, {{"camera-orthographic", s.orthographic},

@@ -386,12 +386,12 @@ struct CentreLine {
   friend bool operator==(const CentreLine&, const CentreLine&) = default;
 };
 
-/// Centre lines after ISO 128. Circles and cylinders seen along their axes, and circles in `strokes`, have a cross, one
-/// at each place. Rounds seen from the side have their axis, one along each line. Rounds that are seen at an angle,
-/// smaller than a third of the overshoot, or drawn by less than a fifth have none, nor have rounds in perspective.
-/// Crosses of small circles overshoot by the radius, at least by a third of `overshoot`. `rounds` are those of the
-/// drawing's surfaces. In the order of their directions and places. \throws Error bad_argument for an overshoot out of
-/// range.
+/// Centre lines after ISO 128. Circles and cylinders seen along their axes, and circles in `strokes`, have a cross;
+/// those seen from the side have their axis. Coinciding ones share a cross or an axis. There is none in perspective,
+/// nor for a circle or cylinder that is seen at an angle, is smaller than a third of the overshoot, or has less than a
+/// fifth of its outline drawn. Crosses of small circles overshoot by the radius, at least by a third of `overshoot`.
+/// `rounds` are the circles and cylinders of the drawing's surfaces. Lines are sorted by direction, then by position.
+/// \throws Error bad_argument for an overshoot out of range.
 [[nodiscard]] std::vector<CentreLine> centre_lines_of(const Rounds& rounds, const Drawing& drawing,
                                                       const Strokes& strokes, const CentreLineOptions& options = {});
 

@@ -206,7 +206,7 @@ struct RayCamera {
   std::variant<Panorama, Fisheye, Lidar, RayPattern> model;
   glm::dmat4 world_from_eye{1.0};  ///< a rotation and a translation, relative to Scene::origin as in a View
   int samples = 1;                 ///< panoramas and fisheyes, per pixel: 1, 2, 4, 8 or 16, as in sample_offsets()
-  /// Least and greatest range, both inclusive. A surface elsewhere counts as nothing, but hides surfaces behind it.
+  /// Least and greatest range, both inclusive. A surface out of range is no hit, but still hides surfaces behind it.
   double nearest = 0, farthest = std::numeric_limits<double>::infinity();
 };
 

@@ -92,7 +92,7 @@ TEST_F(Datasets, AnnotationsOfCocoNameTheImageOfTheirView) {
   EXPECT_EQ(all["images"][2]["file_name"], "squares_2.png") << "as render --batch -o {model}_{view}.png";
   write("same.json", R"({"views": [{"view": "iso"}, {"view": "top"}, {"view": "iso"}]})");
   expect_failure("report squares.obj --views same.json --coco c.json", 2,
-                 "same.json: views[2]: is called iso as views[0] is, and --coco needs a picture for each");
+                 "same.json: views[2]: has the name iso, like views[0], but --coco needs a picture for each view");
   // Standard output holds nothing else.
   EXPECT_EQ(succeed(std::string("report squares.obj --views views.json --coco -") + view).out, bytes("all.json"));
 }

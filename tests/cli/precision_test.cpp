@@ -78,7 +78,8 @@ TEST_F(Precision, WhatPositionsAddIsSaid) {
   EXPECT_LT(at_far["format_gap"], 1e-7);
   EXPECT_GT(at_far["gap"], 1e-4) << "floats are 7.6e-6 apart there";
   EXPECT_THAT(succeed(line).out, HasSubstr("the rounding of positions and transforms"));
-  EXPECT_THAT(succeed(line + " --gap 1e-6,100.5").out, HasSubstr("no format resolves it: positions add 0.00024"));
+  EXPECT_THAT(succeed(line + " --gap 1e-6,100.5").out,
+              HasSubstr("no format resolves it: rounding of positions alone adds 0.00024"));
   EXPECT_TRUE(succeed(line + " --gap 1e-6,100.5 --json").json()["buffers"][0]["near_for_gap"].is_null());
   // Far from the eye, positions are coarser.
   write("far.obj", "v 0 0 0\nv 1e4 0 0\nv 0 1 0\nf 1 2 3\n");

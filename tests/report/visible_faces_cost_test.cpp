@@ -78,10 +78,11 @@ TEST(CostOfVisibleFaces, TooMuchIsRefusedAndSaysWhere) {
   const View view = parallel_view({0, 0, 10});
   const std::vector<EdgeNeighbours> sides = faces_detail::sides_of_meshes(scene, {});
   for (const int threads : {1, 4})
-    EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded,
-                         [&] { (void)faces_detail::find_faces(surfaces, view, sides, 1 << 22, {.threads = threads}); }),
-              "visible faces: too many faces lie over each other to be cut by each other: most of them, 2000, in the "
-              "pixels from 0,0 to 32,32, among them face 0 of object 0; leave out faces that lie there many times");
+    EXPECT_EQ(
+        refusal_of(ErrorCode::limit_exceeded,
+                   [&] { (void)faces_detail::find_faces(surfaces, view, sides, 1 << 22, {.threads = threads}); }),
+        "visible faces: too many faces overlap in the picture to cut them by each other: most of them, 2000, in the "
+        "pixels from 0,0 to 32,32, among them face 0 of object 0; leave out faces that lie there many times");
 }
 
 }  // namespace

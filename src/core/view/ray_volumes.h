@@ -67,7 +67,8 @@ struct RayVolumes {
   RayVolumes v{};
   for (int k = 0; k < 3; ++k) {
     const glm::dvec3 &p = corners[std::size_t((k + 1) % 3)], &q = corners[std::size_t((k + 2) % 3)];
-    // A start that moves changes the product by the area that it sweeps along the side from p to q.
+    // In parallel projection the ray's start moves, which changes the product by the area that the start sweeps along
+    // the side from p to q.
     const glm::dvec3 side = rays.is_parallel() ? glm::cross(rays.forward(), q - p) : glm::cross(p, q);
     v.value[k] = rays.is_parallel() ? glm::dot(glm::cross(p - ray, q - ray), rays.forward()) : glm::dot(side, ray);
     v.step_x[k] = glm::dot(side, rays.step_x());

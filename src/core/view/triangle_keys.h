@@ -23,8 +23,8 @@ template <class Triangle>
   return std::int64_t(t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - std::int64_t(t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
 }
 
-/// The plane of a gentle triangle: the key at (x, y) is (k0 + (x - x0) * gx) + (y - y0) * gy, limited to
-/// [k_min, k_max].
+/// The key of a triangle that is not steep, as a plane: the key at (x, y) is (k0 + (x - x0) * gx) + (y - y0) * gy,
+/// limited to [k_min, k_max].
 struct KeyPlane {
   /// Smaller keys are left to doubles: products with them might not be normal floats.
   static constexpr float least_key = 1e-30f;
@@ -41,8 +41,8 @@ struct KeyPlane {
     x0 = t.x[a], y0 = t.y[a], k0 = t.key[a];
     const double x1 = t.x[1] - t.x[0], y1 = t.y[1] - t.y[0], x2 = t.x[2] - t.x[0], y2 = t.y[2] - t.y[0];
     const double k1 = double(t.key[1]) - double(t.key[0]), k2 = double(t.key[2]) - double(t.key[0]);
-    // Keys of a gentle triangle are within a factor of 3, so their differences have 26 bits, and those of vertices 23:
-    // the sums of products are exact, and the same from any vertex.
+    // Keys of a triangle that is not steep are within a factor of 3, so their differences have 26 bits, and those of
+    // vertices 23: the sums of products are exact, and the same from any vertex.
     const double scale = 1 / double(doubled_area(t));
     gx = float((k1 * y2 - k2 * y1) * scale);
     gy = float((x1 * k2 - x2 * k1) * scale);

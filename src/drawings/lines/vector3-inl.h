@@ -44,7 +44,7 @@ HWY_INLINE V Dot(const Lanes3<V>& a, const Lanes3<V>& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
 
-/// Lane form of BoundedNormal in base/exact_vector.h: the same operations in the same order, in doubles.
+/// BoundedNormal of base/exact_vector.h for vectors: the same operations in the same order, in doubles.
 template <class V>
 struct BoundedNormals {
   Lanes3<V> value, error;

@@ -38,7 +38,7 @@ Axis axis_towards(const glm::dvec3& direction) {
   return Axis(direction[axis] > 0 ? axis : axis + 3);
 }
 
-/// By section, the view in which its plane is marked: the first that sees it edge-on, which may be another section.
+/// By section, the view that marks its cutting plane: the first view, or other section, that sees the plane edge-on.
 std::vector<std::size_t> hosts_of(const std::vector<PlannedView>& views) {
   std::vector<std::size_t> hosts(views.size(), views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {

@@ -94,7 +94,7 @@ struct OccluderPass {
   const CoverPass& pass;
 };
 
-/// Cells of the triangles of one turn; empty in between.
+/// Memory for the cells of triangles that turn the same way on the screen; empty between uses.
 struct CoverScratch {
   CellBits reached, ends;
 };

@@ -194,7 +194,8 @@ class LongObject {
     std::uint32_t triangle;
     int first_slab;
   };
-  /// Finds far sides such that nearer points certainly lie in ranges before those behind the slab, despite rounding.
+  /// Finds a far side for each slab: despite rounding, any point nearer than the far side has a smaller distance range
+  /// than any point behind the slab.
   void find_far_sides(const CellGrid& grid, const DistanceRanges& range_of, const Slabs& slabs) {
     float rounding = 0;
     for (const glm::vec3& world : on_screen.world) {

@@ -30,7 +30,7 @@ class SnappedCluster {
   [[nodiscard]] ClippedPolygon polygon(std::size_t triangle) const {
     const std::size_t c = cluster_.first_triangle + triangle;
     const std::size_t a = set_.i0[c], b = set_.i1[c], d = set_.i2[c];
-    // Padding, or a triangle with a vertex that is not finite: build_clusters() gives both equal vertices.
+    // Padding, or a triangle with a vertex that is not finite: build_clusters() stores equal vertices for either.
     if (a == b || b == d || a == d) return {};
     if (!is_plain_[a] || !is_plain_[b] || !is_plain_[d])
       return clip_triangle(transform_, {position(a), position(b), position(d)});

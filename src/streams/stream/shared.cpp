@@ -34,7 +34,7 @@ PassFacts facts_of(const Ranks::Message& message) {
   return facts;
 }
 
-/// Calls visit(list) for all that a message holds of kept triangles besides their place.
+/// Calls visit(list) for each list that a message holds about kept triangles, except the list of their positions.
 template <class AnyKept, class Visit>
 void for_each_list(AnyKept& kept, const Visit& visit) {
   visit(kept.triangles);

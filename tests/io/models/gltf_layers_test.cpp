@@ -145,9 +145,10 @@ TEST(GltfLayers, AllMembersAreRead) {
       "KHR_materials_volume":{"thicknessFactor":7,"thicknessTexture":{"index":0},"attenuationDistance":0.5,
         "attenuationColor":[0.5,0.25,1]})");
   ASSERT_THAT(scene.warnings, SizeIs(1));
-  EXPECT_EQ(scene.warnings[0],
-            "t.glb: KHR_materials_transmission: light passes straight on: what is seen through is "
-            "neither blurred nor bent");
+  EXPECT_EQ(
+      scene.warnings[0],
+      "t.glb: KHR_materials_transmission: light passes straight through; rough glass does not blur, and thick glass "
+      "does not refract");
   const Material& m = scene.materials.at(0);
   EXPECT_EQ(m.ior, 2.5f);
   EXPECT_EQ(m.specular.factor, 0.25f);

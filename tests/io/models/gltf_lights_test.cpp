@@ -124,7 +124,7 @@ TEST(GltfLights, ThatAreWrongAreToldAndMadeSenseOf) {
        "lights[0].spot.innerConeAngle: is not between 0 and outerConeAngle; the nearest such angle is used", true},
       {R"({"type":"spot","spot":{"outerConeAngle":3}})",
        "lights[0].spot.outerConeAngle: is not between 0 and 90 degrees; the nearest such angle is used", true},
-      {R"({"type":"spot","spot":{"outerConeAngle":-1}})", "outerConeAngle: is not between 0 and a quarter turn", true}};
+      {R"({"type":"spot","spot":{"outerConeAngle":-1}})", "outerConeAngle: is not between 0 and 90 degrees", true}};
   for (const OddLight& one : odd) {
     const Scene scene = load_lights({one.json});
     ASSERT_FALSE(scene.warnings.empty()) << one.json;

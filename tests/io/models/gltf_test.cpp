@@ -487,7 +487,7 @@ TEST(Gltf, AFewBytesSharedByManyAreRefused) {
   std::string primitives;
   for (int i = 0; i < 1000; ++i) primitives += R"({"attributes":{"POSITION":0}},)";
   maker.show(primitives + R"({"attributes":{"POSITION":0}})");
-  EXPECT_THAT(error_of(maker, ErrorCode::limit_exceeded), HasSubstr("than a file of this size should make"));
+  EXPECT_THAT(error_of(maker, ErrorCode::limit_exceeded), HasSubstr("than a file of this size can hold"));
 }
 
 TEST(Gltf, RequiredExtensionsThatWeLackAreNamed) {

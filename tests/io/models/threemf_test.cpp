@@ -81,7 +81,7 @@ TEST(ThreeMf, TheNamespaceMayBeMissing) {
     EXPECT_EQ(triangle_count(scene), 4u) << space;
     EXPECT_THAT(
         scene.warnings,
-        ElementsAre("model: 3D/3dmodel.model: line 2: model is not in the namespace of 3MF, and read as if it were"));
+        ElementsAre("model: 3D/3dmodel.model: line 2: model is not in the namespace of 3MF; it is read as if it were"));
   }
 }
 

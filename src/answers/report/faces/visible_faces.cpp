@@ -477,7 +477,7 @@ std::string too_many_faces(const CellLists& lists, const FacesOfView& faces, con
   const CellBox box = lists.box(fullest, view);
   const Surfaces& surfaces = faces.surfaces;
   const PrimitiveId id = faces.screen.faces[face_of(lists[fullest].front())].id;
-  return "too many faces lie over each other to be cut by each other: most of them, " +
+  return "too many faces overlap in the picture to cut them by each other: most of them, " +
          std::to_string(lists[fullest].size()) + ", in the pixels from " + std::to_string(int(box.left)) + "," +
          std::to_string(int(box.top)) + " to " + std::to_string(int(box.right)) + "," +
          std::to_string(int(box.bottom)) + ", among them face " + std::to_string(surfaces.source(id).triangle) +

@@ -368,7 +368,7 @@ class Plan {
 
  private:
   std::vector<std::optional<Key>> keys_;  ///< by instance
-  std::vector<double> counts_;            ///< triangles made for it and the instances before
+  std::vector<double> counts_;            ///< by instance: triangles made for this and all earlier instances
   std::set<Key> seen_;
   double triangles_ = 0;
 };

@@ -32,10 +32,11 @@ std::uint64_t key_of(const glm::ivec4& cell) {
 
 /// Square pixels, and pixels from end to end: smaller pieces have the colour of their middle.
 constexpr double kLeastArea = 1.5, kLeastLength = 2;
-/// Square pixels per sample, for usual and for large pieces. Pixels per sample, for slivers. The least number of
-/// samples of a piece, and the number of samples from which a piece counts as large.
-constexpr double kAreaPerSample = 2, kMostAreaPerSample = 9, kLengthPerSample = 1;
-constexpr double kFewSamples = 4, kManySamples = 64;
+constexpr double kAreaPerSample = 2;      // square pixels per sample of a usual piece
+constexpr double kMostAreaPerSample = 9;  // square pixels per sample of a large piece
+constexpr double kLengthPerSample = 1;    // pixels of length per sample of a sliver
+constexpr double kFewSamples = 4;         // the fewest samples of a piece
+constexpr double kManySamples = 64;       // a piece with more samples is large
 
 constexpr std::size_t kMostSamples = 256;
 constexpr int kDirections = 8;
@@ -232,7 +233,8 @@ class CutFinder {
     if (sides.least <= -piece_.least_width && sides.greatest >= piece_.least_width) take(split, *line);
   }
 
-  /// The direction that best separates samples like one side of the best split from samples like the other.
+  /// The best split so far has two mean colours. Each sample is nearer to one of them; the returned direction in the
+  /// picture separates both groups of samples best.
   [[nodiscard]] std::optional<glm::dvec2> direction_of_change() const {
     const glm::vec4 way = best_.above - best_.below, middle = (best_.above + best_.below) * 0.5f;
     const double length = double(glm::dot(way, way));

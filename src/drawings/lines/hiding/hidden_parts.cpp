@@ -285,7 +285,7 @@ void ask_many(const OccluderGrid::Visit& cell, const EdgeQuestion& question, Edg
   }
 }
 
-/// For cells of few entries: asks all in order.
+/// For cells of few entries: compares the edge with each entry, in order.
 void ask_few(const OccluderGrid::Visit& cell, const EdgeQuestion& question, EdgeSearch& search) {
   const glm::dvec2 low = cell.low - kCellPad, high = cell.high + kCellPad;
   const ScreenPart part{{wide_low(low.x), wide_low(low.y)}, {wide_high(high.x), wide_high(high.y)}, question.farthest};

@@ -53,8 +53,8 @@ struct Rest {
   V begin, end;
   M is_gone, is_open;
 
-  /// Lane form of where_positive(). `along` tells whether an edge that lies in a plane from end to end is gone, kept or
-  /// left open.
+  /// where_positive() for vectors. `along` says whether an edge that lies wholly in the plane is removed, kept, or left
+  /// undecided.
   enum class Along { gone, kept, open };
   template <Along along>
   HWY_INLINE void Keep(const Values& a, const Values& b) {

@@ -87,7 +87,7 @@ class Classifier {
   }
 
  private:
-  /// The side of the eye's plane through the edge on which the triangle lies, whichever way it is wound.
+  /// On which side of the plane through the eye and the edge the triangle lies: 1 or -1. Its winding does not matter.
   [[nodiscard]] int side_of(const Side& side) const { return seen_.facing[side.triangle] * (side.is_forward ? 1 : -1); }
 
   static bool is_one_surface(const Scene& scene) {

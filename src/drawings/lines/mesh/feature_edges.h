@@ -61,12 +61,12 @@ struct SurfaceOf {
 };
 using SurfaceOfTriangle = std::function<SurfaceOf(std::uint32_t triangle)>;
 
-/// The surfaces through an edge with more than two opposite vertices. Where objects share triangles, as a housing and
-/// its cover do, each object is paired by itself. An object's two sides are a pair. A side that occurs as often as all
-/// of the object's others together forms a pair with each of them. Sides that no object pairs are paired together in
-/// the same way. `sides` are all sides of one edge, copies included, sorted by opposite vertex; their winding does not
-/// matter. O(sides log sides).
-/// \returns none where surfaces meet: a side has no partner or too many.
+/// Pairs the triangles at an edge with more than two opposite vertices to surfaces. Sides of one object, such as a
+/// housing, are paired first. If an object has two sides at the edge, they are a pair. If one of its sides occurs as
+/// often as all its other sides together, it is paired with each of them. The sides that remain are then paired with
+/// each other by the same rules. `sides` are all sides of one edge, copies included, sorted by opposite vertex; their
+/// winding does not matter. O(sides log sides).
+/// \returns none if a side has no partner, or more than one possible partner: different surfaces meet at the edge.
 [[nodiscard]] std::optional<std::vector<SidePair>> paired_sides(std::span<const Side> sides,
                                                                 const SurfaceOfTriangle& surface_of);
 

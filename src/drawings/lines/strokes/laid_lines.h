@@ -251,7 +251,7 @@ class LaidLines {
   };
   LaidLines(const Extent& extent, const Nearness& nearness);
 
-  /// The greatest distance from a line of lines that lie on it, with some room.
+  /// Lines that count as lying on `line` are nearer than this distance, which includes a margin.
   [[nodiscard]] double reach_of(const Line& line) const { return near_.reach_of(line.length + Nearness::shortest); }
 
   const Nearness near_;

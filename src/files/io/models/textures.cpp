@@ -101,7 +101,7 @@ std::optional<Texture> TextureFiles::read(const std::string& reference, const st
   if (reference.empty()) return std::nullopt;
   if (!source_.has_folder()) {
     scene_.warnings.push_back(place + ": texture " + printable(reference) +
-                              " is not read, the model does not come from a file");
+                              " is not read, because the model does not come from a file");
     return std::nullopt;
   }
   try {

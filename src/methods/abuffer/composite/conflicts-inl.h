@@ -95,7 +95,7 @@ class GroupReader {
       hn::Store(farthest, df, g_.farthest.data() + at);
       hn::Store(hn::BitCast(du, triangle), du, g_.triangle.data() + at);
       hn::Store(hn::BitCast(du, number), du, g_.number.data() + at);
-      // An empty slot covers all samples, so nothing is covered in part.
+      // An empty slot gets the full mask, so that it never counts as partly covering.
       const auto mask_of = [&](const std::int32_t* masks, std::uint32_t all) HWY_ATTR {
         return hn::IfThenElse(valid, hn::BitCast(du, hn::GatherIndex(d, masks, number)), hn::Set(du, all));
       };

@@ -242,7 +242,7 @@ inline void FindTies(GatherScratch& s, std::size_t group) {
   }
 }
 
-/// Makes room for the lists. Counts of pixels become the beginnings of their lists, in words.
+/// Makes room for the lists. The number of fragments of each pixel becomes the offset of its list, in words.
 HWY_INLINE void MakeRoom(GatherScratch& s) {
   const DU d;
   std::uint32_t base = 0;

@@ -22,8 +22,8 @@ constexpr int kFewCells = 4;
 /// Pixels. A narrower part has no room for a hem, and viewers show a hairline. So a polygon from which a cut would
 /// leave a narrower part stays whole, and is painted over.
 constexpr double kNarrowest = 1.0 / 16;
-/// At most so many later polygons, from the front, may hide a polygon in a cell. Without a limit, a stack of n planes
-/// that each leave a sliver of the next takes n * n steps.
+/// The most later polygons of a cell, from the front-most on, that are tried as covers of a polygon. Without a limit, a
+/// stack of n planes that each leave a sliver of the next takes n * n steps.
 constexpr std::size_t kMostCovers = 4096;
 
 /// The cells in two halves along the longer axis.

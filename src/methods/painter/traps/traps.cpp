@@ -56,8 +56,8 @@ void write_whole(const TrapList& list, const Trap& trap, std::vector<glm::dvec2>
   }
 }
 
-/// Removes the corners from number `first` on that lie before a line across the side through `at`, and adds the point
-/// where the strip, which begins at `end`, crosses that line.
+/// The cutting line goes through `at`, perpendicular to the side. Removes the corners with number `first` and above
+/// that lie before the line, and adds the point where the rim of the strip, which starts at `end`, crosses the line.
 void cut_beginning(std::vector<glm::dvec2>& corners, std::size_t first, const glm::dvec2& at, const glm::dvec2& along,
                    const glm::dvec2& end) {
   const auto beyond = [&](const glm::dvec2& p) { return glm::dot(p - at, along); };
@@ -93,8 +93,8 @@ bool go_around(const Trap& first, const Trap& second, const glm::dvec2& corner) 
 
 /// A polygon in more cells of the grid may have thousands of others around it: each outline then has a list of its own.
 constexpr int kMostCells = 64;
-/// At most so many later polygons, from the front, may hide the surroundings of a polygon in a cell: a stack of n
-/// planes would take n * n steps. A trap that the first 4,096 do not hide is not made.
+/// The most later polygons of a cell, from the front-most on, that are tried as covers of a polygon's surroundings: a
+/// stack of n planes would take n * n steps. A trap that the first 4,096 do not hide is not made.
 constexpr std::size_t kMostHiders = 4096;
 
 /// Whether an outline has points next to the outer side of a way, at least OutlineClipper::thin away from it.

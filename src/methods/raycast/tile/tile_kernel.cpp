@@ -155,7 +155,7 @@ class TileCaster {
       const Waiting next = scratch_.stack[--waiting_];
       const auto bits = std::uint32_t(next >> 32), child = std::uint32_t(next);
       if (waiting_ > 0) frame_.tree.prefetch(std::uint32_t(scratch_.stack[waiting_ - 1]));
-      // Refreshes every few leaves: visiting a hidden leaf costs less than looking for it.
+      // Refreshes at every fourth leaf only: a visit to a hidden leaf costs less than a refresh.
       if (!(child & kLeafBit) || (++leaves_met_ & 3) == 0) buffer_.Refresh();
       if (bits_as<float>(bits) < buffer_.tile_farthest()) continue;
       if (child & kLeafBit) {

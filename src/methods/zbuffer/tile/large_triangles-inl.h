@@ -90,7 +90,7 @@ class LargeTriangles {
     SteepKeys steep;
   };
 
-  /// Keys of a block's pixels at one sample, a vector of a row at a time, for gentle planes.
+  /// Keys of a block's pixels at one sample, a vector of a row at a time, for planes that are not steep.
   class GentleRows {
    public:
     /// `first` is the sample of the block's first pixel, in 1/256 pixel of the tile.

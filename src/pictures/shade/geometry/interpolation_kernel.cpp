@@ -91,7 +91,7 @@ class VectorTriangles {
   const TriangleSetup* triangles_[kMaxLanes];
 };
 
-/// Lane form of barycentric() in geometry.h.
+/// barycentric() of geometry.h for vectors.
 struct Weights {
   VF3 weight;
   VF divisor;

@@ -324,7 +324,8 @@ class ObjReader {
     const std::string place = text_.place();
     if (names.empty()) return;
     if (!source_.has_folder()) {
-      scene_.warnings.push_back(place + ": " + printable(names) + " is not read, the model does not come from a file");
+      scene_.warnings.push_back(place + ": " + printable(names) +
+                                " is not read, because the model does not come from a file");
       return;
     }
     std::string reason;

@@ -226,7 +226,7 @@ class PlyStream final : public ModelStream {
   void keep_vertices() {
     if (face_offset_ - header_.size > max_kept_vertices)
       source_.fail_limit("header", "the vertices of a pipe are kept in memory, and these take more than " +
-                                       std::to_string(max_kept_vertices) + " bytes; stream from a file");
+                                       std::to_string(max_kept_vertices) + " bytes; give a file in place of the pipe");
     const std::size_t before = start_.size();
     if (face_offset_ > before) {
       start_.resize(std::size_t(face_offset_));

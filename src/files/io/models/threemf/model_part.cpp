@@ -264,7 +264,7 @@ class ModelPartReader : public XmlPart {
   void read_model(const TagReader& tags) {
     has_model_ = true;
     if (core_space_ != core)
-      part_.warnings.push_back(place() + ": model is not in the namespace of 3MF, and read as if it were");
+      part_.warnings.push_back(place() + ": model is not in the namespace of 3MF; it is read as if it were");
     if (const char* const required = tags.find("requiredextensions")) check_extensions(required);
     if (const char* const unit = tags.find("unit")) {
       const auto known =
