@@ -135,10 +135,11 @@ TEST_F(Messages, OfOutputs) {
        {"render cube.stl -o a.png --depth a.png",
         "a.png: two outputs have this name; only .exr files that are not deep hold several"},
        {"render cube.stl -o a.png --reference a.png", "a.png: is both the reference and an output"}});
-  expect_could_not({{"render cube.stl --format png -o folder", "folder: is a folder"},
-                    {"render cube.stl -o cube.stl/a.png", "cube.stl/a.png: cube.stl is not a folder"},
-                    {"lines builtin:teapot -o a.svg --tessellation-error 0.001 --resolution 8000,8000",
-                     "frontmost: builtin:teapot: teapot: instance 0, mesh 0: so small a tessellation error"}});
+  expect_could_not(
+      {{"render cube.stl --format png -o folder", "folder: is a folder"},
+       {"render cube.stl -o cube.stl/a.png", "cube.stl/a.png: cube.stl is not a folder"},
+       {"lines builtin:teapot -o a.svg --tessellation-error 0.001 --resolution 8000,8000",
+        "frontmost: builtin:teapot: teapot: instance 0, mesh 0: this tessellation error needs more than"}});
 }
 
 TEST_F(Messages, OfStreams) {

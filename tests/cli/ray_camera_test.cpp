@@ -193,7 +193,8 @@ TEST_F(RayCameras, ALidarNamesWhatIsWrong) {
   expect_failure("lidar cube.stl --from 0,0,0 --rings 0 -o a.ply", 2, "--rings");
   expect_failure("lidar cube.stl --from 0,0,0 --elevations 10,-10 -o a.ply", 2, "--elevations");
   expect_failure("lidar cube.stl --from 0,0,0 --directions short.txt --steps 4 -o a.ply", 2, "excludes --");
-  expect_failure("lidar cube.stl --from 0,0,0 --directions short.txt -o a.ply", 1, "short.txt: line 1: three numbers");
+  expect_failure("lidar cube.stl --from 0,0,0 --directions short.txt -o a.ply", 1,
+                 "short.txt: line 1: a direction needs three numbers");
   expect_failure("lidar cube.stl --from 0,0,0 --ring-elevations 0,91 -o a.ply", 2, "--ring-elevations");
   expect_failure("lidar cube.stl --from 0,0,0 --ring-elevations 0 --rings 2 -o a.ply", 2, "excludes --");
   expect_failure("lidar cube.stl --from 0,0,0 --azimuths -200,200 -o a.ply", 2, "more than a whole turn");

@@ -72,7 +72,8 @@ TEST_F(LineOfSight, JsonIsWrittenAsItIsMade) {
 TEST_F(LineOfSight, NamesWhatIsWrong) {
   write("short.txt", "1 2 3\n");
   write("words.txt", "1 2 3 4 5 six\n");
-  EXPECT_THAT(run({"sight", "cube.stl", "--pairs", "short.txt"}).err, HasSubstr("short.txt: line 1: six numbers"));
+  EXPECT_THAT(run({"sight", "cube.stl", "--pairs", "short.txt"}).err,
+              HasSubstr("short.txt: line 1: a pair of points needs six numbers"));
   EXPECT_THAT(run({"sight", "cube.stl", "--pairs", "words.txt"}).err, HasSubstr("words.txt: line 1: "));
   EXPECT_EQ(run({"sight", "cube.stl", "--pairs", "none.txt"}).status, 1);
   EXPECT_EQ(run({"sight", "cube.stl", "--from", "1,2,3"}).status, 2);

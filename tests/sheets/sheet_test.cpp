@@ -241,12 +241,13 @@ TEST_F(SheetOfBlock, WhatCannotBeMeantIsRefusedByTheNameOfItsField) {
 
 TEST_F(SheetOfBlock, AGivenViewHasNothingOfNamedOnes) {
   const View perspective = frame(surfaces_, 64, 48);
-  const std::pair<SheetOptions, const char*> refused[] = {{{.views = {V::front}}, "views: "},
-                                                          {{.sections = {{V::front}}}, "views: "},
-                                                          {{.dimensions = true}, "dimensions: "},
-                                                          {{.scale = 1}, "scale: in perspective"},
-                                                          {{.standard_scale = true}, "scale: in perspective"},
-                                                          {{.centre_lines = true}, "centre_lines: perspective"}};
+  const std::pair<SheetOptions, const char*> refused[] = {
+      {{.views = {V::front}}, "views: "},
+      {{.sections = {{V::front}}}, "views: "},
+      {{.dimensions = true}, "dimensions: "},
+      {{.scale = 1}, "scale: a perspective view has no scale"},
+      {{.standard_scale = true}, "scale: a perspective view has no scale"},
+      {{.centre_lines = true}, "centre_lines: perspective"}};
   for (const auto& [options, reason] : refused) {
     try {
       (void)draw_view(surfaces_, perspective, options);

@@ -54,10 +54,13 @@ TEST(PageChecks, PensAndLists) {
   expect_refused(changed([](PageGroup& g) { g.fills = {{}, {}}; }), "fills and paths");
   expect_refused(changed([](PageGroup& g) { g.paths[0].is_part = true; }), "part of none");
   expect_refused(changed([](PageGroup& g) { g.bulges = {0}; }), "bulges and points");
-  expect_refused(changed([](PageGroup& g) { g.paths[0].count = 4; }), "not there");
+  expect_refused(changed([](PageGroup& g) { g.paths[0].count = 4; }), "beyond the last one of the page");
   expect_refused(changed([](PageGroup& g) { g.paths[0].count = 0; }), "no points");
-  expect_refused(changed([](PageGroup& g) { g.paths[0] = {3, 1, false}; }), "not there");
-  expect_refused(changed([](PageGroup& g) { g.paths[0] = {2, 0xFFFFFFFFu, false}; }), "not there");
+  expect_refused(changed([](PageGroup& g) { g.paths[0] = {3, 1, false}; }), "beyond the last one of the page");
+  expect_refused(changed([](PageGroup& g) {
+                   g.paths[0] = {2, 0xFFFFFFFFu, false};
+                 }),
+                 "beyond the last one of the page");
 }
 
 TEST(PageFiles, AreTheSameEveryTimeAndForAnyNumberOfThreads) {

@@ -178,14 +178,14 @@ TEST(SceneErrors, CountsAreLimitedBeforeMemoryIsAskedFor) {
   // Each reference takes some thirty bytes, and would give a hundred and twenty thousand triangles.
   std::string cities = R"({"model": "builtin:city"})";
   for (int i = 0; i < 2000; ++i) cities += R"(,{"model": "builtin:city"})";
-  EXPECT_THAT(folder.error_of_object(cities), HasSubstr("far more than a file of this size should make"));
+  EXPECT_THAT(folder.error_of_object(cities), HasSubstr("far more than a file of this size can hold"));
   std::string copies;
   for (int i = 0; i < 400; ++i)
     copies += std::string(i ? "," : "") + R"({"model": "builtin:city", "material": "m)" + std::to_string(i) + "\"}";
   std::string looks;
   for (int i = 0; i < 400; ++i) looks += std::string(i ? "," : "") + "\"m" + std::to_string(i) + "\": {}";
   EXPECT_THAT(folder.error_of(R"({"materials": {)" + looks + R"(}, "objects": [)" + copies + "]}"),
-              HasSubstr("far more than a file of this size should make"));
+              HasSubstr("far more than a file of this size can hold"));
 }
 
 }  // namespace
