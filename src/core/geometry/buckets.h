@@ -46,7 +46,7 @@ class Buckets {
       first_[bucket] = std::uint32_t(count);
       for (std::vector<std::uint32_t>& places : next) count += std::exchange(places[bucket], std::uint32_t(count));
     }
-    if (count > 0xFFFFFFFFu) throw Error(ErrorCode::limit_exceeded, "mesh", "more than 4294967295 items to sort");
+    if (count > 0xFFFFFFFFu) throw Error(ErrorCode::limit_exceeded, "sorting", "more than 4294967295 items");
     first_[buckets] = std::uint32_t(count);
     items_ = Buffer<Item>(count);
     for_bands([&](std::vector<std::uint32_t>& places, std::size_t bucket, const Item& item) {

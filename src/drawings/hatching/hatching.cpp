@@ -445,14 +445,16 @@ std::vector<Stipple> stipple(const Surfaces& surfaces, const View& view, const S
   // Coincident dots of coinciding surfaces become one.
   const auto is_same = [](const HatchPiece& a, const HatchPiece& b) { return a.line == b.line && a.begin == b.begin; };
   pieces.erase(std::unique(pieces.begin(), pieces.end(), is_same), pieces.end());
-  std::vector<HatchLine> lines;  // without length
-  for (const HatchPiece& piece : pieces) {
-    const glm::dvec2 at = rows[0].point(piece.line, piece.begin);
-    lines.push_back({at, at, 0, piece.instance});
-  }
-  if (options.nearest_first) lines = in_pen_order(std::move(lines), execution);
   std::vector<Stipple> dots;
-  for (const HatchLine& line : lines) dots.push_back({line.from, line.instance});
+  dots.reserve(pieces.size());
+  for (const HatchPiece& piece : pieces) dots.push_back({rows[0].point(piece.line, piece.begin), piece.instance});
+  if (options.nearest_first) {
+    std::vector<HatchLine> lines;  // without length
+    lines.reserve(dots.size());
+    for (const Stipple& dot : dots) lines.push_back({dot.at, dot.at, 0, dot.instance});
+    lines = in_pen_order(std::move(lines), execution);
+    for (std::size_t i = 0; i < dots.size(); ++i) dots[i] = {lines[i].from, lines[i].instance};
+  }
   report_progress(execution, "hatching", 1);
   return dots;
 }

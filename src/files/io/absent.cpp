@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stands for formats whose library this build lacks. CMake defines FRONTMOST_NO_<FORMAT> for each of them.
 #include "io/images/formats.h"
-#include "io/models/gltf/data.h"
 #include "io/models/reader.h"
+#if defined(FRONTMOST_NO_DRACO) || defined(FRONTMOST_NO_MESHOPT)
+#include "io/models/gltf/data.h"
+#endif
 
 namespace frontmost {
 namespace {

@@ -24,6 +24,7 @@ KeptCorners kept_corners(std::size_t value_count, const std::vector<glm::uvec3>&
     numbers[i] = std::uint32_t(kept.values.size());
     kept.values.push_back(i);
   }
+  kept.triangles.reserve(triangles.size());
   for (const std::uint32_t triangle : triangles) {
     const glm::uvec3& c = corners[triangle];
     kept.triangles.emplace_back(numbers[c.x], numbers[c.y], numbers[c.z]);
@@ -49,11 +50,10 @@ Attribute<T> kept_attribute(const Attribute<T>& all, const KeptCorners& position
 }
 
 Mesh kept_mesh(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
-  const KeptCorners positions = kept_corners(mesh.positions.size(), mesh.triangles, triangles);
+  KeptCorners positions = kept_corners(mesh.positions.size(), mesh.triangles, triangles);
   Mesh kept;
   kept.name = mesh.name;
   kept.positions = kept_values(mesh.positions, positions);
-  kept.triangles = positions.triangles;
   kept.normals = kept_attribute(mesh.normals, positions, triangles);
   kept.texcoords = kept_attribute(mesh.texcoords, positions, triangles);
   for (const Attribute<glm::vec2>& set : mesh.further_texcoords)
@@ -65,6 +65,7 @@ Mesh kept_mesh(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
     for (const std::uint32_t triangle : triangles) kept.material_ids.push_back(mesh.material_ids[triangle]);
   }
   for (const std::uint32_t triangle : triangles) kept.face_ids.push_back(mesh.face_of(triangle));
+  kept.triangles = std::move(positions.triangles);
   return kept;
 }
 

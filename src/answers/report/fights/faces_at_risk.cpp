@@ -190,6 +190,9 @@ std::vector<ScreenFace> screen_faces(const Surfaces& surfaces, const View& view,
     }
   });
   std::vector<ScreenFace> faces;
+  std::size_t count = 0;
+  for (const std::vector<ScreenFace>& part : parts) count += part.size();
+  faces.reserve(count);
   for (const std::vector<ScreenFace>& part : parts) faces.insert(faces.end(), part.begin(), part.end());
   return faces;
 }

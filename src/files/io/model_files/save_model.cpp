@@ -10,6 +10,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 
 #include "io/binary.h"
@@ -336,13 +337,15 @@ WeldedCorners weld_corners(const Mesh& mesh, std::span<const std::uint32_t> tria
   keys.reserve(3 * triangles.size());
   for (const std::uint32_t triangle : triangles)
     for (int corner = 0; corner < 3; ++corner) keys.push_back(corner_key(mesh, triangle, corner));
-  WeldedCorners welded{keys, {}};
-  std::vector<CornerKey>& vertices = welded.vertices;
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  welded.indices.reserve(keys.size());
-  for (const CornerKey& key : keys)
-    welded.indices.push_back(std::uint32_t(std::lower_bound(vertices.begin(), vertices.end(), key) - vertices.begin()));
+  std::vector<std::uint32_t> order(keys.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return keys[a] < keys[b]; });
+  WeldedCorners welded;
+  welded.indices.resize(keys.size());
+  for (const std::uint32_t corner : order) {
+    if (welded.vertices.empty() || welded.vertices.back() != keys[corner]) welded.vertices.push_back(keys[corner]);
+    welded.indices[corner] = std::uint32_t(welded.vertices.size() - 1);
+  }
   return welded;
 }
 

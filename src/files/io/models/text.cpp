@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rare steps of reading text, kept out of line so that the loops over words stay short. Numbers that number.h does
-// not read inline: those with many digits or an exponent, by the library fast_float, and all
-// that C libraries ever printed for infinity and NaN.
+// The rare steps of reading text, kept out of line so that the loops over words stay short. The library fast_float
+// reads numbers with many digits or an exponent, which text.h does not read inline. All spellings of infinity and NaN
+// that C libraries print are known.
 //
 // D. Lemire. Number Parsing at a Gigabyte per Second. 2021.
 #include "io/models/text.h"

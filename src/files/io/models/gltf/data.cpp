@@ -361,7 +361,7 @@ void Data::read_sparse(const JsonValue& json, Accessor& accessor, std::size_t va
     const std::uint32_t index = sparse.index(i);
     if (index < least || index >= accessor.count)
       indices.fail("index " + std::to_string(i) + " is " + std::to_string(index) + ", which is " +
-                   (index < least ? "is not greater than the index before" : "not below the accessor's count"));
+                   (index < least ? "not greater than the index before" : "not below the accessor's count"));
     least = std::uint64_t(index) + 1;
   }
   accessor.sparse = sparse;
