@@ -66,7 +66,7 @@ glm::vec3 color_of_object(std::uint32_t object) {
 
 /// Shows opaque surfaces: color_at(geometry, i, triangle of fragment i) is a linear colour.
 template <class ColorAt>
-void show_opaque(const std::vector<TriangleSetup>& setups, FragmentBatch& batch, const ColorAt& color_at) {
+void show_opaque(const std::vector<TriangleSetup>& setups, FragmentBatch& batch, ColorAt color_at) {
   for (int i = 0; i < batch.coverage.count; ++i) {
     batch.light.set(i, color_at(batch.geometry, i, setups[batch.coverage.triangle[i]]));
     batch.material.alpha[i] = 1.0f;
@@ -75,7 +75,7 @@ void show_opaque(const std::vector<TriangleSetup>& setups, FragmentBatch& batch,
 }
 
 template <class ColorAt>
-FragmentShader::Colorist opaque_colorist(const ColorAt& color_at) {
+FragmentShader::Colorist opaque_colorist(ColorAt color_at) {
   return [color_at](const std::vector<TriangleSetup>& setups, FragmentBatch& batch) {
     show_opaque(setups, batch, color_at);
   };
