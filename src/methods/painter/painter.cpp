@@ -289,7 +289,7 @@ class Copies {
     auto end = begin;
     while (end != copies_.end() && end->of == id) ++end;
     if (begin == end || occluders.contain(id)) return {};
-    return {begin, end};
+    return {&*begin, std::size_t(end - begin)};
   }
 
   std::vector<Copy> copies_;  ///< sorted by originals; the copies of each from the lowest to the highest id
