@@ -64,11 +64,13 @@ ObjectCanvas::ObjectCanvas(const View& picture, const PixelRect& part)
 }
 
 std::span<const MeshRange> ranges_of(const PlacedScene& scene, std::uint32_t object) {
-  const auto range_at = [&](std::uint32_t instance) {
-    return std::partition_point(scene.ranges.begin(), scene.ranges.end(),
-                                [&](const MeshRange& range) { return range.instance < instance; });
+  const std::span<const MeshRange> all(scene.ranges);
+  const auto first_of = [&](std::uint32_t instance) {
+    const auto is_before = [&](const MeshRange& range) { return range.instance < instance; };
+    return std::size_t(std::partition_point(all.begin(), all.end(), is_before) - all.begin());
   };
-  return {range_at(object), range_at(object + 1)};
+  const std::size_t first = first_of(object);
+  return all.subspan(first, first_of(object + 1) - first);
 }
 
 ObjectMask::ObjectMask(const PlacedScene& scene, const ObjectCanvas& canvas, Isa isa)

@@ -83,8 +83,8 @@ class BitSet {
 /// large_primitives() by the first samples.
 [[nodiscard]] inline BitSet large_primitives(std::size_t primitive_count, const Visible& visible,
                                              const Execution& execution, BitSet memory = {}) {
-  return large_primitives(primitive_count, std::span(visible.primitives).first(visible.view.pixel_count()),
-                          visible.view.width, execution, std::move(memory));
+  return large_primitives(primitive_count, {visible.primitives.data(), visible.view.pixel_count()}, visible.view.width,
+                          execution, std::move(memory));
 }
 
 /// For every material of the scene, whether a seen triangle that is not in `known` has it. O(primitives / 64 + new
