@@ -23,8 +23,8 @@ TEST(TooMuch, SliversThroughOnePointOfAPlane) {
   const View view = frame(surfaces, 3840, 2160, {.direction = NamedView::iso});
   const std::string refusal = refusal_of(ErrorCode::limit_exceeded, [&] { (void)draw_lines(surfaces, view); });
   EXPECT_TRUE(
-      refusal.starts_with("lines: too many triangles come near each other to find where they pass through each "
-                          "other: most of them, "))
+      refusal.starts_with("lines: too many triangles are close to each other to find where they intersect: most of "
+                          "them, "))
       << refusal;
 }
 

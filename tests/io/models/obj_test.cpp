@@ -101,8 +101,9 @@ TEST(Obj, FacesMayComeBeforeTheirVertices) {
 
 TEST(Obj, CloudsOfPointsAreCounted) {
   const Scene vertices = load_text("v 0 0 0\nv 1 0 0 1 0 0\nv 2 0 0\n");
-  EXPECT_THAT(vertices.warnings, ElementsAre("model: the file holds no triangles; its 3 points have no surface that "
-                                             "hides anything"));
+  EXPECT_THAT(vertices.warnings,
+              ElementsAre("model: the file holds no triangles; its 3 points are not drawn, because a "
+                          "point has no surface"));
   EXPECT_EQ(vertices.meshes.at(0).colors.values.at(1), glm::vec4(1, 0, 0, 1));
   const Scene points = load_text("o cloud\nv 0 0 0\nv 1 0 0\np 1\np 2\n");
   EXPECT_THAT(points.warnings, ElementsAre(HasSubstr("statements \"p\" are passed over"), HasSubstr("its 2 points")));

@@ -38,8 +38,8 @@ TEST(Ply, CloudsOfPointsAreCounted) {
       "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
       "0 0 0\n1 1 1\n");
   EXPECT_THAT(scene.warnings,
-              testing::ElementsAre("model: the file holds no triangles; its 2 points have no surface that "
-                                   "hides anything"));
+              testing::ElementsAre("model: the file holds no triangles; its 2 points are not drawn, because a "
+                                   "point has no surface"));
 }
 
 TEST(Ply, TrianglesAloneNeedNoFaceIds) {
