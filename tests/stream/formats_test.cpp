@@ -122,7 +122,7 @@ TEST_F(StreamFormats, PipesThatPromiseTooMuchAreRefusedBeforeMemoryIsAskedFor) {
   const std::string ply = bytes_of(seed("many_vertices.ply"));
   std::string many = ply;
   many.replace(many.find("vertex 1200"), 11, "vertex 4000000000");
-  EXPECT_THAT(error_of_pipe(many, ModelFormat::ply), testing::HasSubstr("stream from a file"));
+  EXPECT_THAT(error_of_pipe(many, ModelFormat::ply), testing::HasSubstr("give a file in place of the pipe"));
   EXPECT_THAT(error_of_pipe(ply.substr(0, 5000), ModelFormat::ply),
               testing::ContainsRegex("vertex [0-9]+: the file ends within the row"));
   EXPECT_THAT(error_of_pipe(ply.substr(0, ply.size() - 1), ModelFormat::ply),
