@@ -56,7 +56,7 @@ constexpr ComparedMethod all_methods[] = {
      answer_by_painter<PaintMethod::depth_sort>},
     {"painter-centroid", "Painter's, by centroids",
      "The painter's algorithm with polygons sorted only by their centroids, as in simple programs: wrong where "
-     "centroids do not decide.",
+     "the order of centroids is not the order of hiding.",
      answer_by_painter<PaintMethod::centroid>, nullptr, true},
 };
 

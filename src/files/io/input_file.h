@@ -31,7 +31,7 @@ class InputFile {
   /// `name` stands for the file in messages. \throws Error file_unreadable or limit_exceeded.
   static InputFile open(const std::filesystem::path& path, const std::string& name,
                         std::uint64_t max_bytes = max_file_bytes);
-  /// The same for a path of the user's: "-" is standard input.
+  /// Opens a path that a user gave: "-" is standard input. Otherwise like open().
   static InputFile open_input(const std::string& path, std::uint64_t max_bytes = max_file_bytes);
 
   [[nodiscard]] std::span<const std::byte> bytes() const { return {data_.get(), size_}; }

@@ -95,7 +95,7 @@ struct Stream::State {
                     "standard input and pipes can be read only once, and this takes another pass");
       models.rewind();
     }
-    // As many workers as the memory for pieces allows; they share the threads.
+    // The memory for pieces limits the number of workers, which share the threads.
     constexpr std::size_t memory = std::size_t(512) << 20, bytes_per_triangle = 220, bytes_per_sample = 8;
     const std::size_t each = options.triangles_at_once * bytes_per_triangle + samples * bytes_per_sample;
     const int workers = std::min(thread_count(execution), int(std::max<std::size_t>(memory / each, 1)));

@@ -102,21 +102,28 @@ struct ProbeHit {
   }
 };
 
-/// Tests a triangle of an object at the probes.
-void cast(const TriangleRecord& record, std::uint32_t object, const PlacedScene& scene, const ObjectCanvas& canvas,
-          const std::vector<SampleProbe>& probes, const ProbeGrid& grid, std::vector<ProbeHit>& hits) {
-  const View& view = canvas.view;
-  grid.visit(pixel_rect(record, view.width, view.height), [&](std::uint32_t number) {
-    const SampleProbe& probe = probes[number];
-    const glm::ivec2 offset = sample_offsets(view.samples)[std::size_t(probe.sample)];
-    visit_covered(record, {probe.x, probe.y, probe.x, probe.y}, offset, [&](int, int) {
-      const int x = probe.x * kSubPixels + offset.x, y = probe.y * kSubPixels + offset.y;
-      const bool may_be_hole = scene.cutouts && scene.cutouts->has(record.id);
-      if (may_be_hole && ScreenCutout((*scene.cutouts)[record.id], canvas.rays).is_hole(x, y)) return;
-      hits.push_back({number, object, TriangleKeys(record).at(x, y), record.id});
+/// The probes of a view, at which triangles are tested.
+struct ProbedView {
+  const PlacedScene& scene;
+  const ObjectCanvas& canvas;
+  const std::vector<SampleProbe>& probes;
+  const ProbeGrid grid;
+
+  /// Adds the probes that a triangle of an object covers to `hits`.
+  void add_hits(const TriangleRecord& record, std::uint32_t object, std::vector<ProbeHit>& hits) const {
+    const View& view = canvas.view;
+    grid.visit(pixel_rect(record, view.width, view.height), [&](std::uint32_t number) {
+      const SampleProbe& probe = probes[number];
+      const glm::ivec2 offset = sample_offsets(view.samples)[std::size_t(probe.sample)];
+      visit_covered(record, {probe.x, probe.y, probe.x, probe.y}, offset, [&](int, int) {
+        const int x = probe.x * kSubPixels + offset.x, y = probe.y * kSubPixels + offset.y;
+        const bool may_be_hole = scene.cutouts && scene.cutouts->has(record.id);
+        if (may_be_hole && ScreenCutout((*scene.cutouts)[record.id], canvas.rays).is_hole(x, y)) return;
+        hits.push_back({number, object, TriangleKeys(record).at(x, y), record.id});
+      });
     });
-  });
-}
+  }
+};
 
 /// Chooses a few samples of each object, spread over the part of the picture that it covers. `canvas` has no margin.
 std::vector<SampleProbe> choose_probes(const PlacedScene& scene, const ObjectCanvas& canvas,
@@ -141,14 +148,14 @@ std::vector<std::vector<std::uint32_t>> find_before(const PlacedScene& scene, co
                                                     const std::vector<SampleProbe>& probes,
                                                     const Execution& execution) {
   constexpr std::size_t kRangesAtOnce = 16;
-  const ProbeGrid grid(probes, canvas.view);
+  const ProbedView probed{scene, canvas, probes, ProbeGrid(probes, canvas.view)};
   std::vector<std::vector<ProbeHit>> parts((scene.ranges.size() + kRangesAtOnce - 1) / kRangesAtOnce);
   Pool<RecordPlacer> placers;
   parallel_for(execution, scene.ranges.size(), kRangesAtOnce, [&](std::size_t begin, std::size_t end) {
     const auto placer = placers.borrow([&] { return std::make_unique<RecordPlacer>(scene, canvas, execution.isa); });
     for (std::size_t i = begin; i < end; ++i)
       placer->visit(scene.ranges[i], [&](const TriangleRecord& record) {
-        cast(record, scene.ranges[i].instance, scene, canvas, probes, grid, parts[begin / kRangesAtOnce]);
+        probed.add_hits(record, scene.ranges[i].instance, parts[begin / kRangesAtOnce]);
       });
   });
   constexpr ProbeHit kNothing{0, no_index, -1, no_primitive};

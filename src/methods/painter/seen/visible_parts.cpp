@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is visible of polygons, clipped one by one by the union of the occluders before them: visible_parts() of an
-// order, and without_hidden() before there is an order. A polygon in few cells of the grid is clipped by the occluders
-// in these cells. Any other polygon is halved along the cells; halves that are wholly visible are joined again.
+// The visible parts of polygons. Each polygon is clipped by the union of the occluders in front of it: visible_parts()
+// clips the polygons of an order, without_hidden() those that have no order yet. A polygon in few cells of the grid is
+// clipped by the occluders in these cells. Any other polygon is halved along the cells; halves that are wholly visible
+// are joined again.
 //
 // Inside a machine nearly everything is hidden. Ordering the hidden parts would take most of the time, because parts
 // pass through each other there. One of Newell's plane tests often tells which of two pieces is before the other
