@@ -132,7 +132,8 @@ Settings parse_command_line(const Command& command, std::span<const char* const>
   }
   if (command.takes_object() && object.empty())
     throw UsageError(
-        fmt::format("no OBJECT given: its name or its number, as frontmost report {} lists them", settings.model));
+        fmt::format("no OBJECT given; give the name or the number of an object, as frontmost report {} lists them",
+                    settings.model));
   return settings;
 }
 

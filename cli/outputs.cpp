@@ -65,8 +65,8 @@ void add(std::vector<FileToWrite>& files, const FileToWrite& added) {
   const bool shareable = added.format == ImageFormat::exr && path != "-" && added.layer == same->layer &&
                          !is_deep(kind) && !is_deep(same->kinds.front());
   if (!shareable || std::find(same->kinds.begin(), same->kinds.end(), kind) != same->kinds.end()) {
-    throw UsageError(
-        fmt::format("{}: two outputs have this name; only .exr files that are not deep hold several", path));
+    throw UsageError(fmt::format(
+        "{}: two outputs have this name; only an .exr file that is not deep can hold several outputs", path));
   }
   same->kinds.push_back(kind);
 }

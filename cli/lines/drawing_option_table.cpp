@@ -44,7 +44,7 @@ Paper paper_from(std::string_view text) {
   try {
     return named_paper(text);
   } catch (const Error& error) {
-    throw UsageError(fmt::format("{}; W,H in millimetres; or fit", error.what()));
+    throw UsageError(fmt::format("{}; or give W,H in millimetres, or the word fit", error.what()));
   }
 }
 

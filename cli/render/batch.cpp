@@ -213,7 +213,7 @@ std::vector<Settings> parse_batch(const std::string& text, const std::string& na
   if (!json.is_object()) root.refuse("must be an object with views");
   for (const auto& [key, value] : json.items()) {
     if (key != "views" && key != "outputs")
-      root.refuse(fmt::format("{}: is not known; views and outputs are", shortened(key)));
+      root.refuse(fmt::format("{}: is not known; the known keys are views and outputs", shortened(key)));
   }
   Settings common = defaults;
   if (json.contains("outputs")) apply_object({json.at("outputs"), name + ": outputs"}, belongs_to_outputs, {}, common);

@@ -133,7 +133,7 @@ TEST_F(Messages, OfOutputs) {
        {"render cube.stl -o a.png --layers 2", "--layers: no output has {layer} in its name"},
        {"render cube.stl -o cube.stl", "cube.stl: "},
        {"render cube.stl -o a.png --depth a.png",
-        "a.png: two outputs have this name; only .exr files that are not deep hold several"},
+        "a.png: two outputs have this name; only an .exr file that is not deep can hold several outputs"},
        {"render cube.stl -o a.png --reference a.png", "a.png: is both the reference and an output"}});
   expect_could_not(
       {{"render cube.stl --format png -o folder", "folder: is a folder"},

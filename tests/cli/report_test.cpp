@@ -78,7 +78,7 @@ TEST_F(Report, ExplainIsACommandThatSaysTheSame) {
             "near is seen, 75 % of it, 25 % beyond the frame.\n");
   EXPECT_EQ(succeed(std::string("explain squares.obj away --json") + view).json(),
             succeed(std::string("report squares.obj --why away --json") + view).json());
-  expect_failure("explain squares.obj", 2, "no OBJECT given: its name or its number");
+  expect_failure("explain squares.obj", 2, "no OBJECT given; give the name or the number");
   expect_failure("explain", 2, "no MODEL given");
   expect_failure("explain squares.obj far near", 2, "two objects are given, 'far' and 'near'");
   expect_failure("explain squares.obj 3", 2, "squares.obj has no object 3; frontmost report lists all 3");

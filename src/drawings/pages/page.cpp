@@ -43,7 +43,8 @@ void check_group(const PageGroup& group, const std::string& where) {
   for (const PagePath& path : group.paths)
     if (path.count == 0 || path.first >= group.points.size() || path.count > group.points.size() - path.first)
       refuse(where, "a path has no points, or points beyond the last one of the page");
-  if (!group.paths.empty() && group.paths[0].is_part) refuse(where, "the first path is part of none");
+  if (!group.paths.empty() && group.paths[0].is_part)
+    refuse(where, "the first path is part of a path, but there is none before it");
 }
 
 /// The size of a pixel in style sheets, so that a figure is as large on a page as the picture in a browser.

@@ -175,7 +175,7 @@ class PlyAsciiRows {
     row_ = row;
     if (started_) text_.next_line();
     started_ = true;
-    if (!text_.to_word()) fail("the file ends before the row");
+    if (!text_.to_word()) fail("the file ends before this row");
   }
   float number(PlyType) {
     float value = 0;
