@@ -13,8 +13,8 @@
 namespace frontmost {
 
 struct AbufferOptions {
-  /// Sub-samples of a pixel. 0: the view's samples (View::samples, at sample_offsets()); 2, 4 or 8: a regular grid with
-  /// as many rows and columns.
+  /// Sub-samples of a pixel. 0: the view's samples (View::samples, at sample_offsets()); n = 2, 4 or 8: a regular grid
+  /// of n rows and n columns.
   int grid = 0;
   /// Multiplies every opacity, 0 to 1. Below 1 nothing is opaque, so all fragments are kept.
   float opacity = 1.0f;
@@ -27,13 +27,13 @@ struct Fragment {
   PrimitiveId primitive = no_primitive;
   float key = 0;                 ///< at the pixel's centre, within the triangle's range; as in Visible::keys
   float key_dx = 0, key_dy = 0;  ///< change of the key per pixel to the right and down
-  float opacity = 1;             ///< the material's without its texture, times AbufferOptions::opacity
+  float opacity = 1;             ///< opacity of the material without its texture, times AbufferOptions::opacity
 };
 
-/// The fragments of every pixel, nearer first; at equal keys at the centre, the lower id first. Fragments that lie
-/// wholly behind an opaque one covering the whole pixel are left out. If 64 x 64 pixels have more than 2^18 fragments,
-/// coincident triangles of higher id than an opaque one are left out as well. A clipped triangle may have several
-/// fragments in a pixel, with disjoint masks.
+/// The fragments of every pixel, ordered by their keys at the pixel's centre, nearer first; at equal keys, the lower id
+/// first. Fragments that lie wholly behind an opaque one covering the whole pixel are left out. If 64 x 64 pixels have
+/// more than 2^18 fragments, coincident triangles of higher id than an opaque one are left out as well. A clipped
+/// triangle may have several fragments in a pixel, with disjoint masks.
 struct FragmentLists {
   View view;
   std::vector<glm::ivec2> samples;  ///< positions of the mask's bits, in 1/256 pixel from the pixel's top left corner
@@ -46,11 +46,11 @@ struct FragmentLists {
   }
 };
 
-/// The most fragments that abuffer() returns: 2^30, 32 GiB. In every function here, a pixel has at most 2^20 - 1.
-/// Functions process at most 2^28 fragments and 1,024 more per triangle, up to 2^30; or 64 per pixel, if that is more.
-/// The number of fragments is estimated from the areas of triangles before gathering, and includes hidden ones. Of
-/// coincident opaque triangles only the lowest id counts. Other coincident triangles all count, but in visible_layers()
-/// only as many as there are layers. In count_fragments() all count.
+/// The most fragments that abuffer() returns: 2^30, 32 GiB. In every function here, a pixel has at most 2^20 - 1. A
+/// function processes at most 2^28 fragments plus 1,024 per triangle, or 64 per pixel if that is more, and never more
+/// than 2^30. The number of fragments is estimated from the areas of triangles before gathering, and includes hidden
+/// ones. Of coincident opaque triangles only the lowest id counts. Other coincident triangles all count, except that
+/// visible_layers() counts only as many as there are layers. count_fragments() counts every triangle.
 inline constexpr std::uint64_t most_fragments = std::uint64_t(1) << 30;
 
 /// \returns all fragments of a view: 32 bytes each, and twice that during the call. O(triangles + n log^2 n for lists
@@ -63,7 +63,7 @@ inline constexpr std::uint64_t most_fragments = std::uint64_t(1) << 30;
 /// Numbers of fragments that the A-buffer processes for a view.
 struct FragmentCounts {
   std::uint64_t fragments = 0;  ///< fragments of all pixels, including those behind opaque ones
-  std::uint32_t longest = 0;    ///< the most in one pixel
+  std::uint32_t longest = 0;    ///< greatest number of fragments in one pixel
 };
 
 /// Counts fragments without storing them: the depth complexity of a picture, and an upper bound for abuffer().

@@ -31,7 +31,7 @@ enum class ErrorCode : std::uint8_t {
 };
 
 /// The exception thrown by every public function that can be given bad input. what() joins file, place and reason with
-/// ": ", without the empty ones: "engine.stl: triangle 41: its third corner is not a number".
+/// ": " and leaves out empty ones: "engine.stl: triangle 41: its third corner is not a number".
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, std::string reason);
@@ -83,7 +83,7 @@ struct Execution {
 /// Number of a triangle, counted over all instances in scene order.
 using PrimitiveId = std::uint32_t;
 inline constexpr std::uint32_t no_primitive = 0xFFFFFFFFu;
-/// "None" as an index of materials, textures, objects and everything else.
+/// Index that stands for "none", for materials, textures, objects and everything else.
 inline constexpr std::uint32_t no_index = 0xFFFFFFFFu;
 
 /// False if a coordinate is NaN or infinite: such a coordinate times 0 is NaN, and NaN is not 0.
@@ -204,8 +204,8 @@ class StagedFolder {
   [[nodiscard]] std::string path(const std::string& name) const { return (staged_ / name).string(); }
   /// Replaces the hidden folder at the beginning of `path` by the final folder; returns other texts unchanged.
   [[nodiscard]] std::string told(const std::string& path) const;
-  /// Moves the files to the final folder, in this order, which takes no further disk space. Existing files are
-  /// replaced, also those at the end of links; their permissions are kept.
+  /// Moves the files of these names to the final folder, in this order. Takes no further disk space. Existing files are
+  /// replaced, even if `names` leads to them by a link; their permissions are kept.
   /// \throws Error file_unwritable.
   void commit(const std::vector<std::string>& names) const;
 

@@ -34,10 +34,10 @@ class ImageDecoder {
 };
 
 struct LoadOptions {
-  std::optional<ModelFormat> format;  ///< none: by suffix, or by content if that tells none
-  std::optional<Axis> up;             ///< none: the scene file's, or the format's: z for STL and 3MF, y for others
-  const ImageDecoder* image_decoder = nullptr;  ///< borrowed during load(); null: PNG, JPEG and WebP
-  /// Folders, beside its own, in or below which a scene file may name models and poses.
+  std::optional<ModelFormat> format;            ///< none: found by suffix, or by content if the suffix names no format
+  std::optional<Axis> up;                       ///< none: by scene file, or by format: z for STL and 3MF, y for others
+  const ImageDecoder* image_decoder = nullptr;  ///< borrowed during load(); null: PNG, JPEG, WebP only
+  /// Further folders in or below which a scene file may name models and poses. Its own folder needs no entry.
   std::vector<std::string> allow_outside{};
 };
 
@@ -50,8 +50,8 @@ struct LoadOptions {
 /// \throws Error file_unreadable, file_malformed, unsupported or limit_exceeded: "name: place: reason".
 [[nodiscard]] Scene load(const std::string& path, const LoadOptions& options = {}, const Execution& execution = {});
 
-/// Reads a model from memory, with the same origin; `name` stands for the file in messages. Files that the model names
-/// are not read.
+/// Reads a model from memory, and sets the origin in the same way; `name` stands for the file in messages. Files that
+/// the model names are not read.
 [[nodiscard]] Scene load(std::span<const std::byte> bytes, const std::string& name, const LoadOptions& options = {},
                          const Execution& execution = {});
 
@@ -87,16 +87,16 @@ struct SaveOptions {
   int quality = 90;  ///< JPEG and WebP: 1 to 100; higher is closer to the picture, and larger
 };
 
-/// Writes an image; "-" is standard output. A file at `path` stays as it is until the new one is complete, and if
-/// writing fails. The bytes do not depend on the number of threads.
+/// Writes an image; "-" is standard output. An existing file at `path` is replaced when the new file is complete, and
+/// stays if writing fails. The bytes do not depend on the number of threads.
 /// \throws Error file_unwritable; unsupported for channels or alpha that the format cannot hold, and for EXR or WebP in
 /// a build without it; limit_exceeded for ids above 65534 and depths above 65535 / depth_scale in PNG, sides above
 /// 65500 pixels in JPEG or 16383 in WebP; bad_argument for `bits` or `quality` out of range.
 void save(const Image& image, const std::string& path, const SaveOptions& options = {},
           const Execution& execution = {});
 
-/// Writes a bitmap as PNG, JPEG or WebP, with the bytes of the same image. Only the format and the quality count among
-/// the options.
+/// Writes a bitmap as PNG, JPEG or WebP. The file has the same bytes as for the Image of the same picture. Of the
+/// options, only the format and the quality are used.
 void save(const Bitmap& bitmap, const std::string& path, const SaveOptions& options = {},
           const Execution& execution = {});
 
@@ -125,8 +125,8 @@ void save_text(std::string_view text, const std::string& path);
 /// Reads an environment: an equirectangular picture of any format that load_image() reads, mostly Radiance (.hdr) or
 /// OpenEXR. Rows go from straight up to straight down, columns once around to the right, as in a Panorama. The result
 /// has float channels R, G, B: linear light, 0 to max_environment_value. Alpha is ignored; a grey picture (Y) gives
-/// three equal channels. NaN and negative values are read as 0, infinity as 65504 (the greatest half float, which
-/// overflowed), and greater values as the maximum.
+/// three equal channels. NaN and negative values are read as 0. Infinity, an overflow of half floats, is read as 65504,
+/// the greatest half float. Values above max_environment_value are read as the maximum.
 /// \throws Error as load_image() does; unsupported without such channels, or if the picture is not twice as wide as
 /// high: cube maps and mirror balls are not environments.
 [[nodiscard]] Image load_environment(const std::string& path);

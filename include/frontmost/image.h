@@ -40,7 +40,7 @@ struct Image {
   [[nodiscard]] Channel* find(std::string_view name);
 };
 
-/// A picture with any number of samples per pixel, one behind the other; OpenEXR calls it deep.
+/// A picture with any number of samples per pixel, one behind the other: a deep image, as OpenEXR calls it.
 struct DeepImage {
   int width = 0, height = 0;
   /// Index of each pixel's first sample, rows top to bottom, and the total at the end. Nearer samples come first.
@@ -74,9 +74,10 @@ void validate(const Bitmap& bitmap);
 /// The greatest value of a pixel of an environment (pictures.h). Sums over all pixels stay far within a float's range.
 inline constexpr float max_environment_value = 16777216.0f;
 
-/// Maps of a Visible's sample 0, with one channel each. "Z" is the planar depth; `background` where nothing is seen.
+/// A map of sample 0 of each pixel, with one channel "Z": the planar depth, or `background` where nothing is seen.
 [[nodiscard]] Image depth_image(const Visible& visible, float background = std::numeric_limits<float>::infinity());
-/// "distance" is the distance along the ray from eye to sample in perspective, and the depth in parallel projection.
+/// A map of sample 0 with one channel "distance": in perspective the distance along the ray from the eye to the
+/// surface, in parallel projection the planar depth.
 [[nodiscard]] Image ray_distance_image(const Visible& visible,
                                        float background = std::numeric_limits<float>::infinity());
 
@@ -98,7 +99,7 @@ enum class IdKind : std::uint8_t { primitive, object, material };
 /// A hash of size, channel names, values, and the number of samples of every pixel.
 [[nodiscard]] std::uint64_t content_hash(const DeepImage& image);
 
-/// Differences of an image from a reference. The difference of two pixels is the greatest of all channels:
+/// Differences of an image from a reference. The difference of two pixels is the greatest difference of any channel:
 /// - R, G, B, A: the difference in 8-bit sRGB with straight alpha, divided by 255; an image without A is opaque;
 /// - other floats (depths, directions): the absolute difference; equal infinities and two NaNs do not differ;
 /// - ids: 1 if they differ.

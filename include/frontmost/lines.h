@@ -31,11 +31,12 @@ inline constexpr int edge_kind_count = 5;
 
 struct LineOptions {
   /// Radians, 0 to pi: an edge is a crease if the normals of its triangles differ by more, but never if the triangles
-  /// are coplanar. None: an edge is a crease if it bends by at least 18 degrees more than half of what each surface
-  /// bends by at its next edge. 12 degrees suffice if both surfaces bend evenly and by at most half as much as the
-  /// edge, 9 degrees if a crease continues along the edge. Slivers take the normals of their surfaces. Triangles at
-  /// more than 34 degrees always form a crease, those at less than 15 never. One or two edges that end in the air are
-  /// no crease, unless they are longer than a twentieth of the scene's diagonal.
+  /// are coplanar. None: the angle at the edge is compared with the angles at the next edges of both surfaces. The edge
+  /// is a crease if its angle exceeds half of each of these angles by at least 18 degrees. 12 degrees suffice if both
+  /// surfaces bend evenly and by at most half as much as the edge, 9 degrees if a crease continues along the edge.
+  /// Slivers get the normals of the surfaces around them. Triangles at more than 34 degrees always form a crease, those
+  /// at less than 15 never. A crease of one or two edges that ends in the air is dropped, unless it is longer than a
+  /// twentieth of the scene's diagonal.
   std::optional<double> crease_angle = std::nullopt;
   /// True: DrawnPart::hidden_by counts surfaces. False: it is 0 or 1, which costs less.
   bool counts_hidden = false;
@@ -87,10 +88,10 @@ struct Drawing {
 //   edge and the short edges that meet it, the long edge's triangle counts as split at the vertices on that edge. The
 //   seam is then drawn like any other edge, or not at all if the surface continues. An unfilled T-junction is open: its
 //   edges are boundaries.
-// - Duplicates. A triangle that occurs again, with its vertices in any order, counts once. Objects may share triangles
-//   and then part, such as a housing and its cover; surfaces of one object may do so, too. Each of them then continues
-//   by itself, and their common edge is drawn once, with the kind that comes first in EdgeKind. So no line is drawn
-//   where two objects, each smooth, pass through each other exactly along a common edge.
+// - Duplicates. A triangle that occurs again, with its vertices in any order, counts once. Two objects, such as a
+//   housing and its cover, may share triangles up to an edge and part there; so may two surfaces of one object. Each of
+//   the two then continues by itself, and their common edge is drawn once, with the kind that comes first in EdgeKind.
+//   So no line is drawn where two objects, each smooth, pass through each other exactly along a common edge.
 
 /// Finds the feature edges of `surfaces` and cuts each into seen and hidden parts. The result is the same to the bit
 /// for any number of threads and every instruction set. Near-linear: each edge is tested against triangles in the cells
@@ -128,8 +129,8 @@ struct StrokeOptions {
   double tolerance = 0.01;  ///< pixels, 0.0001 to 1: greatest distance of a stroke from its parts
   /// Pixels, 0 to 100. Above 0: four or more consecutive parts become an arc if their ends lie within this distance of
   /// a circle, at most 20 degrees apart. Polygons of up to 17 sides stay polygons. The arc also stays within this
-  /// distance of each part, unless two of the six parts nearest to it (three before, three after) are at least half as
-  /// long.
+  /// distance of a part, unless two of the six parts around that part (three before, three after) are at least half as
+  /// long as the part.
   double arc_tolerance = 0;
   /// Pixels, 0 to 10000: a shorter stroke is left out if it ends in the air, or lies between lines that continue
   /// without it. Pieces of silhouettes and boundaries that close an outline stay.
@@ -151,21 +152,21 @@ struct Stroke {
 
 struct Strokes {
   std::vector<glm::dvec2> points;  ///< pixels, as in DrawnPart
-  /// Empty without arcs. Otherwise one for each point, for the join that begins there: the tangent of a quarter of the
-  /// arc's angle, positive from +x towards +y, at most about 1; 0: straight.
+  /// Empty if no stroke has arcs. Otherwise one value for each point, for the join from that point to the next: the
+  /// tangent of a quarter of the arc's angle, positive from +x towards +y, at most about 1; 0: straight.
   std::vector<double> bulges;
   /// Hidden strokes first; then by outline, kind and instance.
   std::vector<Stroke> strokes;
 };
 
 /// Joins parts of one class (seen or hidden, outline, kind, instance) into strokes wherever exactly two of them meet.
-/// Every line is drawn once: of parts that coincide, as edges behind each other in parallel projection, one is kept, a
-/// seen one before a hidden one. Edges that are seen as points are left out. Near-linear in the parts; more if
-/// thousands crowd within a pixel. \throws Error bad_argument for tolerances out of range.
+/// Every line is drawn once: of coinciding parts, such as edges behind each other in parallel projection, one is kept,
+/// and a seen part is preferred to a hidden one. Edges that are seen as points are left out. Near-linear in the parts;
+/// more if thousands crowd within a pixel. \throws Error bad_argument for tolerances out of range.
 [[nodiscard]] Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options = {},
                                     const Execution& execution = {});
 
-// Hatching and stippling: the darkness of surfaces, in pen lines and dots on what is seen of them.
+// Hatching and stippling: pen lines and dots that show the darkness of visible surfaces.
 //
 //    bright      half dark      darker        in shadow
 //                /   /   /    / / / / / /     X X X X X X
@@ -178,9 +179,9 @@ struct Strokes {
 /// Brightness of surfaces: the cosine of the angle between normal and light; 0 in shadow, and for surfaces turned away.
 /// Both sides of a surface are lit.
 ///
-/// The normal at a vertex is the mean of the object's triangles there whose normals differ from the triangle's own by
-/// at most the crease angle. Brightness therefore changes smoothly wherever no crease is drawn. Normals of the model's
-/// file are ignored.
+/// The normal of a triangle at one of its vertices is the mean over those of the object's triangles there whose normals
+/// differ from the triangle's own normal by at most the crease angle. Brightness therefore changes smoothly wherever no
+/// crease is drawn. Normals of the model's file are ignored.
 struct ToneOptions {
   /// Direction towards the light, world space, any length but zero. None: from the upper left in front of the
   /// picture, as the key light of shade().
@@ -199,8 +200,8 @@ struct HatchSet {
   std::vector<std::uint32_t> materials{};
 };
 
-/// Three sets that give four tones: paper; lines `spacing` apart where it is half dark; twice as many where it is
-/// darker; crossed by other lines in shadow.
+/// Three sets that give four tones: bare paper where surfaces are bright; lines `spacing` apart where they are half
+/// dark; twice as many lines where they are darker; in shadow, other lines that cross these.
 [[nodiscard]] std::vector<HatchSet> hatch_sets(double spacing, double angle);
 
 struct HatchOptions {
@@ -225,8 +226,8 @@ struct HatchLine {
 // enters shadow, in the view of the light. The brightness crosses HatchSet::below at a root of a quadratic equation.
 // Nothing is sampled. Pieces that meet are joined, and lie on their line up to the rounding of doubles.
 
-/// The pieces of hatch lines that lie on visible, dark parts of `surfaces`: by set, then by line, from one end to the
-/// other. The result is the same to the bit for any number of threads and every instruction set. O(segments), one for
+/// The pieces of hatch lines that lie on visible, dark parts of `surfaces`, sorted by set, then by line, then along the
+/// line. The result is the same to the bit for any number of threads and every instruction set. O(segments), one for
 /// each triangle and line over it, beside the grids of occluders of draw_lines().
 /// (G. Winkenbach, D. Salesin. Computer-Generated Pen-and-Ink Illustration. 1994; E. Praun, H. Hoppe, M. Webb, A.
 /// Finkelstein. Real-Time Hatching. 2001: sets that stay where darker ones are added.)
@@ -248,10 +249,10 @@ struct Stipple {
   std::uint32_t instance = no_index;  ///< no_index without by_instance
 };
 
-/// Dots on visible parts of `surfaces`: none where the brightness is above 0.95, one to a square of `spacing` in
-/// shadow, more where it is darker in between. Dots are spread evenly, in a pattern that depends on the picture alone.
-/// The signs of hatch() decide whether a dot is seen and lit. By row, from the left. Cost, threads and errors as for
-/// hatch(); limit_exceeded if the picture has room for more than 20 million dots.
+/// Dots on visible parts of `surfaces`: none where the brightness is above 0.95, one per square of side length
+/// `spacing` in shadow, and in between the more, the darker the surface is. Dots are spread evenly, in a pattern that
+/// depends on the picture alone. The signs of hatch() decide whether a dot is seen and lit. By row, from the left.
+/// Cost, threads and errors as for hatch(); limit_exceeded if the picture has room for more than 20 million dots.
 /// (R. Ulichney. The Void-and-Cluster Method for Dither Array Generation. 1993.)
 [[nodiscard]] std::vector<Stipple> stipple(const Surfaces& surfaces, const View& view, const StippleOptions& options,
                                            const Execution& execution = {});
@@ -280,13 +281,13 @@ struct CutFace {
   /// clockwise around holes. They cross only if the object intersects itself.
   std::vector<std::vector<glm::vec3>> outlines{};
   double area = 0;             ///< without the holes
-  std::size_t open_count = 0;  ///< number of lines that do not close, as of meshes with holes; they bound nothing
+  std::size_t open_count = 0;  ///< number of lines that a hole of the mesh leaves open; they bound nothing
 };
 
 struct Section {
   /// The part of the scene behind the plane. Instances keep their numbers and names; each has its own mesh with
-  /// positions in world space and no transform. Materials keep their numbers but lose their textures; materials of the
-  /// faces follow.
+  /// positions in world space and no transform. Materials keep their numbers but lose their textures; the materials of
+  /// the faces come after them.
   Scene scene;
   std::vector<CutFace> faces;  ///< by instance; only objects that the plane cuts
 };
@@ -307,9 +308,9 @@ struct Section {
 /// (G. Meisters. Polygons Have Ears. 1975.) \throws Error bad_argument for a plane that is not finite as a float.
 [[nodiscard]] Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution& execution = {});
 
-/// By instance, which of six styles hatches an object in all of these sections; 0 if it is not cut. An object's style
-/// differs from those of earlier objects that it may touch, judged by boxes around the faces, as far as six styles
-/// suffice. Each face is compared with at most 2048 earlier ones.
+/// \returns for each instance the number of the style, 0 to 5, that hatches the object in all of these sections; 0 also
+/// if the object is not cut. An object's style differs from those of earlier objects that it may touch, judged by boxes
+/// around the faces, as far as six styles suffice. Each face is compared with at most 2048 earlier ones.
 [[nodiscard]] std::vector<std::uint8_t> hatch_styles(std::span<const Section* const> sections);
 
 struct SectionHatching {
@@ -387,9 +388,10 @@ struct CentreLine {
 };
 
 /// Centre lines after ISO 128. Circles and cylinders seen along their axes, and circles in `strokes`, have a cross;
-/// those seen from the side have their axis. Coinciding ones share a cross or an axis. There is none in perspective,
-/// nor for a circle or cylinder that is seen at an angle, is smaller than a third of the overshoot, or has less than a
-/// fifth of its outline drawn. Crosses of small circles overshoot by the radius, at least by a third of `overshoot`.
+/// circles and cylinders seen from the side have an axis line. Coinciding ones share a cross or an axis line. There are
+/// no centre lines in perspective, nor for a circle or cylinder that is seen at an angle, is smaller than a third of
+/// the overshoot, or has less than a fifth of its outline drawn. Crosses of small circles overshoot by the radius, at
+/// least by a third of `overshoot`.
 /// `rounds` are the circles and cylinders of the drawing's surfaces. Lines are sorted by direction, then by position.
 /// \throws Error bad_argument for an overshoot out of range.
 [[nodiscard]] std::vector<CentreLine> centre_lines_of(const Rounds& rounds, const Drawing& drawing,

@@ -39,7 +39,8 @@ struct CulledObject {
 };
 
 struct OcclusionOptions {
-  /// Side of a cell of the screen, in pixels, 1 to 64. Smaller cells find more hidden objects and take more time.
+  /// Side length of a cell of the screen, in pixels, 1 to 64. Smaller cells find more hidden objects and take more
+  /// time.
   int cell = 2;
 };
 
@@ -66,8 +67,8 @@ class Occlusion {
   [[nodiscard]] std::span<const std::uint32_t> triangles(std::size_t number) const;
 
   /// \returns the visibility of every object in this view, valid until the next call. Faces left out by View::culling
-  /// hide nothing. The answer is the same for all instruction sets. Objects are grouped, and groups that are hidden or
-  /// outside cost little; at worst O(objects + triangles of objects that may be seen).
+  /// hide nothing. The answer is the same for all instruction sets. Objects are grouped, and hidden or outside groups
+  /// cost little. At worst O(objects + triangles of objects that may be seen).
   /// \throws Error bad_argument as validate(view) does, and for a cell out of range.
   std::span<const ObjectSight> cull(const View& view, const OcclusionOptions& options = {},
                                     const Execution& execution = {}) &;

@@ -252,10 +252,10 @@ struct ScanInput {
                                   const ShadeOptions& options = {}, const Execution& execution = {});
 
 /// Every fragment of the picture, nearest first, with channels R, G, B (premultiplied), A, Z, ZBack and the integers
-/// "primitive", "object" and "material". A is the part of the pixel that the fragment hides of what nearer fragments
-/// leave uncovered, at the sub-samples of the options. Compositing all fragments over a transparent background gives
-/// the picture that shade() makes with SeeThrough::always, edges included. Z and ZBack are the planar depth at the
-/// pixel's centre.
+/// "primitive", "object" and "material". A is the share that the fragment hides of the part of the pixel that nearer
+/// fragments leave uncovered, at the sub-samples of the options. Compositing all fragments over a transparent
+/// background gives the picture that shade() makes with SeeThrough::always, edges included. Z and ZBack are the planar
+/// depth at the pixel's centre.
 /// O(fragments * sub-samples); 36 bytes a fragment, twice that while it works. Options as for shade().
 /// \throws Error as shade() and abuffer() do; unsupported for shadings other than lit, flat and normals.
 [[nodiscard]] DeepImage shade_deep(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},

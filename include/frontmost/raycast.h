@@ -41,8 +41,8 @@ class RayIndex {
 
   /// Updates the index after vertices or instances of the scene have moved; `surfaces` are of the same scene. Answers
   /// are to the bit those of a new index. The grouping of triangles and boxes stays, so queries grow slower as old
-  /// neighbours part. O(n) in parallel, about a third of the time of a new index. A new index is built instead if other
-  /// triangles can be met than before, or if the index holds thousands of coincident triangles. After an error or a
+  /// neighbours part. O(n) in parallel, about a third of the time of a new index. A new index is built instead if rays
+  /// can meet other triangles than before, or if the index holds thousands of coincident triangles. After an error or a
   /// cancelled call the index is empty.
   void refit(const Surfaces& surfaces, const Execution& execution = {});
 
@@ -53,7 +53,8 @@ class RayIndex {
   /// \throws Error bad_argument for a missing instance.
   void follow(const Surfaces& surfaces, std::uint32_t instance, const Execution& execution = {});
 
-  /// Number of triangles that a ray can meet: vertices are finite, and no two of them are the same in the mesh.
+  /// Number of triangles that a ray can meet: their vertices are finite, and no two vertices of one are the same in the
+  /// mesh.
   [[nodiscard]] std::uint32_t triangle_count() const;
   /// World-space bounds of these triangles; empty if there are none.
   [[nodiscard]] const Box& bounds() const;
@@ -120,12 +121,12 @@ struct RayHit {
 };
 
 // Queries see both sides of every triangle. They are decided exactly on the floats of query and vertices, without
-// tolerance. A query meets a triangle if it passes through it. It does not meet a triangle that contains the ray's
-// origin or an end of the segment, or that lies along the line. A line through an edge or vertex meets every triangle
-// that has it, so nothing slips through a closed surface. Swapping the ends of a segment changes nothing, except at the
-// rims of holes, which are looked up at the rounded point. Only t is rounded, to doubles; at equal t the lower id wins.
-// Queries with non-finite coordinates, rays without direction and segments of length 0 meet nothing and are clear.
-// O(log n) each in ordinary scenes.
+// tolerance. A ray or segment meets a triangle if it passes through the triangle. It does not meet a triangle that
+// contains the ray's origin or an end of the segment, nor one whose plane contains the line. A line through an edge or
+// vertex meets every triangle that has it, so nothing slips through a closed surface. Swapping the ends of a segment
+// changes nothing, except at the rims of holes, which are looked up at the rounded point. Only t is rounded, to
+// doubles; at equal t the lower id wins. Queries with non-finite coordinates, rays without direction and segments of
+// length 0 meet nothing and are clear. O(log n) each in ordinary scenes.
 
 /// The nearest surface along a ray, or along a segment from its start.
 [[nodiscard]] RayHit closest_hit(const RayIndex& index, const Ray& ray);
@@ -168,8 +169,8 @@ void are_lit(const RayIndex& index, std::span<const TrianglePoint> points, const
 //
 // Directions are in eye space, as for every camera: x right, y up, the eye looks down -z. The azimuth counts from
 // straight ahead to the right, the elevation from the horizon upwards. Azimuth a and elevation e are the direction (sin
-// a cos e, sin e, -cos a cos e). Pixel (x, y) has its ray at its centre, (x + 0.5, y + 0.5), rows from the top. Several
-// samples have their rays at a View's sample positions within the pixel.
+// a cos e, sin e, -cos a cos e). Pixel (x, y) has its ray at its centre, (x + 0.5, y + 0.5), rows from the top. With
+// several samples, the rays pass through the sample positions of a View within the pixel.
 
 /// An equirectangular picture: azimuth and elevation are affine over it. The left side is -180 degrees, straight
 /// behind; a quarter of the width is the left, the middle is straight ahead; the top is straight up. Pixels are square
@@ -201,7 +202,7 @@ struct RayPattern {
   std::vector<glm::vec3> directions;  ///< in eye space, of any length; zero or non-finite ones see nothing
 };
 
-/// The origin of the rays and their directions, both rounded to floats.
+/// A camera of rays from one point. The origin of the rays and their directions are rounded to floats.
 struct RayCamera {
   std::variant<Panorama, Fisheye, Lidar, RayPattern> model;
   glm::dmat4 world_from_eye{1.0};  ///< a rotation and a translation, relative to Scene::origin as in a View
@@ -210,7 +211,7 @@ struct RayCamera {
   double nearest = 0, farthest = std::numeric_limits<double>::infinity();
 };
 
-/// Elevations of `rings` rings, evenly spaced from `highest` down to `lowest`; their mean for a single ring.
+/// Elevations of `rings` rings, evenly spaced from `highest` down to `lowest`; a single ring gets the mean of the two.
 /// \throws Error bad_argument unless rings >= 1 and lowest <= highest.
 [[nodiscard]] std::vector<double> ring_elevations(int rings, double lowest, double highest);
 

@@ -32,7 +32,7 @@ struct Oddities {
   // Edges of all triangles with three different vertices.
   std::uint64_t boundary_edges = 0;      ///< edges of one triangle
   std::uint64_t non_manifold_edges = 0;  ///< edges of more than two triangles
-  std::uint64_t inconsistent_edges = 0;  ///< edges of two triangles that run along it the same way: one is inside out
+  std::uint64_t inconsistent_edges = 0;  ///< edges that two triangles run along the same way: one is inside out
 
   [[nodiscard]] bool any() const {
     return (non_finite_triangles | degenerate_triangles | duplicate_triangles | boundary_edges | non_manifold_edges |
@@ -110,7 +110,7 @@ struct SceneReport {
   glm::dvec3 origin{0};          ///< Scene::origin, to which world space is relative
   Box bounds;                    ///< world space
   double area = 0;               ///< sum over all objects
-  std::optional<double> volume;  ///< sum over the objects that have a volume; none without any
+  std::optional<double> volume;  ///< sum over the objects that have a volume; none if no object has one
   /// Greatest rounding of a vertex because positions are floats: half a float step at the farthest coordinate.
   double rounding = 0;
   std::vector<MeshReport> meshes;
@@ -127,10 +127,10 @@ struct SceneReport {
 /// \throws Error as validate(scene) does, and limit_exceeded for a mesh of more than 2^29 triangles.
 [[nodiscard]] SceneReport inspect(const Scene& scene, const Execution& execution = {});
 
-/// Likely units of a model's coordinates, as metres to a unit, guessed from its greatest extent e. Millimetres if they
-/// make it 5 mm to 2 m, as of parts and prints. Metres if e is below 1, where millimetres would be a grain of sand.
-/// Centimetres, inches and metres in between. None for e below 0.001 or above 2000, or an empty box. Files that state
-/// their unit need no guess: SceneSource::metres_per_unit.
+/// Likely units of a model's coordinates, in metres, guessed from the greatest extent e of its bounds. Millimetres if e
+/// is from 5 to 2000: the size of parts and prints. Metres if e is below 1, because in millimetres the model would be a
+/// grain of sand. Centimetres, inches and metres if e is from 1 to 5. None if e is below 0.001 or above 2000, or the
+/// box is empty. Files that state their unit need no guess: SceneSource::metres_per_unit.
 [[nodiscard]] std::vector<double> likely_units(const Box& bounds);
 
 // Accounting: how much of each object is seen, how much lies beyond the frame, and which objects hide the rest.
@@ -195,8 +195,8 @@ struct HiddenSamples {
 
 struct AccountingOptions {
   /// Size of the canvas on which objects are counted alone, as a multiple of the picture, 1 to 16; the picture lies in
-  /// its middle. 1: the picture itself, so that no object is cut. 3, as in BOP, has room for any object that is half in
-  /// the picture and no larger. Rounded down to whole pixels on each side, and at most 16384 pixels wide or high.
+  /// its middle. 1: the picture itself, so that no object is cut. 3, as in BOP: room for any object that is no larger
+  /// than the picture and half in it. Rounded down to whole pixels on each side, and at most 16384 pixels wide or high.
   double canvas = 3;
   /// True: also finds hidden_by_any and hidden_only_by. Takes some ten times as long, and 20 MiB or more.
   bool all_hiders = false;
@@ -205,22 +205,23 @@ struct AccountingOptions {
 struct Accounting {
   PixelBox canvas;                     ///< pixels on which objects were counted alone
   std::vector<ObjectAccount> objects;  ///< by instance
-  std::uint64_t background = 0;        ///< samples that see nothing; together with all visible samples, the picture's
+  std::uint64_t background = 0;        ///< samples that see nothing: all but the visible samples of the objects
   /// Samples in frame that see `hider` in place of `object`; by object, then by hider. The counts of one object add up
   /// to its hidden samples.
   std::vector<HiddenSamples> hidden_by_front;
   /// Samples in frame at which `hider` is in front of `object`, even if others are as well; in the same order. Empty
   /// unless AccountingOptions::all_hiders.
   std::vector<HiddenSamples> hidden_by_any;
-  /// Samples at which only `hider` is in front of `object`: they appear when `hider` is removed. Empty as above.
+  /// Samples at which only `hider` is in front of `object`: they appear when `hider` is removed. Empty unless
+  /// AccountingOptions::all_hiders.
   std::vector<HiddenSamples> hidden_only_by;
 };
 
 /// Accounts for every object in a view. `visible` is the answer of zbuffer() or a ZBuffer for these surfaces; with
 /// other methods, which do not snap vertices, sums hold only approximately. The result is the same for any number of
 /// threads and every instruction set. O(triangles + rows of pixels that each object touches + samples); memory beside
-/// the result: about 8 bytes a run of samples that see the same object, and a bit for each sample of the canvas and
-/// thread.
+/// the result: about 8 bytes for each run of samples that see the same object, and in each thread a bit for each sample
+/// of the canvas.
 /// \throws Error bad_argument as validate(view) does, for a canvas out of range, and for a `visible` of other surfaces.
 [[nodiscard]] Accounting account(const Surfaces& surfaces, const Visible& visible,
                                  const AccountingOptions& options = {}, const Execution& execution = {});
@@ -259,9 +260,9 @@ struct PixelMask {
 /// The pixels of a mask that count: visible ones, or visible and hidden ones.
 enum class MaskPart : std::uint8_t { visible, whole };
 
-/// A mask as COCO's compressed run lengths, in a picture of `size`: columns from the left, each from the top,
-/// alternating runs of 0 and 1, as COCO's mask API writes them. O(pixels of the box).
-/// Source: T.-Y. Lin et al. Microsoft COCO: Common Objects in Context. 2014.
+/// A mask as COCO's compressed run lengths, in a picture of `size`, as COCO's mask API writes them. Runs of 0 and 1
+/// alternate along the columns, from the leftmost column on, each column from the top. O(pixels of the box). Source:
+/// T.-Y. Lin et al. Microsoft COCO: Common Objects in Context. 2014.
 [[nodiscard]] std::string coco_runs(const PixelMask& mask, MaskPart part, const glm::ivec2& size);
 /// A mask as polygons along the sides of pixels: alternating x and y, in pixels from the picture's top left. The
 /// polygons do not overlap, have no holes, and fill the mask exactly, also by the rule of COCO's mask API. O(pixels of
@@ -375,16 +376,16 @@ struct Explanation {
   /// If no sample is covered: area in the picture of the parts that would be seen of the object alone, in square
   /// pixels, exact as in visible_faces(); 0 if it is seen edge-on.
   double pixels = 0;
-  bool is_all_holes = false;  ///< if transparent: by holes of its materials, not by its opacity
+  bool is_all_holes = false;  ///< if transparent: true: all samples are holes; false: its opacity is 0
   double visible_share = 0, hidden_share = 0, cut_share = 0;  ///< as in ObjectAccount
   std::vector<HiderShare> hiders;                             ///< front-most objects, the greatest share first
   Remedy remedy;
 };
 
-/// Explains every object, by number. `visible` is the answer of zbuffer() for these surfaces, `accounts` that of
-/// account() for it. The result is the same for any number of threads and every instruction set. O(triangles): one to
-/// seven times the time of account(), and that of visible_faces() for each object without a sample. \throws Error as
-/// account() does, and bad_argument for accounts of other objects.
+/// Explains every object, by number. `visible` is the answer of zbuffer() for these surfaces, and `accounts` is the
+/// answer of account() for `visible`. The result is the same for any number of threads and every instruction set.
+/// O(triangles): one to seven times the time of account(), and that of visible_faces() for each object without a
+/// sample. \throws Error as account() does, and bad_argument for accounts of other objects.
 [[nodiscard]] std::vector<Explanation> explain_all(const Surfaces& surfaces, const Visible& visible,
                                                    const Accounting& accounts, const Execution& execution = {});
 /// Explains one object. Takes the time of zbuffer() and account(). \throws Error as validate(view) does, and
@@ -440,12 +441,12 @@ struct VisibleFaces {
   std::vector<VisibleFace> faces;  ///< by id, ascending; only triangles that are seen
 };
 
-// How visible_faces() works: the picture is divided into cells, and a cell in which something ends into smaller ones.
-// (J. Warnock. A Hidden Surface Algorithm for Computer Generated Halftone Pictures. 1969.) In a cell where no surface
-// ends, and the nearest surface lies in front of all others, the visible faces are known without cutting. In the
-// smallest cells triangles cut each other. Cuts that would leave less than 2^-30 pixel on one side are not made, so
-// narrower parts are not told apart from their neighbours. The limit of 2^31 steps is 15 times what the most crowded of
-// 237 models takes.
+// How visible_faces() works: the picture is divided into cells, and a cell in which a surface ends is divided into
+// smaller cells. (J. Warnock. A Hidden Surface Algorithm for Computer Generated Halftone Pictures. 1969.) In a cell
+// where no surface ends, and the nearest surface lies in front of all others, the visible faces are known without
+// cutting. In the smallest cells triangles cut each other. Cuts that would leave less than 2^-30 pixel on one side are
+// not made, so narrower parts are not told apart from their neighbours. The limit of 2^31 steps is 15 times what the
+// most crowded of 237 models takes.
 
 /// Finds every triangle of which a part is seen within the picture, between near and far, with the area of that part.
 /// Vertices are not snapped, so triangles far smaller than a pixel are found. No place counts twice: where triangles
@@ -466,8 +467,8 @@ struct SeenFace {
   double largest_pixels = 0;  ///< largest area that a view shows, in square pixels
 };
 
-/// The triangles that are seen in any of `views`, by id, ascending. Costs visible_faces() for each view, less what does
-/// not depend on the view. \throws Error as visible_faces() does.
+/// The triangles that are seen in any of `views`, by id, ascending. Takes the time of visible_faces() for each view,
+/// but does work that does not depend on the view only once. \throws Error as visible_faces() does.
 [[nodiscard]] std::vector<SeenFace> faces_ever_seen(const Surfaces& surfaces, std::span<const View> views,
                                                     const Execution& execution = {});
 

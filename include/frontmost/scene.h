@@ -47,10 +47,10 @@ inline constexpr std::uint32_t max_texcoord_sets = 4;
 
 /// A triangle mesh in its own space. A triangle whose vertices run counter-clockwise faces the viewer.
 ///
-/// A mesh with `spheres` or `patches` is curved. Its spheres and then its patches are numbered as curved primitives.
-/// Its triangles only tessellate them, as tessellate() does for a view. Curved primitives that are not finite, and
-/// spheres whose radius is not positive, are never seen but keep their number. A curved mesh has at most one material
-/// and one set of texture coordinates; colours of its triangles are ignored.
+/// A mesh with `spheres` or `patches` is curved. These curved primitives are numbered together, spheres first. The
+/// triangles of a curved mesh only approximate its curved primitives; tessellate() makes them for a view. Curved
+/// primitives that are not finite, and spheres whose radius is not positive, are never seen but keep their number. A
+/// curved mesh has at most one material and one set of texture coordinates; colours of its triangles are ignored.
 struct Mesh {
   std::string name;
   /// Vertex positions in any unit: the file's, minus `origin`. Non-finite positions are kept.
@@ -238,8 +238,8 @@ enum class ModelFormat : std::uint8_t { stl, ply, obj, off, gltf, threemf, scene
 /// Facts about the files that a scene was read from. Scenes made by code have none.
 struct SceneSource {
   std::optional<ModelFormat> format;  ///< format of the first model
-  /// Length of a unit of the coordinates, if the first model's file states it: 1 for glTF, the named unit for 3MF.
-  /// Nothing is scaled by it.
+  /// Length in metres of one unit of the coordinates, if the first model's file states it: 1 for glTF, the named unit
+  /// for 3MF. No coordinate is scaled by this length.
   std::optional<double> metres_per_unit;
   /// Every file that was opened: the model, and the material libraries, buffers and textures that it names. Each is
   /// listed once per model, by its path without links, sorted by name.

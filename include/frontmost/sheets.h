@@ -55,10 +55,10 @@ struct Figure {
 };
 
 struct FigureOptions {
-  /// Shading, shadows, opacity and background count. Layers do not: figures are translucent where the scene is.
+  /// Shading, shadows, opacity and background are used. Layers are ignored: figures are translucent where the scene is.
   ShadeOptions shade;
   /// Steps of 8-bit sRGB, 0 to 255: greatest difference between the colour of a polygon and the surface's. Polygons are
-  /// cut until it holds. 255: a triangle has the colour of its middle and is never cut.
+  /// cut until they keep to this difference. 255: a triangle has the colour of its middle and is never cut.
   double tolerance = 6;
   /// True: hidden polygons are left out. False: all polygons are kept, in painting order.
   bool visible_only = true;
@@ -83,7 +83,7 @@ struct FigureOptions {
 /// Draws a view, with any number of samples. \throws Error also as validate(view) does.
 [[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const View& view, const FigureOptions& options = {},
                                  const Execution& execution = {});
-/// Draws a figure with what a shader has prepared for its surfaces.
+/// Draws a figure, reusing data that a shader has prepared for its surfaces.
 [[nodiscard]] Figure draw_figure(Shader& shader, const ShadeInput& input, const FigureOptions& options = {},
                                  const Execution& execution = {});
 
@@ -120,8 +120,8 @@ struct PageGroup {
   std::string name;  ///< name of the object, any text
   Pen pen;
   std::vector<glm::dvec2> points{};  ///< millimetres
-  /// Empty: all joins are straight. Otherwise one for each point, for the join that begins there: the tangent of a
-  /// quarter of the arc's angle, positive from +x towards +y; 0: straight, 1: a half circle.
+  /// Empty: all joins are straight. Otherwise one value for each point, for the join from that point to the next: the
+  /// tangent of a quarter of the arc's angle, positive from +x towards +y; 0: straight, 1: a half circle.
   std::vector<double> bulges{};
   std::vector<PagePath> paths{};
   std::vector<PageColor> fills{};  ///< empty: nothing is filled; otherwise one for each path (nonzero winding rule)
@@ -215,7 +215,7 @@ enum class TextAlign : std::uint8_t { left, centre, right };
 enum class TextLine : std::uint8_t { bottom, middle, top };
 
 struct TextStyle {
-  double height = 3.5;  ///< millimetres, of capitals and digits with their pen: 1.8, 2.5, 3.5, 5, 7, 10, 14 or 20
+  double height = 3.5;  ///< millimetres, of capitals and digits with the pen's width: 1.8, 2.5, 3.5, 5, 7, 10, 14, 20
   double angle = 0;     ///< radians by which the text is turned about its place, counter-clockwise for the reader
   TextAlign align = TextAlign::left;
   TextLine line = TextLine::bottom;
@@ -231,8 +231,8 @@ struct TextStyle {
 /// as high as a capital. Blanks have no path. O(text).
 void add_text(PageGroup& group, std::string_view text, const glm::dvec2& at, const TextStyle& style = {});
 
-/// Millimetres from the left edge of the first character to the right edge of the last one, with their pen; 0 without
-/// any.
+/// Width of a text in millimetres, from the left edge of its first character to the right edge of the last one,
+/// including the pen's width; 0 if the text has no characters.
 [[nodiscard]] double text_width(std::string_view text, double height = 3.5);
 
 // Views of a sheet: strokes, hatching and centre lines at their places on a page, with the pens of drawing standards.
@@ -405,15 +405,15 @@ struct SheetOptions {
   std::optional<double> tessellation_error = std::nullopt;
   /// For named views: clipping planes in place of those that enclose the model.
   std::optional<double> near = std::nullopt, far = std::nullopt;
-  /// For a given view. True: the page shows the view's whole picture. False: it is fitted to the lines.
+  /// For a given view. True: the page shows the view's whole picture. False: the page fits the lines.
   bool keeps_picture = false;
 };
 
 /// A drawn view of a sheet.
 struct DrawnView {
   std::string name;  ///< for example "front"; "A-A" for a section; empty if the view was given
-  /// The surfaces whose triangles `drawing` refers to: the caller's, which must still exist, or surfaces that were made
-  /// for a view of curved or cut ones.
+  /// The surfaces whose triangles `drawing` refers to: those of the caller, which must still exist, or surfaces made
+  /// for this view, if it shows curved or cut objects.
   std::shared_ptr<const Surfaces> surfaces;
   std::shared_ptr<const Section> section;  ///< null if nothing was cut
   Drawing drawing;
