@@ -122,7 +122,7 @@ class Expansion {
   }
 
  private:
-  /// Grow-Expansion, without zeros.
+  /// Adds a double without rounding (Shewchuk's Grow-Expansion), and drops terms that are zero.
   void add(double value) {
     std::size_t kept = 0;
     for (const double term : terms_) {
@@ -202,7 +202,7 @@ struct BoundedNormal {
   }
 };
 
-/// The vector from one point to another; neither point is rounded.
+/// The vector from one point to another. It is kept as its two points, so it is not rounded.
 struct Leg {
   glm::dvec3 to, from{0};
 };
@@ -217,7 +217,7 @@ struct Leg {
 
 namespace detail {
 
-/// high + low, twice as long as a double.
+/// The sum high + low, which has twice the bits of a double.
 struct DoubleDouble {
   double high, low;
 };
@@ -254,8 +254,7 @@ struct DoubleDouble {
   return value > error ? 1 : value < -error ? -1 : 0;
 }
 
-/// Whether two vectors surely lie along one line. Decides only if their components are doubles without rounding;
-/// otherwise false.
+/// Whether two vectors surely lie along one line. False if a component of theirs is not exact as a double.
 [[nodiscard]] inline bool are_parallel(const Leg& a, const Leg& b) {
   double v[2][3];
   for (int axis = 0; axis < 3; ++axis) {

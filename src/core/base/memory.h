@@ -44,9 +44,9 @@ struct Slab;
 }
 
 /// While an Arena lives, the Buffers of its thread lie side by side in large pages, as long as there is room. Without
-/// it, the first touch of thousands of small pages takes a third of draw_lines() in a new process. Buffers may outlive
-/// the Arena, and any thread may drop them in any order; their room is free again once later Buffers are gone, too.
-/// Arenas must be destroyed in the reverse order of their making, on the same thread.
+/// an Arena, the first touch of thousands of small pages takes a third of draw_lines() in a new process. Buffers may
+/// outlive the Arena, and any thread may drop them in any order; their room is free again once later Buffers are gone,
+/// too. Arenas must be destroyed in the reverse order of their making, on the same thread.
 class Arena {
  public:
   /// False under AddressSanitizer, which finds reads beyond a Buffer's end only if nothing lies beside the Buffer.

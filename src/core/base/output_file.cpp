@@ -158,7 +158,8 @@ void OutputFile::commit() {
   temporary_.clear();
 }
 
-/// Links the nameless file to its place, or, as links never replace a file, to a name from which it can be renamed.
+/// Links the nameless file to its place. If a file is there, links the new file to a name from which it can be renamed,
+/// because links never replace a file.
 void OutputFile::give_name() {
 #ifdef O_TMPFILE
   const std::string source = link_of(descriptor_);

@@ -21,8 +21,9 @@ namespace frontmost {
 /// A point of a patch, and the directions in which u and v grow there.
 struct PatchPoint {
   glm::dvec3 position, along_u, along_v;
-  /// Unit length, outward. At a pole, to which an edge of constant u is contracted, it is the limit. At other
-  /// degenerate points it is the normal of a nearby point, or zero if that has none either.
+  /// Normal of unit length, outward. At a pole, where an edge of constant u is contracted to a point, the normal is the
+  /// limit of the normals around it. At other degenerate points it is the normal of a nearby point, or zero if that has
+  /// none either.
   glm::dvec3 normal;
 };
 

@@ -106,7 +106,7 @@ class PlacedPoints {
   }
 
   const Scene& scene_;
-  std::vector<std::optional<Box>> bounds_;  ///< by mesh; of the meshes searched so far
+  std::vector<std::optional<Box>> bounds_;  ///< by mesh; set for meshes that were searched
 };
 
 }  // namespace

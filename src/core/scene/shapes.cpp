@@ -36,7 +36,7 @@ struct GridNumbers {
   int rows, columns;
 };
 
-// Adds both triangles of a quad, less one that a pole has contracted to a line.
+// Adds both triangles of a quad, except a triangle that a pole has contracted to a line.
 void add_quad(const glm::uvec4& corners, const glm::uvec4& texcoords, Mesh& mesh) {
   const glm::uvec4 &c = corners, &t = texcoords;
   if (c[0] != c[1]) {

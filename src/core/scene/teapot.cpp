@@ -2,8 +2,9 @@
 // The classic teapot: its control points, and its triangles.
 //
 // M. Newell. The Utilization of Procedure Models in Digital Image Synthesis. University of Utah, 1975; the bottom was
-// added by F. Crow, 1987. In the usual list of 306 points and 32 patches most numbers are reflections of a few: turned
-// parts are profiles, handle and spout are halves. This file lists only numbers that are not reflections.
+// added by F. Crow, 1987. In the usual list of 306 points and 32 patches most numbers are reflections of a few others:
+// parts with a profile are turned about the axis, and handle and spout consist of two halves each. This file lists only
+// numbers that are not reflections.
 //
 // Every patch becomes a grid of triangles, and points that two patches share are stored once. Patches of one part (body
 // with lid and bottom, handle, spout) are welded where their points agree to the bit, which evaluate() guarantees along

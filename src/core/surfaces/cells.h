@@ -23,9 +23,9 @@ struct SpaceCell {
   [[nodiscard]] std::uint32_t x() const { return packed & mask; }
   [[nodiscard]] std::uint32_t y() const { return packed >> y_shift & mask; }
   [[nodiscard]] std::uint32_t z() const { return packed >> z_shift; }
-  /// True if `other` is from one cell before to two cells after this one, along every axis.
+  /// True if `other` lies, along every axis, from one cell before this cell to two cells after it.
   [[nodiscard]] bool is_near(SpaceCell other) const {
-    // One bit above each place is lent to it, so that no difference borrows from the next.
+    // The bit above each place is set before the subtraction, so that no difference borrows from the next place.
     constexpr std::uint64_t ones = 1 | 1ull << y_shift | 1ull << z_shift, lent = ones << 10;
     return (((((other.packed | lent) - packed) + ones) ^ lent) & ~(3 * ones)) == 0;
   }

@@ -36,7 +36,7 @@ struct Surfaces::State {
 
 Surfaces::Surfaces(const Scene& scene, const Execution& execution) {
   const IeeeScope ieee;
-  // All checks are here: behind this point no method checks an index or a transform again.
+  // All checks are here: after this point no method checks an index or a transform again.
   validate_besides_vertices(scene);
   check_transforms(scene);
   auto state = std::make_unique<State>();
@@ -166,7 +166,8 @@ void PlacedScene::follow(std::uint32_t instance, Isa isa) {
   }
   follow_bounds(instance);
   if (!has_cutouts(instance)) return;
-  // An index keeps its cutouts until it follows, so shared cutouts are copied.
+  // A RayIndex keeps its cutouts until RayIndex::follow() is called, so shared cutouts are copied before they are
+  // moved.
   if (cutouts.use_count() > 1) cutouts = std::make_shared<Cutouts>(*cutouts);
   cutouts->move(scene->meshes[scene->instances[instance].mesh], world_from_mesh, first_primitives[instance]);
 }
