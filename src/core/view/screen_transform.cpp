@@ -112,11 +112,12 @@ ClipVertex cut(const ScreenTransform& t, ClipPlane plane, const ClipVertex& insi
   return v;
 }
 
-/// Each of six planes adds at most one corner to a convex polygon, and one more is written before it is tested.
+/// Each of six planes adds at most one corner to a convex polygon, and one more corner is written before the count is
+/// tested.
 using ClipCorners = std::array<ClipVertex, ClippedPolygon::max_corners + 1>;
 
-/// Vertices that are all outside of a plane have nothing inside between them. Cuts at earlier planes would be rounded,
-/// by much if vertices are 1e20 times as far away as others, and could land in the picture.
+/// Whether all vertices are outside of one plane, so that nothing between them is inside. Cutting at earlier planes
+/// would be rounded, by much if some vertices are 1e20 times as far away as others, and cuts could land in the picture.
 bool is_outside(const ScreenTransform& t, const ClipCorners& triangle) {
   const auto all_outside = [&](ClipPlane plane) {
     return std::all_of(triangle.begin(), triangle.begin() + 3,
@@ -153,8 +154,8 @@ ScreenVertex finish(const ScreenTransform& t, const ClipVertex& v) {
   return {snap_coordinate(v.x, w), snap_coordinate(v.y, w), std::clamp(float(key), 0.0f, 1.0f)};
 }
 
-/// Rotates a polygon to its topmost corner. Fans begin at the first corner, which must not depend on the order of
-/// vertices: another order would otherwise give other pieces.
+/// Rotates a polygon so that its topmost corner comes first. Fans begin at the first corner, which must not depend on
+/// the order of vertices: another order would otherwise give other pieces.
 void begin_at_top(ClippedPolygon& polygon) {
   const auto end = polygon.corners.begin() + polygon.count;
   const auto top = std::min_element(polygon.corners.begin(), end, [](const ScreenVertex& a, const ScreenVertex& b) {

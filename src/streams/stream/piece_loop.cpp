@@ -72,7 +72,8 @@ void Models::add(Model model) {
   take_warnings(models_.back());
 }
 
-/// All ranks know the warnings of opening. Warnings of a pass are reported by one of the ranks that read the file.
+/// Adds a warning. All ranks know the warnings of opening. Warnings of a pass are reported by one of the ranks that
+/// read the file.
 void Models::warn(const Model& model, const std::string& text) {
   const std::string words = model.stream->source().with_name(text);
   if (turns_.count == 1 || !has_opened_) return scene_.warnings.push_back(words);

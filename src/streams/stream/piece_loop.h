@@ -21,7 +21,7 @@ namespace frontmost::streaming {
 struct PiecePlace {
   std::size_t number = 0;    ///< number of the piece
   PrimitiveId first = 0;     ///< number of its first triangle in the stream
-  std::uint32_t object = 0;  ///< object of its file
+  std::uint32_t object = 0;  ///< number of the object that its file became
 };
 
 /// Decides which pieces this rank reads.
@@ -56,7 +56,7 @@ class Models {
 
   // Facts that ranks which read parts of the models exchange after their first pass.
 
-  /// First id and number of triangles of each file in the last pass; none for files that other ranks read.
+  /// First id and number of triangles of each file in the last pass; the number is 0 for files that other ranks read.
   [[nodiscard]] std::vector<PrimitiveId> first_ids() const;
   [[nodiscard]] std::vector<std::uint64_t> triangle_counts() const;
   /// Sets the numbers of triangles of all files, read here or not. Ids are those of the whole model from now on.
@@ -73,7 +73,7 @@ class Models {
     glm::dvec3 moved{0};               ///< position of its mesh in world space
     std::size_t warnings = 0;          ///< number taken over so far
     PrimitiveId first = 0;             ///< id of its first triangle
-    std::uint64_t triangle_count = 0;  ///< number fetched in this pass
+    std::uint64_t triangle_count = 0;  ///< number of triangles fetched in this pass
     bool has_ended = false;            ///< in this pass or an earlier one
   };
   void add(Model model);
@@ -88,7 +88,7 @@ class Models {
   std::vector<Model> models_;
   Turns turns_;
   Scene scene_;
-  std::vector<FileWarning> warnings_;  ///< from passes, for other ranks
+  std::vector<FileWarning> warnings_;  ///< warnings of passes, to be shared with other ranks
   bool has_opened_ = false, knows_firsts_ = false;
   std::size_t current_ = 0, begun_ = 0, next_number_ = 0;
   std::uint64_t next_ = 0, shared_pieces_ = 0;

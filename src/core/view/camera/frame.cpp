@@ -359,8 +359,8 @@ ClipDistances fit_clip(const Box& bounds, const glm::dmat4& world_from_eye, bool
   ClipDistances clip{nearest - spare, farthest + spare};
   if (orthographic) return clip;
   if (!(clip.far > 0)) clip.far = std::max(size, 1e-30);  // all behind the eye: any valid planes will do
-  // An eye within the model would give a near plane at 0, and keys (near / distance) that are all 0. Four digits of
-  // range cost floats nothing: keys near 0 are as finely spaced.
+  // An eye within the model would give a near plane at 0, and keys (near / distance) that are all 0. A range of four
+  // digits costs floats no precision, because keys near 0 are as finely spaced relative to their size.
   clip.near = std::max(clip.near, 1e-4 * clip.far);
   if (!(clip.near < clip.far)) clip.near = 0.5 * clip.far;
   return clip;
@@ -387,10 +387,11 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
   // The distance to a single point far from the origin must exceed rounding.
   const double diagonal = std::max({glm::length(high - low), 1e-5 * glm::length(high), 1e-30});
   if (options.orthographic) {
-    // Among left-out objects, the eye stands about as far before the subject as an eye in perspective.
+    // If objects are left out, the eye stands about as far before the subject as an eye in perspective.
     pose[3] = glm::dvec4(fit.parallel_eye(box, (subject.left_out.empty() ? 1 : 2) * diagonal), 1.0);
   } else {
-    // The eye keeps a distance from the nearest point, as it would lie in a model that is seen along its own plane.
+    // The eye keeps a distance from the nearest point, because otherwise it would lie in a flat model that is seen
+    // edge-on.
     pose[3] = glm::dvec4(fit.eye(1e-3 * diagonal), 1.0);
     if (!points.empty() && !options.target) centre(pose, frustum, points);
   }

@@ -33,7 +33,7 @@ const glm::dmat4 kFlipYZ(1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1);
 // Eye space from a robot's axes: x is ahead (-z of the eye), y left (-x), z up (y).
 const glm::dmat4 kEyeFromRobot(0, 0, -1, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1);
 
-/// The transpose inverts a rotation exactly; a general inverse would round once more.
+/// Inverts a rigid pose. The transpose inverts a rotation exactly; a general inverse would round once more.
 glm::dmat4 inverse_rigid(const glm::dmat4& pose) {
   const glm::dmat3 rotation = glm::transpose(glm::dmat3(pose));
   glm::dmat4 inverse(rotation);
@@ -79,7 +79,7 @@ glm::dmat4 look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::d
   const glm::dvec3 wanted = is_finite(up) && up_length > 0 ? up / up_length : glm::dvec3(0, 1, 0);
   glm::dvec3 right = glm::cross(wanted, back);
   // The roll is undefined along "up", so the axis farthest from the viewing direction replaces "up". The limit is the
-  // sine of the angle between both: below it the roll would consist of rounding errors.
+  // sine of the angle between "up" and the viewing direction: below it the roll would consist of rounding errors.
   if (glm::length(right) < 1e-9) {
     const glm::dvec3 other = std::abs(back.z) < 0.9 ? glm::dvec3(0, 0, back.y > 0 ? -1 : 1) : glm::dvec3(0, 1, 0);
     right = glm::cross(other, back);
@@ -350,8 +350,8 @@ void validate(const View& view) {
   if (p.orthographic) {
     (void)make_orthographic(p.left, p.right, p.bottom, p.top, p.clip);
   } else {
-    // make_frustum() takes sides at the near plane. These sides, at distance 1, are passed unscaled: scaled by a wrong
-    // near plane, they would be blamed for it.
+    // make_frustum() takes sides at the near plane. These sides, at distance 1, are passed unscaled: if they were
+    // scaled by a wrong near plane, the error would name the sides.
     (void)make_frustum(p.left, p.right, p.bottom, p.top, p.clip);
   }
   (void)world_from_eye(view.world_from_eye, PoseConvention::opengl_camera_to_world);
