@@ -17,7 +17,7 @@
 
 namespace frontmost {
 
-/// One plane of values, rows top to bottom: floats for colours, depths and directions; integers for ids.
+/// One plane of values, with rows from top to bottom. Colours, depths and directions are floats; ids are integers.
 struct Channel {
   std::string name;
   std::variant<Buffer<float>, Buffer<std::uint32_t>> values;
@@ -55,18 +55,18 @@ struct Bitmap {
   Buffer<std::uint8_t> rgba;
 };
 
-/// \throws Error bad_argument unless sizes are 1 to 2^20, there are channels, their names differ, and each plane has
-/// width * height values.
+/// \throws Error bad_argument unless width and height are 1 to 2^20, there is a channel, channel names differ, and each
+/// plane has width * height values.
 void validate(const Image& image);
-/// \throws Error bad_argument unless sizes are 1 to 2^20, there are channels, `first` has one entry per pixel and one
-/// more and never decreases, and each channel has one value per sample.
+/// \throws Error bad_argument unless width and height are 1 to 2^20, there is a channel, `first` has one entry per
+/// pixel and one more and never decreases, and each channel has one value per sample.
 void validate(const DeepImage& image);
-/// \throws Error bad_argument unless sizes are 1 to 2^20 and there are four bytes per pixel.
+/// \throws Error bad_argument unless width and height are 1 to 2^20 and there are four bytes per pixel.
 void validate(const Bitmap& bitmap);
 
-/// The colours of an image in 8-bit sRGB, as save() writes them to a PNG file. Values out of range are clamped, NaN
-/// gives 0, pixels with alpha 0 are black, and an image without A is opaque. \throws Error bad_argument unless
-/// validate(image) passes and R, G, B are planes of floats.
+/// \returns the colours of an image in 8-bit sRGB, as save() writes them to a PNG file. Values out of range are
+/// clamped, NaN gives 0, pixels with alpha 0 are black, and an image without A is opaque. \throws Error bad_argument
+/// unless validate(image) passes and R, G, B are planes of floats.
 [[nodiscard]] Bitmap bitmap_of(const Image& image);
 /// The linear value of an 8-bit sRGB value.
 [[nodiscard]] float linear_of_srgb(std::uint8_t srgb);
@@ -82,15 +82,16 @@ inline constexpr float max_environment_value = 16777216.0f;
                                        float background = std::numeric_limits<float>::infinity());
 
 enum class IdKind : std::uint8_t { primitive, object, material };
-/// A map of ids, with one integer channel named "primitive", "object" (instance number) or "material". no_index where
-/// nothing is seen or no material is set.
+/// \returns a map of ids, with one integer channel named "primitive", "object" (instance number) or "material". The id
+/// is no_index where nothing is seen or no material is set.
 [[nodiscard]] Image id_image(const Surfaces& surfaces, const Visible& visible, IdKind kind);
-/// A map of ids for any grid of primitives, such as a RangeScan's, with the top row first.
+/// \returns a map of ids for any grid of primitives, such as that of a RangeScan, with the top row first.
 /// \throws Error bad_argument unless there are width * height primitives.
 [[nodiscard]] Image id_image(const Surfaces& surfaces, const glm::ivec2& size, std::span<const PrimitiveId> primitives,
                              IdKind kind);
 
-/// Counts the pixels of an id_image() by id, for ids below `count`, such as the numbers of Scene::instances. O(pixels).
+/// \returns the number of pixels of an id_image() for each id below `count`; ids may be, for example, instance numbers.
+/// O(pixels).
 /// \throws Error bad_argument unless the image has one channel of integers.
 [[nodiscard]] std::vector<std::uint64_t> count_pixels(const Image& ids, std::size_t count);
 
@@ -114,8 +115,8 @@ struct Comparison {
 [[nodiscard]] Comparison compare(const Image& image, const Image& reference, double threshold = 0,
                                  const Execution& execution = {});
 
-/// A picture of the pixels that differ by more than `threshold`, from red (least) to yellow (most). Other pixels show
-/// the reference in dim grey, or black for maps.
+/// \returns a picture in which pixels that differ by more than `threshold` go from red (least) to yellow (most). Other
+/// pixels show the reference in dim grey, or black for maps.
 /// \throws Error as compare() does.
 [[nodiscard]] Image difference_image(const Image& image, const Image& reference, double threshold = 0,
                                      const Execution& execution = {});

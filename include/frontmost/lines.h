@@ -21,7 +21,7 @@ namespace frontmost {
 
 /// Why an edge is drawn. If several reasons hold, the first one counts.
 enum class EdgeKind : std::uint8_t {
-  boundary,      ///< belongs to one triangle, or to more than two that do not continue each other
+  boundary,      ///< belongs to one triangle, or to more than two, of which no two continue each other
   silhouette,    ///< one of its triangles faces the eye, the other does not
   border,        ///< its triangles belong to different instances, or have different materials
   crease,        ///< its triangles meet at an angle
@@ -38,9 +38,9 @@ struct LineOptions {
   /// at less than 15 never. A crease of one or two edges that ends in the air is dropped, unless it is longer than a
   /// twentieth of the scene's diagonal.
   std::optional<double> crease_angle = std::nullopt;
-  /// True: DrawnPart::hidden_by counts surfaces. False: it is 0 or 1, which costs less.
+  /// True: DrawnPart::hidden_by counts surfaces. False: hidden_by is 0 or 1, which takes less time.
   bool counts_hidden = false;
-  /// The kinds that are found. Leaving out intersections saves a third to a half of the time.
+  /// The kinds of edges that are found. Leaving out intersections saves a third to a half of the time.
   bool boundaries = true, silhouettes = true, borders = true, creases = true, intersections = true;
   bool outlines = false;  ///< true: finds DrawnPart::is_outline
 };
@@ -49,7 +49,7 @@ struct LineOptions {
 struct DrawnEdge {
   glm::dvec3 from{0}, to{0};
   EdgeKind kind = EdgeKind::boundary;
-  PrimitiveId left = no_primitive, right = no_primitive;  ///< two of its triangles; a boundary may have only one
+  PrimitiveId left = no_primitive, right = no_primitive;  ///< two triangles of the edge; a boundary may have only one
 };
 
 /// A part of an edge that is seen, or hidden, from end to end: from + t * (to - from) for t from `begin` to `end`. Each
@@ -59,9 +59,9 @@ struct DrawnPart {
   double begin = 0, end = 1;
   glm::dvec2 from{0}, to{0};    ///< pixels of the view: x right, y down, the first pixel's centre at (0.5, 0.5)
   std::uint32_t hidden_by = 0;  ///< number of surfaces in front, see LineOptions::counts_hidden; 0: seen
-  /// True: the part is seen, and bounds the picture of the scene. Its triangles lie on one side (it is a silhouette or
-  /// a boundary), and on the other side the scene has no triangle at any depth. Other silhouettes lie within the
-  /// picture.
+  /// True: the part is seen, and bounds the scene as seen in the picture. The part is a silhouette or a boundary with
+  /// its triangles on one side, and on the other side the scene has no triangle at any depth. Other silhouettes have
+  /// triangles of the scene on both sides.
   bool is_outline = false;
 };
 
@@ -116,15 +116,14 @@ struct Drawing {
 
 struct StrokeOptions {
   bool with_hidden = true;  ///< false: hidden parts are left out
-  /// Radians, 0 to pi/2: hidden intersections are left out if their surfaces cross at a smaller angle. Where two
-  /// surfaces of nearly the same shape coincide, as a bolt in its bore, intersections are many and show only the
-  /// tessellation.
+  /// Radians, 0 to pi/2: hidden intersections are left out if their surfaces cross at a smaller angle. Two surfaces of
+  /// nearly the same shape, such as a bolt and its bore, have many intersections, which show only the tessellation.
   double grazing_angle = 0;
   bool by_kind = true;      ///< false: edges of different kinds may share a stroke
   bool by_outline = true;   ///< false: outlines and other lines may share a stroke
   bool by_instance = true;  ///< false: edges of different objects may share a stroke
-  /// Pixels, 0.002 to 1: lines closer to each other are drawn once, and strokes that stay this close to their beginning
-  /// are points.
+  /// Pixels, 0.002 to 1: lines that are closer to each other than this are drawn once, and a stroke that stays this
+  /// close to its beginning becomes a point.
   double apart = 0.002;
   double tolerance = 0.01;  ///< pixels, 0.0001 to 1: greatest distance of a stroke from its parts
   /// Pixels, 0 to 100. Above 0: four or more consecutive parts become an arc if their ends lie within this distance of
@@ -132,11 +131,11 @@ struct StrokeOptions {
   /// distance of a part, unless two of the six parts around that part (three before, three after) are at least half as
   /// long as the part.
   double arc_tolerance = 0;
-  /// Pixels, 0 to 10000: a shorter stroke is left out if it ends in the air, or lies between lines that continue
-  /// without it. Pieces of silhouettes and boundaries that close an outline stay.
+  /// Pixels, 0 to 10000: a shorter stroke is left out if it ends in the air, or joins lines that continue without it.
+  /// Pieces of silhouettes and boundaries that close an outline are kept.
   double shortest = 0;
-  /// True: each stroke begins as near as possible to the end of the one before, and continues it if they touch: for
-  /// plotters. False: strokes come in the order of their parts.
+  /// True, for plotters: each stroke begins as near as possible to the end of the stroke before, and continues that
+  /// stroke if the two touch. False: strokes come in the order of their parts.
   bool nearest_first = false;
 };
 
@@ -209,8 +208,8 @@ struct HatchOptions {
   ToneOptions tone{};
   double shortest = 0;      ///< pixels, 0 to 1000: shorter lines are left out
   bool by_instance = true;  ///< false: lines continue from object to object
-  /// True: within a set (and instance), each line begins as near as possible to the end of the one before: for
-  /// plotters.
+  /// True, for plotters: within a set (and instance), each line begins as near as possible to the end of the line
+  /// before.
   bool nearest_first = false;
 };
 
@@ -251,8 +250,9 @@ struct Stipple {
 
 /// Dots on visible parts of `surfaces`: none where the brightness is above 0.95, one per square of side length
 /// `spacing` in shadow, and in between the more, the darker the surface is. Dots are spread evenly, in a pattern that
-/// depends on the picture alone. The signs of hatch() decide whether a dot is seen and lit. By row, from the left.
-/// Cost, threads and errors as for hatch(); limit_exceeded if the picture has room for more than 20 million dots.
+/// depends on the picture alone. The same exact signs as in hatch() decide whether a dot is seen and lit. Dots are
+/// sorted by row, then from the left. Cost, threads and errors as for hatch(); limit_exceeded if the picture has room
+/// for more than 20 million dots.
 /// (R. Ulichney. The Void-and-Cluster Method for Dither Array Generation. 1993.)
 [[nodiscard]] std::vector<Stipple> stipple(const Surfaces& surfaces, const View& view, const StippleOptions& options,
                                            const Execution& execution = {});
@@ -277,8 +277,8 @@ struct CuttingPlane {
 struct CutFace {
   std::uint32_t instance = no_index;
   std::uint32_t material = no_index;  ///< the material of this face alone, in Section::scene
-  /// Closed lines in the plane, counter-clockwise around the cut material as seen from the side that is taken away, and
-  /// clockwise around holes. They cross only if the object intersects itself.
+  /// Closed lines in the plane. Seen from the side that is taken away, they run counter-clockwise around the cut
+  /// material and clockwise around holes. Lines cross only if the object intersects itself.
   std::vector<std::vector<glm::vec3>> outlines{};
   double area = 0;             ///< without the holes
   std::size_t open_count = 0;  ///< number of lines that a hole of the mesh leaves open; they bound nothing
@@ -319,9 +319,9 @@ struct SectionHatching {
   double thinnest = 0;       ///< scene units: faces with a smaller mean thickness are solid
 };
 
-/// Sets of hatch() for the faces of a section: continuous lines at 45 degrees to either side, at the given spacing, or
-/// 0.7 or 1.4 times that, by `styles` from hatch_styles() (ISO 128-50). Use them with section_tone(), so that faces are
-/// hatched wherever they are seen. O(faces).
+/// \returns sets for hatch() that hatch the faces of a section. Lines are continuous, at 45 degrees to either side;
+/// their spacing is the given one, or 0.7 or 1.4 times that, by `styles` from hatch_styles() (ISO 128-50). Use them
+/// with section_tone(), so that faces are hatched wherever they are seen. O(faces).
 [[nodiscard]] std::vector<HatchSet> section_hatch_sets(const Section& section, std::span<const std::uint8_t> styles,
                                                        const SectionHatching& options = {});
 /// A light in the plane of the cut, without shadows: all of the cut counts as dark.
@@ -372,7 +372,8 @@ struct Rounds {
 // - Surfaces of revolution are smooth, go all the way round, and have their vertices in rings of 18 or more: tori,
 //   domes, cones. Cylinders are separate, and whole spheres, which have no axis of their own, are left out.
 
-/// Finds the circles and cylinders of which at least 160 degrees exist, and other surfaces of revolution. Near-linear.
+/// Finds the circles and cylinders of which at least 160 degrees exist, and other surfaces of revolution. The time is
+/// near-linear.
 /// \throws Error limit_exceeded for more than 2^29 triangles.
 [[nodiscard]] Rounds find_rounds(const Surfaces& surfaces, const Execution& execution = {});
 

@@ -29,12 +29,12 @@
 
 namespace frontmost {
 
-/// The rule by which polygons are put into order.
+/// The method that puts polygons into order.
 enum class PaintMethod : std::uint8_t {
-  depth_sort,  ///< by depth, with exchanges and cuts: right everywhere; cuts only polygons that cannot be ordered whole
-  bsp,         ///< by a binary tree of planes: right everywhere; cuts many more polygons
-  farthest,    ///< by farthest points alone: wrong where they do not decide
-  centroid,    ///< by centroids alone: wrong in other cases than `farthest`
+  depth_sort,  ///< by depth, with exchanges; right everywhere; cuts only polygons that cannot be ordered whole
+  bsp,         ///< by a binary tree of planes; right everywhere; cuts many more polygons
+  farthest,    ///< by farthest points alone; wrong where these do not decide
+  centroid,    ///< by centroids alone; wrong in other cases than `farthest`
 };
 
 /// The set of triangles that hide everything behind them.
@@ -72,10 +72,10 @@ struct PainterOptions {
   Occluders occluders = Occluders::none();
 };
 
-/// A corner of a polygon, and the polygon's side from it to the next corner.
+/// A corner of a polygon, and the side of the polygon that leads from this corner to the next.
 struct PaintCorner {
-  glm::dvec3 at{0};     ///< x and y in pixels of the view (x right, y down), z the planar distance
-  bool is_cut = false;  ///< the side was made by a cut and is no edge of the primitive
+  glm::dvec3 at{0};     ///< x and y: pixels of the view (x right, y down); z: planar distance
+  bool is_cut = false;  ///< true: the side was made by a cut; false: it lies on an edge of the primitive
 };
 
 /// A primitive, or a convex piece of one, counter-clockwise as seen. Its corners are the `corner_count` elements of

@@ -65,12 +65,12 @@ class RayIndex {
   std::unique_ptr<RayTree> tree_;
 };
 
-/// The front-most triangle at every sample, by its ray from the eye (parallel projection: along the viewing axis).
-/// Vertices are not snapped: on which side a ray passes an edge is decided exactly on their floats. A ray through an
-/// edge or vertex meets every triangle that has it, so no ray leaks between neighbours; at equal keys the lower id
-/// wins. Near and far are tested at every sample. The result is the same to the bit for any number of threads and any
-/// instruction set. (S. Woop, C. Benthin, I. Wald. Watertight Ray/Triangle Intersection. 2013. A. Reshetov, A.
-/// Soupikov, J. Hurley. Multi-Level Ray Tracing Algorithm. 2005.)
+/// \returns the front-most triangle at every sample, along the sample's ray from the eye (in parallel projection, along
+/// the viewing axis). Vertices are not snapped: the side on which a ray passes an edge is decided exactly on the
+/// vertices' floats. A ray through an edge or vertex meets every triangle that has it, so no ray leaks between
+/// neighbours; at equal keys the lower id wins. Near and far are tested at every sample. The result is the same to the
+/// bit for any number of threads and any instruction set. (S. Woop, C. Benthin, I. Wald. Watertight Ray/Triangle
+/// Intersection. 2013. A. Reshetov, A. Soupikov, J. Hurley. Multi-Level Ray Tracing Algorithm. 2005.)
 /// \throws Error as validate(view) does.
 [[nodiscard]] Visible raycast(const RayIndex& index, const View& view, const Execution& execution = {});
 /// Builds an index for this one view and casts with it.
@@ -136,19 +136,19 @@ struct RayHit {
 /// True if a segment meets no surface, so its ends see each other. Faster than closest_hit().
 [[nodiscard]] bool is_clear(const RayIndex& index, const Segment& segment);
 
-/// The nearest surface of each query, on all threads; answers do not depend on their number.
+/// Finds the nearest surface of each query, on all threads. Answers do not depend on the number of threads.
 /// \throws Error bad_argument unless there are as many answers as queries.
 void closest_hits(const RayIndex& index, std::span<const Ray> rays, std::span<RayHit> answers,
                   const Execution& execution = {});
 void closest_hits(const RayIndex& index, std::span<const Segment> segments, std::span<RayHit> answers,
                   const Execution& execution = {});
-/// 1 if the segment is clear, 0 if it is blocked.
+/// Sets the answer of each segment: 1 if the segment is clear, 0 if it is blocked.
 /// \throws Error as closest_hits() does.
 void are_clear(const RayIndex& index, std::span<const Segment> segments, std::span<std::uint8_t> answers,
                const Execution& execution = {});
 
-/// An exact point of a triangle: the mean of its vertices by weights, moved by `lift`. The mean is not rounded and lies
-/// in the triangle's plane, where a point of floats seldom lies.
+/// An exact point of a triangle: the mean of the vertices with `weights`, moved by `lift`. The mean is not rounded, so
+/// it lies in the triangle's plane, where a point made of floats seldom lies.
 struct TrianglePoint {
   PrimitiveId primitive = no_primitive;  ///< the triangle's id, if the index holds the triangle
   std::array<glm::vec3, 3> corners{};
@@ -197,7 +197,7 @@ struct Lidar {
   double first_azimuth = 0, last_azimuth = 2 * 3.14159265358979323846;
 };
 
-/// Any rays from one point, in a single row: other lenses, Risley scanners, sampling patterns.
+/// Any rays from one point, in a single row: for other lenses, Risley scanners or sampling patterns.
 struct RayPattern {
   std::vector<glm::vec3> directions;  ///< in eye space, of any length; zero or non-finite ones see nothing
 };
@@ -238,24 +238,25 @@ struct RangeScan {
   }
 };
 
-/// The nearest surface along every ray, as closest_hits() finds it, if its range is one that the camera allows. Both
-/// sides of every triangle are seen. The result is the same to the bit for any number of threads and any instruction
-/// set. O(log n) a ray. Neighbours on the grid with nearly the same direction are cast together, five to fifteen times
-/// as fast as one by one. (I. Wald, P. Slusallek, C. Benthin, M. Wagner. Interactive Rendering with Coherent Ray
-/// Tracing. 2001.)
+/// \returns the nearest surface along every ray, as closest_hits() finds it, if the camera allows the surface's range.
+/// Both sides of every triangle are seen. The result is the same to the bit for any number of threads and any
+/// instruction set. O(log n) a ray. Neighbours on the grid with nearly the same direction are cast together, five to
+/// fifteen times as fast as one by one. (I. Wald, P. Slusallek, C. Benthin, M. Wagner. Interactive Rendering with
+/// Coherent Ray Tracing. 2001.)
 /// \throws Error as validate(camera) does.
 [[nodiscard]] RangeScan scan(const RayIndex& index, const RayCamera& camera, const Execution& execution = {});
 
 /// The point where a sample's ray meets the surface, in world space. Precondition: the ray meets a surface.
 [[nodiscard]] glm::dvec3 point_of(const RangeScan& scan, int x, int y, int sample = 0);
 
-/// Planar depth of every sample, in the scan's order, as a pinhole camera in that pose would find it. +inf where
-/// nothing is met, and for rays at 90 degrees or more from the viewing axis, which have no such distance.
+/// \returns the planar depth of every sample, in the scan's order, as a pinhole camera in that pose would find it. The
+/// depth is +inf where nothing is met, and for rays at 90 degrees or more from the viewing axis, for which no planar
+/// depth is defined.
 [[nodiscard]] Buffer<float> planar_depths(const RangeScan& scan, const Execution& execution = {});
 
-/// Angle of incidence of every sample, in the scan's order, in degrees between its ray and the normal of the triangle
-/// that it meets. 0 head-on, nearly 90 if the ray grazes the triangle, from either side; NaN where nothing is met.
-/// Precondition: the scan is of these surfaces, unchanged since.
+/// \returns the angle of incidence of every sample, in the scan's order: degrees between the sample's ray and the
+/// normal of the triangle that the ray meets. The angle is 0 head-on and nearly 90 if the ray grazes the triangle, from
+/// either side; NaN where nothing is met. Precondition: the scan is of these surfaces, unchanged since.
 [[nodiscard]] Buffer<float> incidence_angles(const RangeScan& scan, const Surfaces& surfaces,
                                              const Execution& execution = {});
 
