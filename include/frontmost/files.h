@@ -183,15 +183,14 @@ void save(const Table& table, const std::string& path, TableFormat format);
 //          materials with the layers of glTF's extensions, textures as PNG. Vertices are shared if all of their data
 //          agree. A root node turns and moves the model if its up axis is not y, or the scene has an origin.
 
-/// Writes the objects of a scene in the format that the suffix names. The file is written whole or not at all.
-/// Triangles keep the order of primitive ids; coordinates are the source file's, with the scene's origin added. PLY and
-/// STL reverse the winding of mirrored objects, so that outsides stay outside. GLB omits triangles with non-finite
-/// corners, and the normals of a mesh if one of them has no direction. Curved primitives, cameras, lights and
-/// categories are left out. `of_triangles` has further properties of PLY faces, one row for each triangle; its columns
-/// become uchar, uint or double. Byte columns named red, green and blue are colours. O(triangles), for GLB O(triangles
-/// log triangles). \throws Error file_unwritable; unsupported for other suffixes, or a table without PLY; bad_argument
-/// for a table that does not fit the triangles; limit_exceeded above 2^32 - 2 vertices in PLY or 4 GiB in GLB; as
-/// validate(scene) does.
+/// Writes the objects of a scene, whole or not at all, in the format that the suffix names. Triangles keep the order of
+/// primitive ids; coordinates are the source file's, with the scene's origin added. PLY and STL reverse the winding of
+/// mirrored objects, so that outsides stay outside. GLB omits triangles with non-finite corners, and the normals of a
+/// mesh if one of them has no direction. Curved primitives, cameras, lights and categories are left out. `of_triangles`
+/// has further properties of PLY faces, one row for each triangle: uchar, uint or double; byte columns named red, green
+/// and blue are colours. O(triangles), for GLB O(triangles log triangles). \throws Error file_unwritable; unsupported
+/// for other suffixes, or a table without PLY; bad_argument for a table that does not fit the triangles; limit_exceeded
+/// above 2^32 - 2 vertices in PLY or 4 GiB in GLB; as validate(scene) does.
 void save(const Scene& scene, const std::string& path, const Table& of_triangles = {});
 
 }  // namespace frontmost

@@ -118,13 +118,11 @@ struct VisibleParts {
 
 /// \returns all triangles that `view` may show, in painting order. Of coplanar triangles the lower id is on top. A copy
 /// (a triangle with the same vertices as one of lower id) lies directly below that triangle, and costs no more than its
-/// own polygon.
-/// Triangles seen edge-on, excluded by View::culling or outside the view are left out. Near and far planes cut
-/// triangles; the picture's sides do not. Triangles with holes (alpha mode MASK) are whole. The result is the same to
-/// the bit for any number of threads. O(n log n), and one test per pair that overlaps on the screen and in depth. 200
-/// bytes a triangle, 110 of them the result.
-/// \throws Error as validate(view) does; limit_exceeded beyond the limits of PainterOptions, or 2^28 tests and 8,192
-/// per polygon.
+/// own polygon. Triangles seen edge-on, excluded by View::culling or outside the view are left out. Near and far planes
+/// cut triangles; the picture's sides do not. Triangles with holes (alpha mode MASK) are whole. The result is the same
+/// to the bit for any number of threads. O(n log n), and one test per pair that overlaps on the screen and in depth.
+/// 200 bytes a triangle, 110 of them the result. \throws Error as validate(view) does; limit_exceeded beyond the limits
+/// of PainterOptions, or 2^28 tests and 8,192 per polygon.
 [[nodiscard]] PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOptions& options = {},
                                  const Execution& execution = {});
 
