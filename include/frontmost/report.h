@@ -23,8 +23,8 @@
 
 namespace frontmost {
 
-/// Defects of a mesh. Vertices are the same if their positions are (bit for bit, but +0 = -0), whatever their numbers.
-/// Nothing is rounded; no tolerance is used.
+/// Defects of a mesh. Vertices count as one if their positions are equal (bit for bit, except that +0 equals -0),
+/// whatever their numbers. Nothing is rounded; no tolerance is used.
 struct Oddities {
   std::uint64_t non_finite_triangles = 0;  ///< with a NaN or infinite coordinate; not counted in anything below
   std::uint64_t degenerate_triangles = 0;  ///< area exactly zero: vertices repeated, or on one line
@@ -59,7 +59,8 @@ struct MeshReport {
   std::uint64_t pieces = 0;  ///< number of parts connected at least by a vertex
   std::uint64_t shells = 0;  ///< number of parts connected by edges; at least `pieces`
   bool closed = false;       ///< has triangles and no boundary edge
-  /// Handles of all shells together. None unless the mesh is closed, without non-manifold and inconsistent edges.
+  /// Number of handles of all shells together. None unless the mesh is closed and has neither non-manifold nor
+  /// inconsistent edges.
   std::optional<std::uint64_t> genus;
 };
 
@@ -70,7 +71,8 @@ struct ObjectReport {
   std::uint64_t triangles = 0;
   Box bounds;       ///< world space, of the finite triangles
   double area = 0;  ///< world space, of the finite triangles
-  /// World space. None if the mesh has no genus. Shells wound the other way are hollows and subtracted.
+  /// Volume in world space. None if the mesh has no genus. Shells that are wound the other way count as hollows and are
+  /// subtracted.
   std::optional<double> volume;
 };
 
@@ -111,7 +113,7 @@ struct SceneReport {
   Box bounds;                    ///< world space
   double area = 0;               ///< sum over all objects
   std::optional<double> volume;  ///< sum over the objects that have a volume; none if no object has one
-  /// Greatest rounding of a vertex because positions are floats: half a float step at the farthest coordinate.
+  /// Greatest rounding error of a vertex, because positions are floats: half a float step at the farthest coordinate.
   double rounding = 0;
   std::vector<MeshReport> meshes;
   std::vector<ObjectReport> objects;
@@ -164,14 +166,14 @@ struct SampleSet {
 
 /// Samples of one instance in one view. The three shares add up to 1; all are 0 if the object covers no sample.
 struct ObjectAccount {
-  SampleSet alone;     ///< on the canvas
+  SampleSet alone;     ///< samples that the object covers alone, on the canvas
   SampleSet in_frame;  ///< the part of `alone` within the picture
   SampleSet visible;   ///< the part of `in_frame` that nothing hides
   /// Planar distance of the nearest visible sample, as in depths_of(); +inf if none is visible.
   float distance = std::numeric_limits<float>::infinity();
   /// Mean position of the visible samples, in pixels from the picture's top left corner; 0 if none is visible.
   glm::dvec2 centroid{0};
-  /// True: the object reaches across the near plane. Its part in front of the plane counts nowhere.
+  /// True: the object reaches across the near plane. Its part in front of the plane is counted nowhere.
   bool is_cut_by_near = false;
 
   [[nodiscard]] double visible_share() const { return share(visible.count); }
@@ -198,7 +200,7 @@ struct AccountingOptions {
   /// its middle. 1: the picture itself, so that no object is cut. 3, as in BOP: room for any object that is no larger
   /// than the picture and half in it. Rounded down to whole pixels on each side, and at most 16384 pixels wide or high.
   double canvas = 3;
-  /// True: also finds hidden_by_any and hidden_only_by. Takes some ten times as long, and 20 MiB or more.
+  /// True: hidden_by_any and hidden_only_by are found, too. This takes some ten times as long, and 20 MiB or more.
   bool all_hiders = false;
 };
 
@@ -206,8 +208,8 @@ struct Accounting {
   PixelBox canvas;                     ///< pixels on which objects were counted alone
   std::vector<ObjectAccount> objects;  ///< by instance
   std::uint64_t background = 0;        ///< samples that see nothing: all but the visible samples of the objects
-  /// Samples in frame that see `hider` in place of `object`; by object, then by hider. The counts of one object add up
-  /// to its hidden samples.
+  /// Samples in frame that see `hider` in place of `object`, sorted by object, then by hider. The counts of one object
+  /// add up to its number of hidden samples.
   std::vector<HiddenSamples> hidden_by_front;
   /// Samples in frame at which `hider` is in front of `object`, even if others are as well; in the same order. Empty
   /// unless AccountingOptions::all_hiders.
@@ -235,8 +237,8 @@ struct HidingOrder {
   std::vector<std::vector<std::uint32_t>> cycles;
 };
 
-/// The hiding order of `object_count` objects by pairs such as Accounting::hidden_by_front. O(objects + pairs * log).
-/// Source: R. Tarjan. Depth-First Search and Linear Graph Algorithms. 1972.
+/// Finds the hiding order of `object_count` objects from pairs such as Accounting::hidden_by_front. O(objects + pairs *
+/// log). Source: R. Tarjan. Depth-First Search and Linear Graph Algorithms. 1972.
 /// \throws Error bad_argument for a pair of equal objects, or of numbers that are not below `object_count`.
 [[nodiscard]] HidingOrder find_hiding_order(std::size_t object_count, std::span<const HiddenSamples> pairs);
 
@@ -319,7 +321,7 @@ enum class SightReason : std::uint8_t {
 /// \returns "empty", "behind_eye", ...
 [[nodiscard]] std::string_view name(SightReason reason);
 
-/// Number of an object's triangles by place. Each counts once, at the first place that holds for all of the triangle.
+/// Number of an object's triangles by place. Each triangle counts once, at the first place that holds for all of it.
 struct TrianglePlaces {
   std::uint64_t empty = 0;  ///< with a non-finite vertex, or without area
   std::uint64_t behind_eye = 0, nearer_than_near = 0, beyond_far = 0;
@@ -355,7 +357,7 @@ enum class RemedyKind : std::uint8_t {
 struct Remedy {
   RemedyKind kind = RemedyKind::none;
   double value = 0;
-  /// To the right and upwards where positive: radians for `turn`, scene units for `move`.
+  /// Amounts, positive to the right and upwards: radians for `turn`, scene units for `move`.
   double right = 0, up = 0;
   /// Numbers of all objects in front of the object at one place, where it is seen once they are removed. Of four places
   /// spread over the object, the one with the fewest objects is taken.
@@ -373,8 +375,8 @@ struct Explanation {
   std::uint32_t object = no_index;  ///< an instance
   SightReason reason = SightReason::empty;
   TrianglePlaces triangles;
-  /// If no sample is covered: area in the picture of the parts that would be seen of the object alone, in square
-  /// pixels, exact as in visible_faces(); 0 if it is seen edge-on.
+  /// If the object covers no sample: the area in the picture that would be seen of it if it were alone, in square
+  /// pixels, exact as in visible_faces(). 0 if the object is seen edge-on.
   double pixels = 0;
   bool is_all_holes = false;  ///< if transparent: true: all samples are holes; false: its opacity is 0
   double visible_share = 0, hidden_share = 0, cut_share = 0;  ///< as in ObjectAccount
@@ -431,8 +433,8 @@ class ObjectNames {
 /// The seen part of one triangle.
 struct VisibleFace {
   PrimitiveId id = no_primitive;
-  double pixels = 0;       ///< in the picture, in square pixels; more than 0
-  double area = 0;         ///< on the triangle, in scene units squared
+  double pixels = 0;       ///< area in the picture, in square pixels; more than 0
+  double area = 0;         ///< area on the triangle, in scene units squared
   double solid_angle = 0;  ///< steradians, from the eye; 0 in parallel projection, whose eye is infinitely far away
 };
 
@@ -497,7 +499,7 @@ struct DatasetOptions {
   bool coco_polygons = false;             ///< true: COCO masks are polygons; false: run lengths
   BopVisible bop_visible = BopVisible::exact;
   bool are_masks_numbered = false;  ///< true: names of masks begin with the number of the view, for several views
-  /// Names of objects, or of categories, without annotation, mask or pose. These objects still hide others.
+  /// Names of objects, or of categories, that get no annotation, mask or pose. These objects still hide others.
   std::vector<std::string> leave_out;
 };
 

@@ -111,8 +111,8 @@ struct TextureUse {
 };
 
 /// The metallic-roughness material of glTF 2.0, with the layers of its extensions, which are off by default. Colours
-/// are linear. Factors multiply the values of their textures. A number out of its range counts as the nearest in range,
-/// and one that is not a number as the default.
+/// are linear. Factors multiply the values of their textures. A number out of its range counts as the nearest number in
+/// range, and NaN counts as the default.
 struct Material {
   enum class Alpha : std::uint8_t { opaque, mask, blend };
 
@@ -280,8 +280,8 @@ void add(Scene& scene, Scene part);
 /// The origin about which floats keep the most details of a scene. A scene is far from zero if, on some axis, all of it
 /// lies beyond four times its size and 1024 units, or beyond 128 times its size. The origin of a far scene is, on each
 /// axis on which the scene is four sizes away, the roundest number nearby. Elsewhere it is zero. A model that was moved
-/// by a round number is thus moved back to the bit. Near zero a few vertices are examined, otherwise all. Precondition:
-/// validate(scene) passes.
+/// by a round number is thus moved back to the bit. A few vertices suffice to recognise a scene near zero; otherwise
+/// all are examined. Precondition: validate(scene) passes.
 [[nodiscard]] glm::dvec3 fitting_origin(const Scene& scene);
 /// The fitting origin of points in doubles. Points that are not finite as floats are ignored. O(points).
 [[nodiscard]] glm::dvec3 fitting_origin(std::span<const glm::dvec3> points);
@@ -344,8 +344,8 @@ class Surfaces {
   /// changed scene. An Occlusion and a Shader follow at their next call, a RayIndex by RayIndex::follow(). Nothing else
   /// may read the surfaces or the scene meanwhile. O(triangles of the instance + log(instances)); with clusters, the
   /// first call is O(triangles). Clusters keep their triangles, so pictures grow slower as old neighbours part.
-  /// Clusters are rebuilt if vertices become finite or cease to be. If a RayIndex shares triangles with holes, all of
-  /// these are copied.
+  /// Clusters are rebuilt if vertices become finite or cease to be. If a RayIndex still uses triangles with holes, all
+  /// of these are copied.
   /// \throws Error bad_argument for another scene, a missing instance or a non-finite transform; then nothing moves.
   void move(Scene& scene, std::uint32_t instance, const glm::dmat4& world_from_mesh, const Execution& execution = {});
 

@@ -68,10 +68,10 @@ struct FigureOptions {
   std::size_t most_polygons = 2'000'000;
 };
 
-/// A picture of polygons with the colours of shade() for the same view, including textures, shadows and smooth normals;
-/// holes of alpha mode MASK are cut out. Polygons are in painting order, exact where surfaces pass through each other.
-/// Each polygon extends up to 4 pixels under those painted over it (trapping, as printers call it), so viewers show no
-/// hairlines between neighbours. `visible` has one sample a pixel.
+/// \returns a picture of polygons with the colours of shade() for the same view, including textures, shadows and smooth
+/// normals; holes of alpha mode MASK are cut out. Polygons are in painting order, exact where surfaces pass through
+/// each other. Each polygon extends up to 4 pixels under those painted over it (trapping, as printers call it), so
+/// viewers show no hairlines between neighbours. `visible` has one sample a pixel.
 /// O(n log n) in the number of polygons, and the pixels that they cover. The same for any number of threads.
 /// (M. Newell, R. Newell, T. Sancha. A Solution to the Hidden Surface Problem. 1972.)
 /// \throws Error bad_argument for several samples a pixel or options out of range; unsupported for a shown environment;
@@ -143,10 +143,10 @@ struct Page {
   std::vector<PageLayer> layers{};
 };
 
-/// Turns each dash of a page into a path of its own, for plotters, which know no dashes. Patterns run along whole
-/// paths. Between corners of 25 degrees or more they are stretched so that both ends are drawn (ISO 128-2). Fills are
-/// unchanged. O(points + dashes). \throws Error as validate() does, limit_exceeded for more than 20 million dashes, and
-/// cancelled.
+/// Turns each dash of a page into a path of its own, for plotters, which cannot draw dashes by themselves. Patterns run
+/// along whole paths. Between corners of 25 degrees or more, a pattern is stretched so that both ends are drawn (ISO
+/// 128-2). Fills are unchanged. O(points + dashes). \throws Error as validate() does, limit_exceeded for more than 20
+/// million dashes, and cancelled.
 [[nodiscard]] Page with_real_dashes(Page page, const Execution& execution = {});
 
 enum class PageFormat : std::uint8_t { svg, pdf, dxf, json };
@@ -165,16 +165,16 @@ void validate(const Page& page);
 //   PDF    Version 1.5, compressed. Layers are optional content, groups with an opacity transparency groups. Version
 //          1.6 with a scaled user unit if a side exceeds 5080 mm.
 //   DXF    AutoCAD release 12, in millimetres ($INSUNITS), y up from the page's lower left corner. Lines only: LINE,
-//          POLYLINE, ARC, CIRCLE and POINT, without widths. Each group is a layer, "2_VISIBLE-WHEEL" after layer and
-//          group; from a thousand groups on, each page layer is one. Names have at most 31 letters, digits and -. A
-//          layer has the pen's colour; a black pen's depends on the digit that begins the page layer's name. Line types
-//          are HIDDEN, CENTER and PHANTOM for one, two and more dashes in a period, with "2" or "X2" appended if much
-//          shorter or longer; pens that share a name get the first pen's dashes.
+//          POLYLINE, ARC, CIRCLE and POINT, without widths. Each group becomes a layer, named "2_VISIBLE-WHEEL" after
+//          page layer and group; from a thousand groups on, each page layer becomes one. Names have at most 31 letters,
+//          digits and -. A layer has the pen's colour; if the pen is black, the digit that begins the page layer's name
+//          decides. Line types are HIDDEN, CENTER and PHANTOM for one, two and more dashes in a period, with "2" or
+//          "X2" appended if the dashes are much shorter or longer; pens that share a name get the first pen's dashes.
 //   JSON   All of the page, unchanged.
 
 /// Writes a page, whole or not at all. Coordinates are rounded to 0.001 mm, so paths that share a point share it in the
 /// file. Names lose characters that the format does not allow. The bytes depend on the page alone (in PDF also on the
-/// version of zlib). Memory is constant beside the page's. \throws Error as validate() does; bad_argument without a
+/// version of zlib). Takes constant memory beside the page. \throws Error as validate() does; bad_argument without a
 /// format; unsupported for fills in DXF; file_unwritable.
 void save(const Page& page, const std::string& path, std::optional<PageFormat> format = std::nullopt,
           const Execution& execution = {});
@@ -251,8 +251,8 @@ struct LinePens {
   Pen hidden{0.25, {}, {3, 0.75}};
   Pen hatching{0.18, {}};
   Pen stippling{0.3, {}};  ///< its width is the diameter of dots
-  /// Long dashes and dots. A line has an odd number of long dashes, stretched so that it begins, ends and has its
-  /// middle in one. A short line is solid.
+  /// Long dashes and dots. A line has an odd number of long dashes, stretched so that its beginning, its middle and its
+  /// end each lie in one of them. A short line is solid.
   Pen centre{0.25, {}, {6, 1, 0.1, 1}};
 };
 /// Pens of ISO 128: seen lines 0.5 mm; hidden lines 0.25 mm in dashes of 3 mm with gaps of 0.75 mm; centre lines 0.25
@@ -355,10 +355,11 @@ struct SectionView {
 struct SheetOptions {
   // The views of the sheet, in parallel projection at one scale. Views are aligned with their neighbours.
   std::vector<NamedView> views{};  ///< each at most once; at most one of iso and three_quarter, which share a place
-  /// At most 24, named A-A, B-B and so on in their order. The first view that sees a plane edge-on marks it.
+  /// At most 24 sections, named A-A, B-B and so on in their order. The first view that sees a cutting plane edge-on
+  /// marks the plane.
   std::vector<SectionView> sections{};
   ProjectionMethod projection = ProjectionMethod::first_angle;  ///< where views stand around the front view
-  /// True: overall sizes, and diameters, after ISO 129; needs views.
+  /// True: the sheet shows overall sizes and diameters, after ISO 129. Needs views.
   bool dimensions = false;
 
   // How lines are drawn.

@@ -173,7 +173,7 @@ struct FrameOptions {
   NamedView direction = NamedView::three_quarter;
   bool orthographic = false;
   double min_fov = 0.5235987755982988;  ///< field of view along the shorter side of the image, in radians (30 degrees)
-  double margin = 0.05;                 ///< on each side, as a part of the picture
+  double margin = 0.05;                 ///< margin on each side, as a fraction of the picture
   int samples = 1;
   Culling culling = Culling::none;
   /// Viewing and upward direction; if set, they replace those of `direction`. Any length but zero.
