@@ -8,7 +8,7 @@
 //
 // Nested loops and loops of several callers share the threads: every caller does its own work, and free threads come to
 // help. A loop waits only for work that has begun. A free thread looks out for the next loop for a while before it
-// sleeps, because waking a thread takes about as long as many a loop.
+// sleeps, because waking a thread takes about as long as many loops do.
 #pragma once
 
 #include <pthread.h>

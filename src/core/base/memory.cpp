@@ -80,7 +80,7 @@ struct alignas(kAlignment) Block {
   bool is_dropped = false;
 };
 
-/// A stack of blocks that follow this header.
+/// The header of a slab; a stack of blocks follows it in memory.
 struct alignas(kAlignment) Slab {
   Slab(void* whole, std::size_t room) : memory(whole), next(reinterpret_cast<char*>(this + 1)), end(next + room) {}
 

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr mode_t new_file_mode = 0666;  // less the umask
 
-/// The end of a chain of symbolic links, whether something is there or not.
+/// The path at the end of a chain of symbolic links, whether or not a file is there.
 fs::path follow_links(fs::path path) {
   constexpr int longest_chain = 40;  // as Linux counts
   std::error_code ignored;
@@ -80,7 +80,7 @@ OutputFile::OutputFile(const std::string& path, Staging staging)
     return;
   }
   if (exists) {
-    // Renaming needs no permission for the replaced file; a file without write permission is respected all the same.
+    // Renaming would need no permission for the replaced file, but a file without write permission is not replaced.
     if (::access(target_.c_str(), W_OK) != 0) fail("cannot write");
     mode_ = status.st_mode & 0777;
   }
@@ -149,7 +149,8 @@ void OutputFile::write(std::span<const std::byte> bytes) {
 
 void OutputFile::commit() {
   if (kind_ == Kind::standard_output) return;
-  // Permissions are set before the file has its name, so nobody can open it with others than the old file had.
+  // Permissions are set before the file has its name, so nobody can open the file with more permissions than the old
+  // file gave.
   if (mode_ && kind_ != Kind::direct && ::fchmod(descriptor_, *mode_) != 0) fail("cannot set permissions");
   if (kind_ == Kind::unnamed) give_name();
   close();

@@ -56,7 +56,7 @@ constexpr std::uint32_t float_bits_from(double value) {
   return (exponent << 23) + whole + (double(whole) < mantissa ? 1 : 0);  // a carry correctly moves on into the exponent
 }
 
-/// The first float of each byte from 1 on.
+/// By byte, from 1 on: the least float that becomes this byte.
 constexpr std::array<std::uint32_t, 255> thresholds() {
   std::array<std::uint32_t, 255> result{};
   for (int byte = 1; byte < 256; ++byte)

@@ -26,7 +26,8 @@ BernsteinWeights bernstein_slope(PatchParameter t) {
   return {-first, first - middle, middle - last, last};
 }
 
-// Ends are added to ends, and middle to middle: the sum is the same for a curve and its reverse.
+// Adds the end points to each other first, and the middle points to each other, so that the sum is the same for a curve
+// and its reverse.
 glm::dvec3 blend(const CubicCurve& p, const BernsteinWeights& w) {
   return (p[0] * w[0] + p[3] * w[3]) + (p[1] * w[1] + p[2] * w[2]);
 }

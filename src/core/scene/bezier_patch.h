@@ -27,7 +27,7 @@ struct PatchPoint {
   glm::dvec3 normal;
 };
 
-/// A parameter as a fraction with an explicit complement, so that walking an edge from the other end takes the same
+/// A parameter as a fraction with an explicit complement, so that walking an edge from the other end uses the same
 /// numbers: 1 - 9/10 is not 1/10 in binary.
 struct PatchParameter {
   double value, complement;

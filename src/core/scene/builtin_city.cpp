@@ -101,7 +101,7 @@ constexpr std::size_t kTowers = 7;  // index of the first tower: towers are of c
 
 // The meshes, each stored once.
 struct Stock {
-  std::array<std::array<std::uint32_t, 4>, kFloors.size()> buildings;  // by floors and wall
+  std::array<std::array<std::uint32_t, 4>, kFloors.size()> buildings;  // by number of floors and wall
   std::array<std::uint32_t, 4> houses, cars;
   std::array<std::uint32_t, 2> trees;
   std::uint32_t pavement, lawn, dash, ground;

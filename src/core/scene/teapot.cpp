@@ -36,8 +36,8 @@ constexpr std::array<ProfileRing, 4> kLid{
     {{0.2, 0.112, 2.7}, {0.4, 0.224, 2.55}, {1.3, 0.728, 2.55}, {1.3, 0.728, 2.4}}};
 constexpr std::array<ProfileRing, 4> kBottom{{{1.5, 0.84, 0.15}, {1.5, 0.84, 0.075}, {1.425, 0.798, 0}, {0, 0, 0}}};
 
-// One half ring of a bent tube: a loop of four points that starts and ends in the mirror plane. Both middle points lie
-// `width` off the plane, beside the first and the last.
+// One half ring of a bent tube: a loop of four points that starts and ends in the mirror plane. The two middle points
+// lie `width` off the plane, one beside the first point and one beside the last.
 struct Loop {
   double first_x, first_height, last_x, last_height, width;
 };

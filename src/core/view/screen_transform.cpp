@@ -42,8 +42,8 @@ ScreenTransform::ScreenTransform(const View& view) {
   x_row = as_row(scale_x * view.right() + per_distance * axis_x * view.forward());
   y_row = as_row(-scale_y * view.up() + per_distance * axis_y * view.forward());
   d_row = as_row(view.forward());
-  // Floats subtract the rounded eye. The rest, at most half a unit in the last place, goes through the rows once, in
-  // doubles.
+  // Floats subtract the rounded eye from a position. The rest of the eye, at most half a unit in the last place, is
+  // multiplied by the rows once, in doubles.
   const glm::dvec3 rest = view.eye() - glm::dvec3(eye[0], eye[1], eye[2]);
   x_offset = float((1 - per_distance) * axis_x) - dot(x_row, rest);
   y_offset = float((1 - per_distance) * axis_y) - dot(y_row, rest);

@@ -4,8 +4,8 @@
 // With d = position - eye, the homogeneous screen position is X = x_row . d + x_offset, Y and D likewise, and W = D
 // (perspective) or 1 (parallel). X / W is in 1/256 pixel from the centre of the image, x right, y down; D is the planar
 // distance. Rows and offsets are floats, evaluated as ((a*dx + b*dy) + c*dz) + offset without fused operations, so that
-// scalar code and every kernel give the same bits. The offsets hold the part of the eye that a float cannot hold: far
-// from the origin only the model's own rounding remains.
+// scalar code and every kernel give the same bits. The offsets contain the part of the eye's position that floats lose,
+// so far from the origin only the model's own rounding remains.
 #pragma once
 
 #include <array>

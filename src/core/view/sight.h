@@ -34,8 +34,8 @@ class Sight {
   /// The plane through the eye (parallel projection: along the view) and two points.
   class EyePlane {
    public:
-    /// Positive if p, q and x turn left as seen from the eye. `slack` bounds the error of each coordinate of x. If it
-    /// is above 0, the sign is 0 if slack or rounding leaves it open.
+    /// Positive if p, q and x turn left as seen from the eye. `slack` bounds the error of each coordinate of x. If
+    /// `slack` is above 0, the sign is 0 where slack or rounding leaves it open.
     [[nodiscard]] Signed turn(const glm::dvec3& x, double slack = 0) const;
 
    private:
@@ -53,7 +53,8 @@ class Sight {
 
   /// The position in eye space, with the planar distance in place of z.
   [[nodiscard]] glm::dvec3 in_eye(const glm::dvec3& position) const;
-  /// x and y in pixels, z is the planar distance. Precondition in perspective: not in the plane of the eye.
+  /// \returns x and y in pixels, and the planar distance as z. Precondition in perspective: the point is not in the
+  /// plane of the eye.
   [[nodiscard]] glm::dvec3 to_screen(const glm::dvec3& in_eye) const;
   /// The weight, for interpolation on the screen, of the point that lies a share t of the way between two points of eye
   /// space.

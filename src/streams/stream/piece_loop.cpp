@@ -43,7 +43,8 @@ Models::Models(const std::vector<std::string>& paths, const LoadOptions& options
     Model model;
     model.stream = open_model_stream(path, options, execution);
     add(std::move(model));
-    // Counts in headers are enough to refuse; other files are caught while they are read.
+    // Counts in headers suffice to refuse files before they are read; files without counts are refused while they are
+    // read.
     known += models_.back().stream->known_count().value_or(0);
     if (known > most_triangles) fail_too_many();
   }

@@ -71,10 +71,10 @@ class Models {
     std::unique_ptr<ModelStream> stream;
     std::uint32_t object = 0, first_material = 0;
     glm::dvec3 moved{0};               ///< position of its mesh in world space
-    std::size_t warnings = 0;          ///< number taken over so far
+    std::size_t warnings = 0;          ///< number of warnings taken over so far
     PrimitiveId first = 0;             ///< id of its first triangle
     std::uint64_t triangle_count = 0;  ///< number of triangles fetched in this pass
-    bool has_ended = false;            ///< in this pass or an earlier one
+    bool has_ended = false;            ///< whether the file was read to its end, in this pass or an earlier one
   };
   void add(Model model);
   void warn(const Model& model, const std::string& text);

@@ -24,7 +24,7 @@ namespace frontmost::streaming {
 
 /// The part of a piece that is drawn: triangles that may cover a sample, renumbered.
 struct Selection {
-  std::vector<std::uint32_t> numbers;  ///< within the piece, ascending
+  std::vector<std::uint32_t> numbers;  ///< numbers of the triangles within the piece, ascending
   std::vector<PixelBounds> pixels;     ///< pixels that the triangles may cover, by view
 };
 
