@@ -22,7 +22,7 @@ struct AbufferOptions {
 
 /// The part of one triangle that lies in one pixel.
 struct Fragment {
-  /// Bit s is set if sub-sample s is covered. Grids are numbered row by row from the top left. Never 0.
+  /// Bit s is set if sub-sample s is covered; at least one bit is set. Grids are numbered row by row from the top left.
   std::uint64_t mask = 0;
   PrimitiveId primitive = no_primitive;
   float key = 0;                 ///< key at the pixel's centre, limited to the triangle's keys; as in Visible::keys

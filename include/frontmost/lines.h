@@ -94,12 +94,13 @@ struct Drawing {
 //   So no line is drawn where two objects, each smooth, pass through each other exactly along a common edge.
 
 /// Finds the feature edges of `surfaces` and cuts each into seen and hidden parts. The result is the same to the bit
-/// for any number of threads and every instruction set. Near-linear: each edge is tested against triangles in the cells
-/// of a screen grid that it passes. Quadratic in a cell with `counts_hidden`, or if thousands of edges and triangles
-/// share a cell, as in stacks of triangles that are all seen or at a vertex of thousands of slivers: 20,000 take 11 s.
-/// (A. Appel. The Notion of Quantitative Invisibility and the Machine Rendering of Solids. 1967.)
+/// for any number of threads and every instruction set. Near-linear: each edge is tested against the triangles in the
+/// cells of a screen grid that the edge passes. Within a cell the time is quadratic with `counts_hidden`, or if
+/// thousands of edges and triangles share the cell, as in stacks of triangles that are all seen, or at a vertex of
+/// thousands of slivers (20,000 take 11 s). (A. Appel. The Notion of Quantitative Invisibility and the Machine
+/// Rendering of Solids. 1967.)
 /// \throws Error as validate(view) does; bad_argument for an angle out of range; limit_exceeded for more than 2^20
-/// segments of intersections and 16 for each triangle, 2^21 parts and 4 for each edge, or about 20 s of work.
+/// segments of intersections plus 16 per triangle, 2^21 parts plus 4 per edge, or about 20 s of work.
 [[nodiscard]] Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions& options = {},
                                  const Execution& execution = {});
 
@@ -154,7 +155,7 @@ struct Strokes {
   /// Empty if no stroke has arcs. Otherwise one value for each point, for the join from that point to the next: the
   /// tangent of a quarter of the arc's angle, positive from +x towards +y, at most about 1; 0: straight.
   std::vector<double> bulges;
-  /// Hidden strokes first; then by outline, kind and instance.
+  /// Sorted: hidden strokes first; then by outline, kind and instance.
   std::vector<Stroke> strokes;
 };
 
@@ -304,7 +305,8 @@ struct Section {
 /// Cuts every object by the plane. The remains of a closed object are closed: triangles that lie exactly in the plane
 /// fill the cut, and share their vertices with the cut triangles, to the bit. Normals, texture coordinates and colours
 /// of vertices are lost. Triangles with non-finite vertices are left out.
-/// O(triangles); the vertices of a cut take n log n if it looks like a machine part, n * n for combs and mazes.
+/// O(triangles); the n vertices of a cut take n log n if the cut looks like one of a machine part, n * n for combs and
+/// mazes.
 /// (G. Meisters. Polygons Have Ears. 1975.) \throws Error bad_argument for a plane that is not finite as a float.
 [[nodiscard]] Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution& execution = {});
 

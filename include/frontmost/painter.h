@@ -100,7 +100,7 @@ struct PaintSteps {
   std::uint64_t cuts = 0;               ///< polygons that were cut in two
 };
 
-/// Polygons in painting order: where two overlap, the later one lies before the earlier. paint() paints them.
+/// Polygons in painting order: where two overlap, the later one is in front of the earlier one. paint() paints them.
 struct PaintOrder {
   View view;
   std::vector<PaintPolygon> polygons;  ///< the first is painted first

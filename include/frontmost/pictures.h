@@ -209,7 +209,7 @@ struct ShadeInput {
   /// shade() makes its own.
   const RayIndex* index = nullptr;
 
-  /// The surface at every sample, or, of `pixels`, at the first sample of each pixel.
+  /// The surface at every sample of `visible`, or at the first sample of each pixel of `pixels`.
   [[nodiscard]] const Visible& first() const { return pixels ? pixels->first : *visible; }
   [[nodiscard]] const View& view() const { return pixels ? pixels->view : visible->view; }
 };
@@ -236,7 +236,7 @@ struct ScanInput {
 /// for more than 4096 lights that count, or too much work for ray shadows; unsupported for Shading::depth of `pixels`.
 [[nodiscard]] Image shade(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
                           const Execution& execution = {});
-/// Shades `visible`, or `pixels`, without shadow results of the caller's.
+/// Shades `visible`, or `pixels`, if the caller has no results for shadows.
 [[nodiscard]] Image shade(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
                           const Execution& execution = {});
 [[nodiscard]] Image shade(const Surfaces& surfaces, const VisiblePixels& pixels, const ShadeOptions& options = {},
@@ -271,11 +271,11 @@ PreparedScene& prepared(Shader& shader, const Execution& execution);  // for dra
 
 /// Shades pictures of the same surfaces one after another. Each member returns the same bytes as the function of its
 /// name. Keeps data that do not depend on the view: mip levels, smooth normals, shadow casters, the studio; and each
-/// light's shadow map while the light sees the same. From the second picture of a size on, opaque scenes need no
-/// allocation, except for Shadows::rays, Blend::srgb, a shown environment, or materials and meshes without normals that
-/// come into sight. Memory: the last picture; a third of the visible texels; 12 bytes a triangle of meshes without
-/// normals; up to 8.25 MiB for each of up to 17 shadow maps; half a megabyte a thread; where needed, surfaces of the
-/// opaque part of a scene with glass, and an index for rays. Not for several threads at once.
+/// light's shadow map, as long as what the light sees does not change. From the second picture of a size on, opaque
+/// scenes need no allocation, except for Shadows::rays, Blend::srgb, a shown environment, or materials and meshes
+/// without normals that come into sight. Memory: the last picture; a third of the visible texels; 12 bytes a triangle
+/// of meshes without normals; up to 8.25 MiB for each of up to 17 shadow maps; half a megabyte a thread; where needed,
+/// surfaces of the opaque part of a scene with glass, and an index for rays. Not for several threads at once.
 class Shader {
  public:
   /// Borrows the surfaces and their scene, which must not change except by Surfaces::move(). Each call shows moved

@@ -218,7 +218,8 @@ struct RayCamera {
 /// \throws Error bad_argument, limit_exceeded (more than most_samples rays in all) or singular_camera.
 void validate(const RayCamera& camera);
 
-/// Columns and rows of the rays: width and height; steps and rings; length of the pattern and 1.
+/// \returns the numbers of columns and rows of rays. Panoramas and fisheyes: width and height; scanners: steps and
+/// rings; patterns: number of directions and 1.
 [[nodiscard]] glm::ivec2 grid_of(const RayCamera& camera);
 
 /// The ray of a pixel's sample, in world space, the same bits on every machine. Its direction has unit length (to

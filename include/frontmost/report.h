@@ -145,8 +145,8 @@ struct SceneReport {
 //              +-------------+              cut        beyond the frame: %
 //            + - - - - - - - - - - - +
 //
-// An object is an instance of the scene. Samples are counted exactly, without tolerance: an object covers alone what
-// zbuffer() would show of it.
+// An object is an instance of the scene. Samples are counted exactly, without tolerance: the samples that an object
+// covers alone are those at which zbuffer() would show it.
 
 /// Pixels [x, x + width) x [y, y + height) from the picture's top left; x and y may be negative beyond the picture.
 struct PixelBox {
@@ -403,8 +403,8 @@ struct Explanation {
 /// Unprintable characters are written as by printable_text().
 class ObjectNames {
  public:
-  /// Keeps a reference to the scene. Functions that take names accept a scene as well; keep the names to write many
-  /// texts. O(objects).
+  /// Keeps a reference to the scene. Functions that take names accept a scene as well; keep an ObjectNames if you write
+  /// many texts. O(objects).
   ObjectNames(const Scene& scene);
   [[nodiscard]] std::string operator[](std::uint32_t object) const;
 
@@ -474,10 +474,11 @@ struct SeenFace {
 [[nodiscard]] std::vector<SeenFace> faces_ever_seen(const Surfaces& surfaces, std::span<const View> views,
                                                     const Execution& execution = {});
 
-/// A scene with only the triangles `ids` of another one, such as those of faces_ever_seen(). Objects without a kept
-/// triangle are removed; every other object gets a mesh of its own. Unused vertices and curved primitives are removed.
-/// Order, names, places, materials and textures stay. Mesh::face_ids holds the polygon of the original mesh for each
-/// triangle. O(size of the scene). \throws Error bad_argument for ids that do not ascend, or are not in the scene.
+/// \returns a scene with only the triangles `ids` of `scene`, such as those of faces_ever_seen(). Objects without a
+/// kept triangle are removed; every other object gets a mesh of its own. Unused vertices and curved primitives are
+/// removed. Order, names, places, materials and textures stay. Mesh::face_ids holds the polygon of the original mesh
+/// for each triangle. O(size of the scene). \throws Error bad_argument for ids that do not ascend, or are not in the
+/// scene.
 [[nodiscard]] Scene keep_faces(const Scene& scene, std::span<const PrimitiveId> ids);
 
 // Reports as files of data sets: COCO's annotations, scenes of BOP, and masks.

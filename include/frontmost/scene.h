@@ -145,7 +145,7 @@ struct Material {
     float factor = 0;           ///< 0 to 1: the part of the unreflected light that passes
     TextureUse factor_texture;  ///< R
   };
-  /// The medium that fills a closed mesh that transmits light, behind its front sides. KHR_materials_volume.
+  /// The medium in a closed mesh that transmits light: it fills the space behind the front sides. KHR_materials_volume.
   struct Volume {
     float thickness = 0;           ///< in the mesh's unit; 0: no medium, the surface is a thin wall
     TextureUse thickness_texture;  ///< G
@@ -184,7 +184,7 @@ struct Material {
 [[nodiscard]] std::array<TextureUse*, 14> texture_uses_of(Material& material);
 [[nodiscard]] std::array<const TextureUse*, 14> texture_uses_of(const Material& material);
 
-/// A kind of object, as data sets count them.
+/// A kind of object, as data sets define it.
 struct Category {
   std::string name;
   std::uint32_t number = 0;  ///< number in the data set: the category_id of COCO, the obj_id of BOP

@@ -306,7 +306,7 @@ struct Paper {
   bool fits_drawing = false;  ///< true: as large as the drawing and its margins; `size` is ignored
 };
 
-/// The paper of a name: "a0" to "a6", "letter", "legal" or "tabloid", in small letters or capitals. The suffix
+/// The paper with this name: "a0" to "a6", "letter", "legal" or "tabloid", in small letters or capitals. The suffix
 /// "-portrait" or "-landscape" fixes its orientation. \throws Error bad_argument for any other name.
 [[nodiscard]] Paper named_paper(std::string_view name);
 /// The name of paper of that size in millimetres, in either orientation: "A3"; "420 x 200" if it has none.

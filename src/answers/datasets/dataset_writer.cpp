@@ -275,8 +275,8 @@ Json pose_json(const DatasetView& view, std::uint32_t object, double millimetres
           {"obj_id", object_number(scene, instance)}};
 }
 
-/// A box as in bop_toolkit: its size is the distance from the first pixel to the last, one less than the number of
-/// pixels.
+/// A box as in bop_toolkit: its size is the distance from the first pixel to the last, which is one less than the
+/// number of pixels.
 Json bop_box(const PixelBox& box, bool is_seen) {
   return is_seen ? Json::array({box.x, box.y, box.width - 1, box.height - 1}) : Json::array({-1, -1, -1, -1});
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Output files that are complete or absent: written beside their place without a name, and named when complete.
 //
-// Several files cannot be replaced at once. StagedFolder comes as near to it as a file system allows: all files are
+// Several files cannot be replaced at once. StagedFolder comes as near to that as a file system allows: all files are
 // first written beside their places, where a full disk is found out, and are then only renamed.
 #include "base/output_file.h"
 

@@ -83,7 +83,7 @@ void validate(const Image& image) {
   const std::size_t count = std::size_t(image.width) * std::size_t(image.height);
   for (const Channel& channel : image.channels) {
     if (value_count(channel) != count) fail("channel " + channel.name + " does not have width x height values");
-    // A file stores its channels by name, and find() would never reach the second.
+    // A file stores its channels by name, and find() would never return the second channel of a name.
     if (image.find(channel.name) != &channel) fail("two channels are named " + channel.name);
   }
 }

@@ -24,7 +24,7 @@ class OriginSearch {
     // The first few points decide most models.
     if (!is_home_) include_far(point);
   }
-  /// True once no further point can change the origin from zero.
+  /// True if the origin is zero whatever points follow.
   [[nodiscard]] bool is_home() const { return is_home_; }
   [[nodiscard]] glm::dvec3 origin() const;
 

@@ -31,7 +31,7 @@ struct SpaceCell {
   }
 };
 
-/// Maps the sum of a triangle's vertices, in mesh space, to its place in the grid, in cells.
+/// Maps the sum of a triangle's vertices, in mesh space, to the triangle's place in the grid, in cells.
 struct CellMap {
   std::array<std::array<float, 4>, 3> rows;  ///< by axis: factors of x, y, z, and the constant term
   float last = 0;                            ///< the greatest place along an axis

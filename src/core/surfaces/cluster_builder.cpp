@@ -95,8 +95,8 @@ class PartBuilder {
     return {number, firsts[number], firsts[number + 1] - firsts[number], mesh.triangles.data(), mesh.positions.data()};
   }
 
-  /// Runs that are neighbours in space are often far apart in memory: vertex numbers are prefetched well ahead, and the
-  /// positions that they name a little later.
+  /// Runs that are neighbours in space are often far apart in memory. So vertex numbers are prefetched well ahead, and
+  /// the positions to which they refer a little later.
   void prefetch(std::size_t i, std::size_t end) const {
     constexpr std::size_t kCornersAhead = 48, kPositionsAhead = 24;
     if (i + kCornersAhead >= end) return;
@@ -123,7 +123,7 @@ class PartBuilder {
     if (!placed_.holds(id)) {
       placed_ = place_of(id);
       to_world_.emplace(source_.placed.scene->instances[placed_.number].world_from_mesh);
-      // Without a transform, the spatial order has tested the vertices already.
+      // If there is no transform, spatial_order() has already tested the vertices.
       must_check_ = !to_world_->is_identity() || source_.order.all_finite[placed_.number] == 0;
     }
     const glm::uvec3& corners = placed_.corners(id);

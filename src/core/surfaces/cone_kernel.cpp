@@ -57,7 +57,8 @@ class ConeMaker {
     const float squared_altitude = Least(least_squared_altitude_);
     if (squared_altitude == kMost) return Leave(i, cones);  // no triangle has a normal
     const glm::vec3 axis = Axis();
-    // Normals that cancel out have no axis. Tested here, as Min of NaN and a number depends on the processor.
+    // If normals cancel out, there is no axis. This is tested here, because Min of NaN and a number depends on the
+    // processor.
     if (!(glm::dot(axis, axis) <= kMost)) return Leave(i, cones);
     const float cosine = LeastCosine(axis), altitude = std::sqrt(squared_altitude) * widest;
     if (!(cosine > 0 && altitude > 0 && altitude <= kMost)) return Leave(i, cones);

@@ -34,7 +34,7 @@ namespace {
 
 constexpr int kDigitBits = 11;
 constexpr std::size_t kDigits = std::size_t(1) << kDigitBits;
-// A chunk's counts, 8 KiB, stay in the first-level cache while its quarter of a megabyte is read.
+// A chunk's counts, 8 KiB, stay in the first-level cache while the chunk's items, a quarter of a megabyte, are read.
 constexpr std::size_t kChunk = std::size_t(1) << 15;
 
 /// Some bits of an item.

@@ -3,7 +3,7 @@
 //
 // Most data of a method is made here once and only read afterwards. Clusters are the exception: a single picture is
 // drawn sooner without them. So the first method that needs clusters makes them, under a lock, behind a const
-// interface. After one instance moved, only data that depends on the instance is computed again:
+// interface. After one instance moved, only the data that depend on this instance are computed again:
 //
 //   boxes, bounds    of its ranges of triangles
 //   holes            places of its triangles

@@ -29,7 +29,8 @@ float dot(const std::array<float, 3>& row, const glm::dvec3& v) {
 
 ScreenTransform::ScreenTransform(const View& view) {
   const Projection& p = view.projection;
-  // 1/256 pixels per unit of the image plane, and where the axis meets the plane, from the image's centre.
+  // Scales, in 1/256 pixel per unit of the image plane, and the point where the axis meets the plane, from the image's
+  // centre.
   const double scale_x = view.width / (p.right - p.left) * kSubPixels;
   const double scale_y = view.height / (p.top - p.bottom) * kSubPixels;
   const double axis_x = -p.left * scale_x - 0.5 * view.width * kSubPixels;

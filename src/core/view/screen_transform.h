@@ -56,7 +56,7 @@ inline HomogeneousVertex transform(const ScreenTransform& t, const glm::vec3& po
 /// True if the vertex lies between near and far and within the guard band, so that it can be snapped as it is. False
 /// for NaN.
 inline bool is_plain(const ScreenTransform& t, const HomogeneousVertex& v) {
-  // Far away the product overflows, and infinity must not count as within infinity.
+  // Far away the product overflows. Without the limit, an infinite coordinate would count as within an infinite reach.
   const float reach = std::fmin(float(kGuardBand) * (t.orthographic ? 1.0f : v.d), std::numeric_limits<float>::max());
   return v.d >= t.near && v.d <= t.far && std::abs(v.x) <= reach && std::abs(v.y) <= reach;
 }

@@ -26,7 +26,7 @@ template <class Triangle>
 /// The key of a triangle that is not steep, as a plane: the key at (x, y) is (k0 + (x - x0) * gx) + (y - y0) * gy,
 /// limited to [k_min, k_max].
 struct KeyPlane {
-  /// Smaller keys are left to doubles: products with them might not be normal floats.
+  /// Triangles with smaller keys count as steep, because float products with such keys might not be normal numbers.
   static constexpr float least_key = 1e-30f;
 
   std::int32_t x0, y0;
@@ -84,7 +84,7 @@ struct SteepKeys {
     k_max = std::max(t.key[p], t.key[q]);
   }
 
-  /// Limited to the range of the vertices' keys, which matters only outside of the triangle.
+  /// \returns the key, limited to the range of the vertices' keys; the limits matter only outside of the triangle.
   [[nodiscard]] float at(std::int32_t x, std::int32_t y) const {
     return std::min(std::max(float(exactly_at(x, y)), k_min), k_max);
   }

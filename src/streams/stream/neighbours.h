@@ -35,7 +35,7 @@ class TouchedPositions {
     filter_[bit / 64] |= std::uint64_t(1) << (bit % 64);
   }
 
-  /// True if a vertex of the triangle is in the set. Several threads may ask at once, when all positions were added.
+  /// True if a vertex of the triangle is in the set. Several threads may ask at once, after all positions were added.
   [[nodiscard]] bool touches(const Mesh& mesh, std::uint32_t triangle) {
     bool touches = false;
     for (int k = 0; k < 3; ++k) {

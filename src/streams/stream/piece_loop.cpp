@@ -202,7 +202,7 @@ class Queue {
   }
   void fail(std::size_t number) {
     const std::lock_guard lock(mutex_);
-    // The earliest piece counts, as for a single thread: messages do not depend on threads.
+    // The error of the earliest piece is kept, as with a single thread, so messages do not depend on threads.
     if (error_ && number_ <= number) return;
     error_ = std::current_exception();
     number_ = number;

@@ -54,7 +54,7 @@ class Models {
   /// Number of triangles of the files that were read in the last pass.
   [[nodiscard]] std::uint64_t triangle_count() const;
 
-  // Facts that ranks which read parts of the models exchange after their first pass.
+  // Facts that ranks exchange after their first pass if each rank reads a part of the models.
 
   /// First id and number of triangles of each file in the last pass; the number is 0 for files that other ranks read.
   [[nodiscard]] std::vector<PrimitiveId> first_ids() const;

@@ -86,7 +86,8 @@ class SpanFinder {
     const int n = k == 2 ? 0 : k + 1;
     const double dx = t.x[n] - t.x[k], dy = t.y[n] - t.y[k];
     if (dy == 0) {
-      // A level edge: nothing above it is covered, and a lower edge excludes its own points.
+      // A level edge bounds no span, since rows beyond it are not visited. But a lower level edge excludes its own
+      // points, and so a row that lies exactly on it.
       if (dx < 0 && last_ * 256 + plane.place.y == t.y[k]) --last_;
       return;
     }

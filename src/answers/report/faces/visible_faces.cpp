@@ -99,7 +99,7 @@ glm::dvec2 place_in(const CellBox& box) {
   return {box.left + 0.4372 * (box.right - box.left), box.top + 0.5611 * (box.bottom - box.top)};
 }
 
-/// Solves one of the largest cells after another.
+/// Finds the visible parts in one of the largest cells after another.
 class CellSolver {
  public:
   CellSolver(const FacesOfView& faces, FaceMarks& marks, const std::function<void(std::uint64_t)>& tell)

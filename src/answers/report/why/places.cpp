@@ -80,7 +80,8 @@ class Frustum {
   /// Whether a box surely lies inside all planes.
   [[nodiscard]] bool surely_holds(const Box& box) const {
     if (box.is_empty()) return true;
-    // Distances are linear, so the corners decide. The rounding of see() is far less than this share of its summands.
+    // Distances are linear, so the corners decide. The rounding of see() is far less than this share of the numbers
+    // that it adds.
     constexpr double kRounding = 1e-12;
     for (int k = 0; k < 8; ++k) {
       const glm::vec3 corner(k & 1 ? box.high.x : box.low.x, k & 2 ? box.high.y : box.low.y,

@@ -165,7 +165,7 @@ class CameraAim {
 /// Radius in pixels. A circle of this radius contains a sample wherever it lies, even if corners are snapped.
 constexpr double kSampledRadius = 0.72;
 
-/// Whether the examined part of the picture has few enough samples.
+/// Whether the part of the enlarged picture that the object may touch has few enough samples to be examined.
 bool is_small_enough(const ObjectPlaces& places, const View& view, int factor) {
   constexpr double kMostSamples = 1 << 22;
   const double across = (places.columns.high - places.columns.low) * factor + 3;

@@ -76,7 +76,7 @@ double Extremes::reach(int direction, const Projected& point) const {
   const int plane = direction >= in_plane, k = direction - plane * in_plane;
   const double across = point.across[plane], towards = point.towards;
   if (k < around) return across * cosine_[k] + towards * sine_[k];
-  // Equal to the bit to the value that the fitting of a frustum computes for the point.
+  // This value equals, to the bit, the one that Fit (frame.cpp) computes for the point.
   return (k == around ? across : -across) / spread_[plane] + towards;
 }
 

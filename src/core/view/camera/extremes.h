@@ -2,8 +2,8 @@
 // The few points of a model that decide how a view frames it.
 //
 // A side of the frustum touches a model at the point that reaches farthest in the direction in which the side moves.
-// There are at most 132 such directions, so as many points stand for a million: frame() finds the same view for them as
-// for all points.
+// There are at most 132 such directions, so at most 132 points stand for a million: frame() finds the same view for
+// them as for all points.
 //
 //         . * .
 //      *  . . .  *       * kept: the farthest in some direction

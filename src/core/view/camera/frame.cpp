@@ -320,8 +320,8 @@ Subject subject_for(const Surfaces& surfaces, FramedObjects objects) {
   return subject;
 }
 
-/// Clip planes around everything. But left-out objects must not push the near plane into the subject, nor hide the
-/// subject from behind the eye of a parallel projection.
+/// Clip planes around everything. But left-out objects must not push the near plane into the subject. In parallel
+/// projection, left-out objects behind the eye must not hide the subject.
 ClipDistances clip_around(const Surfaces& surfaces, const Subject& subject, const glm::dmat4& pose, bool orthographic) {
   ClipDistances clip = fit_clip(surfaces.bounds(), pose, orthographic);
   if (subject.left_out.empty()) return clip;

@@ -254,7 +254,7 @@ double distance_of_depth(const Projection& projection, const DepthConvention& de
   const DepthRow row = depth_row(projection, depth);
   if (projection.orthographic) return (ndc_depth - row.b) / row.a;
   const double denominator = ndc_depth + row.a;
-  // The depth is infinitely far: the far plane's own depth if the far plane is infinite, else a depth beyond it.
+  // The distance is infinite: the depth is that of an infinite far plane, or one beyond a finite far plane.
   if (denominator == 0) return std::numeric_limits<double>::infinity();
   return row.b / denominator;
 }

@@ -48,7 +48,8 @@ struct MeshLevel {
   [[nodiscard]] double triangle_count() const;
 };
 
-/// The displacement of a point that a view tolerates: in world units, by distance along the viewing axis.
+/// The displacement of a point that a view tolerates, in world units. It depends on the point's distance along the
+/// viewing axis.
 class ScreenTolerance {
  public:
   /// Precondition: the view is valid, and pixels > 0.

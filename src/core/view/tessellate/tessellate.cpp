@@ -178,7 +178,8 @@ bool comes_before(const glm::dvec3& a, const glm::dvec3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
-/// Edges are equal if all four control points are, to the bit; points that differ by a rounding are apart.
+/// Orders edges. Two edges are equal if all four control points are equal to the bit; points that differ by a rounding
+/// make different edges.
 struct EdgeOrder {
   bool operator()(const EdgePoints& a, const EdgePoints& b) const {
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), comes_before);
@@ -296,7 +297,7 @@ std::vector<EdgeLevels> edge_levels(std::span<const BezierPatch> patches, std::s
 
 namespace {
 
-/// Some 3 GiB of mesh. A double, as the requested number may exceed all integers.
+/// The limit amounts to some 3 GiB of mesh. It is a double, because the requested number may exceed all integers.
 constexpr double kMostTriangles = 1 << 26;
 
 void append_globe(const Sphere& sphere, int rings, std::uint32_t face, Mesh& mesh) {
