@@ -281,7 +281,7 @@ struct CutFace {
   /// Closed lines in the plane. Seen from the side that is taken away, they run counter-clockwise around the cut
   /// material and clockwise around holes. Lines cross only if the object intersects itself.
   std::vector<std::vector<glm::vec3>> outlines{};
-  double area = 0;             ///< without the holes
+  double area = 0;             ///< area of the cut without its holes
   std::size_t open_count = 0;  ///< number of lines that a hole of the mesh leaves open; they bound nothing
 };
 

@@ -152,7 +152,7 @@ void are_clear(const RayIndex& index, std::span<const Segment> segments, std::sp
 struct TrianglePoint {
   PrimitiveId primitive = no_primitive;  ///< the triangle's id, if the index holds the triangle
   std::array<glm::vec3, 3> corners{};
-  glm::vec3 weights{1, 1, 1};  ///< with any sum; none negative, and not all zero
+  glm::vec3 weights{1, 1, 1};  ///< with any sum; no weight is negative, and not all are zero
   glm::vec3 lift{0};
 };
 

@@ -293,7 +293,7 @@ void merge(Visible& into, const Visible& other, PrimitiveId first_id = 0, const 
 struct VisiblePixels {
   static constexpr int run = 16;  ///< pixels of a row that share one entry of `mixed`, from a multiple of 16 on
 
-  View view;      ///< with all samples
+  View view;      ///< the view with all of its samples
   Visible first;  ///< sample 0, as a Visible of one sample
   /// [y][x / run]: bit x % run is set if the samples of the pixel see different primitives.
   Buffer<std::uint16_t> mixed;

@@ -201,7 +201,7 @@ ScreenRect rect_of(const std::array<glm::vec3, 3>& corners, const View& view, co
     rect.low = glm::min(rect.low, place);
     rect.high = glm::max(rect.high, place);
   };
-  const double near = -0.99 * p.clip.near;  // with a margin: keys decide at the plane itself
+  const double near = -0.99 * p.clip.near;  // with a margin, because the keys decide at the plane
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3 &a = c[i], &b = c[(i + 1) % 3];
     if (p.orthographic || a.z <= near) include(a);

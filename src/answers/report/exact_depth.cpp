@@ -242,7 +242,7 @@ class NearestInTile {
   PixelRect tile_;
   WorkLimit& work_;
   std::uint64_t steps_ = 0;       ///< not yet reported
-  std::array<Rival, 16> rivals_;  // by the last bits of their ids
+  std::array<Rival, 16> rivals_;  // indexed by the last bits of the ids
 };
 
 }  // namespace

@@ -76,7 +76,7 @@ namespace detail {
 /// Header before the contents of a Buffer.
 struct alignas(kAlignment) Block {
   Slab* slab = nullptr;     ///< null: the block has memory of its own
-  Block* before = nullptr;  ///< the block before it in the slab
+  Block* before = nullptr;  ///< the previous block of the slab
   bool is_dropped = false;
 };
 
@@ -106,7 +106,7 @@ struct alignas(kAlignment) Slab {
   std::mutex mutex;
   char *next, *end;
   Block* last = nullptr;
-  std::size_t users = 1;  ///< the arena and the blocks
+  std::size_t users = 1;  ///< number of users: the arena and the blocks
 };
 
 namespace {

@@ -27,12 +27,12 @@ constexpr mode_t new_file_mode = 0666;  // less the umask
 
 /// The path at the end of a chain of symbolic links, whether or not a file is there.
 fs::path follow_links(fs::path path) {
-  constexpr int longest_chain = 40;  // as Linux counts
+  constexpr int longest_chain = 40;  // the limit of Linux
   std::error_code ignored;
   for (int i = 0; i < longest_chain && fs::is_symlink(fs::symlink_status(path, ignored)); ++i) {
     const fs::path next = fs::read_symlink(path, ignored);
     if (next.empty()) break;
-    path = path.parent_path() / next;  // an absolute `next` replaces all
+    path = path.parent_path() / next;  // an absolute `next` replaces the whole path
   }
   return path;
 }
@@ -205,7 +205,7 @@ MadeFolder::~MadeFolder() {
 StagedFolder::StagedFolder(const std::string& folder) : folder_(folder) {
   std::string name = (folder_ / ".frontmost-XXXXXX").string();
   if (!::mkdtemp(name.data())) {
-    const int code = errno;  // read before strings are made, which may change it
+    const int code = errno;  // read first, because making strings may change it
     throw Error(ErrorCode::file_unwritable, folder, "", "cannot write: " + std::generic_category().message(code));
   }
   staged_ = name;

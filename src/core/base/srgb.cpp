@@ -23,7 +23,7 @@ constexpr double power_12_5(double value) {
   const double square = value * value;
   const double fourth = square * square;
   const double twelfth = fourth * fourth * fourth;
-  double root = square;  // from above: the iteration falls to the fifth root
+  double root = square;  // above the fifth root, to which the iteration falls
   for (int i = 0; i < 16; ++i) {
     const double root2 = root * root;
     root = (4 * root + twelfth / (root2 * root2)) / 5;

@@ -110,7 +110,7 @@ class ConeMaker {
     ab = {hn::Mul(ab.x, s), hn::Mul(ab.y, s), hn::Mul(ab.z, s)};
     ac = {hn::Mul(ac.x, s), hn::Mul(ac.y, s), hn::Mul(ac.z, s)};
     const ConeVector bc = Sub(ac, ab), normal = Cross(ab, ac);
-    const VF squared = Dot(normal, normal);  // square of altitude times longest edge
+    const VF squared = Dot(normal, normal);  // square of the product of altitude and longest edge
     const VF longest = hn::Max(Dot(ab, ab), hn::Max(Dot(ac, ac), Dot(bc, bc)));
     // 2^-100 is far above subnormal floats, which have less than full precision.
     const VF least = hn::Max(hn::Mul(hn::Mul(longest, longest), hn::Set(d, 0x1p-24f)), hn::Set(d, 0x1p-100f));

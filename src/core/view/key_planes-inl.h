@@ -26,7 +26,7 @@ using namespace frontmost::HWY_NAMESPACE;
 struct KeyPlanes {
   VI x0, y0;  ///< the topmost vertex
   VF k0, gx, gy, k_min, k_max;
-  MI steep;  ///< drawn one by one, see SteepKeys
+  MI steep;  ///< steep triangles, which are drawn one by one; see SteepKeys
 };
 
 /// The sides of triangles from vertex 0 to vertex 1, and from vertex 2 to vertex 0.

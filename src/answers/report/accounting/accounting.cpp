@@ -34,8 +34,8 @@ constexpr double kLargestScale = 16;
 struct SeenTally {
   std::uint32_t object;
   std::uint64_t count = 0;
-  PixelRect rect;                      ///< in pixels of the picture
-  float nearest = 0;                   ///< the greatest key
+  PixelRect rect;                      ///< around the samples, in pixels of the picture
+  float nearest = 0;                   ///< greatest key of the samples
   std::uint64_t sum_x = 0, sum_y = 0;  ///< sums of the samples' positions, in 1/256 pixel
 
   /// Adds another tally of the same object.

@@ -227,7 +227,7 @@ class Fit {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   struct Direction {
     double spread;
-    std::optional<double> centre = std::nullopt;   // of the picture, if there is a target
+    std::optional<double> centre = std::nullopt;   // centre of the picture, if there is a target
     double plus = -kInfinity, minus = -kInfinity;  // greatest values of +-x / spread + towards
     double low = kInfinity, high = -kInfinity;
 
