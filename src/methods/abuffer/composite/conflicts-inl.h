@@ -233,8 +233,8 @@ HWY_INLINE float AddHalves(D /*tag*/, hn::Vec<D> v) {
 /// their sums and the order of adding colours are those of GroupCompositor. So the bits are the same if fragments do
 /// not change places after all.
 ///
-///    list       a   b   c   d        b and c cross in the pixel, so they are a run, and each sub-sample sorts them by
-///    its run            [b   c]          own keys. Fragments before and behind a run have one order everywhere.
+///    list       a   b   c   d        b and c cross in the pixel, so they are a run: each sub-sample sorts them by its
+///    run            [b   c]          own keys. Fragments before and behind a run have one order everywhere.
 ///    samples    b c | c b | b c
 template <int kSamples>
 class PixelCompositor {
