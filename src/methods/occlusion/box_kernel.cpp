@@ -125,7 +125,7 @@ class BoxProjector {
     sides_[3] = Side(t.y_row, t.y_offset, -y);
   }
 
-  /// Finds boxes [first, end), at most a vector of them.
+  /// Finds the boxes [first, end) on the screen, at most a vector of them.
   HWY_INLINE void Find(std::size_t first, std::size_t end) const {
     const DF d;
     const DI di;

@@ -359,7 +359,7 @@ class Orderer {
                 "more than " + std::to_string(options_.most_cuts) + " cuts: too many triangles intersect");
   }
 
-  /// Refuses a list that needs too many cuts before it is sorted, because sorting would compare every two pieces.
+  /// Refuses a list that needs too many cuts. This is done before sorting, which would compare every two pieces.
   void foresee_cuts(const std::vector<std::uint32_t>& members) {
     const auto count = double(members.size());
     if (0.5 * count * count <= double(options_.most_cuts)) return;

@@ -3,7 +3,7 @@
 //
 //    panorama   columns are azimuths, rows are elevations
 //    fisheye    the angle from the axis grows with the distance from the middle; beyond the rim there is no ray
-//    lidar      columns are its steps, rows are its rings
+//    lidar      columns are the scanner's steps, rows are its rings
 //    pattern    one row of directions, as given
 //
 // Sines and cosines come from turn(), which gives the same bits on every machine and is exact at quarters of a turn.
@@ -83,7 +83,7 @@ struct PixelPlace {
   return camera.directions[std::size_t(at.x)];
 }
 
-/// Directions of all pixels of a grid, at one place within each pixel.
+/// Directions of all pixels of a grid, at one position within each pixel.
 template <class Model>
 class GridDirections {
  public:

@@ -29,8 +29,8 @@ struct RowTerms {
   float a, b, c, offset, offset_terms;
 };
 
-/// Returns the eye's position less that position rounded to floats. No float, and so no vertex, is nearer to the eye in
-/// any coordinate.
+/// Returns the eye's position minus this position rounded to floats. No float is nearer to the eye in any coordinate
+/// than the rounded position, so no vertex is.
 glm::vec3 RestOfEye(const ScreenTransform& t, const View& view) {
   return glm::vec3(view.eye() - glm::dvec3(t.eye[0], t.eye[1], t.eye[2]));
 }

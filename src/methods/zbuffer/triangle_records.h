@@ -111,8 +111,8 @@ void for_each_of_fan(const ClippedPolygon& polygon, const ScreenTransform& t, Pr
 /// Calls visit(x, y) for the pixels of `rect` whose sample, `offset` from the pixel's corner, is covered.
 template <class Visit>
 void visit_covered(const TriangleRecord& r, const PixelRect& rect, const glm::ivec2& offset, const Visit& visit) {
-  // 64 bits are exact: coordinates within the guard band have 22 bits, differences 23 bits, and sums of two products 47
-  // bits.
+  // Edge values are exact in 64 bits: coordinates within the guard band have 22 bits, differences 23 bits, and sums of
+  // two products 47 bits.
   std::int64_t row[3], step_x[3], step_y[3];
   for (int k = 0; k < 3; ++k) {
     const int n = k == 2 ? 0 : k + 1;

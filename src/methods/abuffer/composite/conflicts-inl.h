@@ -385,7 +385,7 @@ class PixelCompositor {
       for (std::size_t slot = begin; slot < end; ++slot)
         if (MaskAt(slot) >> sample & 1)
           order_.push_back({-s_.triangles.key_at(g_.triangle[At(slot)], x, y), IdAt(slot), slot});
-      // The order is mostly that of the list, as copies of one triangle show, so sorting is seldom needed.
+      // The order is mostly that of the list, for example in copies of one triangle, so sorting is seldom needed.
       if (!std::is_sorted(order_.begin(), order_.end())) std::sort(order_.begin(), order_.end());
       for (const auto& [key, id, slot] : order_) {
         const glm::vec4& color = ColorAt(slot);

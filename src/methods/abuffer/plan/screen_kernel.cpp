@@ -67,8 +67,8 @@ class Transformer {
     const auto plain = screen::IsPlain(t_, vertices);
     const auto is_snapped = hn::RebindMask(di, plain);
     const screen::ScreenVertices snapped = screen::Snap(t_, vertices);
-    // Vertices that are not snapped become zeros, and are never read, because converting numbers out of range differs
-    // from target to target.
+    // Vertices that are not snapped become zeros, because converting numbers out of range differs from target to
+    // target. These zeros are never read.
     hn::Store(hn::IfThenElseZero(plain, snapped.key), d, screen_.key.data() + v);
     hn::Store(hn::IfThenElseZero(is_snapped, snapped.x), di, screen_.x.data() + v);
     hn::Store(hn::IfThenElseZero(is_snapped, snapped.y), di, screen_.y.data() + v);

@@ -14,7 +14,7 @@
 namespace frontmost::painter_detail {
 
 int Plane::side_by_hand(const glm::dvec3& x) const {
-  // Rounding leaves the side open hardly ever, except for vertices that triangles share.
+  // Rounding hardly ever leaves the side open, except for vertices that triangles share.
   if (x == anchor_ || (x == u_.to && u_.from == anchor_) || (x == v_.to && v_.from == anchor_)) return 0;
   return sign_of_determinant(u_, v_, {x, anchor_});
 }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Newell's sort with exchanges, made to end. A piece P is painted once everything that it covers is painted; covered
-// pieces that are not painted yet go first. This is a depth-first search: if it comes back to a waiting piece, all
-// pieces in between have no order (Tarjan's strongly connected components). Pieces come from far to near, so almost
-// everything that a piece covers is painted already. Neighbours are looked for when a piece's turn comes, so no pair is
-// ever stored. The search has its own stack, because chains of covering pieces may be as long as there are pieces.
+// Newell's sort with exchanges, changed so that it always ends. A piece P is painted once everything that it covers is
+// painted; covered pieces that are not painted yet go first. This is a depth-first search: if it comes back to a
+// waiting piece, all pieces in between have no order (Tarjan's strongly connected components). Pieces come from far to
+// near, so almost everything that a piece covers is painted already. Neighbours are looked for when a piece's turn
+// comes, so no pair is ever stored. The search has its own stack, because chains of covering pieces may be as long as
+// there are pieces.
 //
 //    far                                         near
 //    [painted ......][ P waits -> Q waits -> R ][ not found yet ...]

@@ -15,7 +15,7 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// Twice as many take twice as long, and four times as many five times; both find planes that cut 5 % less.
+/// Twice as many take twice as long, and four times as many five times as long; both find planes that cut 5 % less.
 constexpr std::size_t kMostCandidates = 8, kMostWitnesses = 64;
 constexpr std::size_t kStepsPerCut = 16;
 

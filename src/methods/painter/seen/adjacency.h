@@ -25,7 +25,6 @@ class Adjacency {
 
   /// Returns the slot of the polygon across a side, or no_index. The side is given by its first corner in
   /// ScreenPolygons::corners().
-  /// ScreenPolygons::corners().
   [[nodiscard]] std::uint32_t across(std::size_t corner) const { return across_[corner]; }
 
  private:

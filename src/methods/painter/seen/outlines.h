@@ -31,7 +31,8 @@ template <class A, class B>
 /// In pixels. Shorter sides have no direction.
 inline constexpr double shortest_side = 1e-9;
 
-/// Positive if `at` lies to the left of `way` in a plane whose y goes up; twice the area of their triangle.
+/// Returns twice the area of the triangle of `way` and `at`, positive if `at` lies to the left of `way` in a plane
+/// whose y goes up.
 [[nodiscard]] inline double turn(const glm::dvec2& way, const glm::dvec2& at) { return way.x * at.y - way.y * at.x; }
 
 /// Returns whether an outline is nowhere wider than `width`, judged by its area and perimeter.
@@ -103,7 +104,7 @@ class OutlineClipper {
     std::size_t first, count;
     glm::dvec2 low, high;
   };
-  /// The line of a side, with a direction of unit length; positive is outside.
+  /// The line of a side, with a direction of unit length. Points outside have positive distances.
   struct Line {
     glm::dvec2 from, along;
   };

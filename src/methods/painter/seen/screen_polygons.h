@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polygons on the screen, the input of all functions of this folder. They find which polygons hide which.
+// Polygons on the screen, the input of all functions of this folder. These functions find which polygons hide others.
 //
 //   place in the order     1 ____________        An occluder is a polygon that nothing is seen through. It hides
 //   of painting              |   2 ______|___    earlier polygons under it. The visible part of 1 is 1 without the
@@ -44,8 +44,8 @@ struct ScreenPolygon {
 };
 
 /// All polygons of one painting order, projected to the screen, with affine depths. A polygon has a place in the order
-/// of painting, and is stored in a slot. Slots are in the order of the grid's cells, so that polygons that are near on
-/// the screen are near in memory, because a polygon is always read together with its neighbours.
+/// of painting, and is stored in a slot. Slots are in the order of the grid's cells, so polygons that are near on the
+/// screen are near in memory. This pays, because a polygon is always read together with its neighbours.
 class ScreenPolygons {
  public:
   ScreenPolygons(const PaintOrder& order, const Occluders& occluders);

@@ -61,7 +61,7 @@ class OcclusionClipper {
       : screen_(screen), poll_(effort), is_behind_(std::move(is_behind)), union_(screen, adjacency) {}
 
   /// Returns whether the polygon in a slot is wholly hidden. Also false if the answer would take long. Most polygons
-  /// are not hidden, which their middles tell.
+  /// are not hidden, and a look at their middle suffices.
   [[nodiscard]] bool is_hidden(std::size_t slot) {
     cutter_.begin(screen_.outline(slot));
     cutter_.keep_within(glm::dvec2(0), screen_.size());

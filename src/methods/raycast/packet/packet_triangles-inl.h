@@ -255,7 +255,7 @@ class TrianglePlacer {
     }
   }
 
-  /// Returns a coordinate of an edge: a difference of world coordinates, which are rounded least.
+  /// Returns a coordinate of an edge as a difference of world coordinates, because this is rounded least.
   [[nodiscard]] HWY_INLINE QV EdgeAlong(std::size_t first, int from, int to, int axis) const {
     const QF d;
     return hn::Sub(hn::Load(d, leaf_.corner[to][axis] + first), hn::Load(d, leaf_.corner[from][axis] + first));

@@ -42,7 +42,7 @@ struct NotedTriangle {
 
 /// Buffers of one thread.
 struct ScanScratch {
-  /// Far more than the number of rays, because PacketHits::Forget() keeps up to one note of each ray.
+  /// Far more than the number of rays, because PacketHits::Forget() keeps up to one note for each ray.
   static constexpr std::size_t kMostNotes = 256;
 
   /// A child, and the least place along the packet's axis that its box reaches.

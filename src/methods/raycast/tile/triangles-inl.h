@@ -532,7 +532,7 @@ class RayTriangleQueue {
     if (large.rect.y1 - large.rect.y0 < kTileSize / 2 || !IsThereAlready(large)) large_.Draw(large);
   }
 
-  /// Returns whether the triangle is the last large one again with a higher id, because objects may be placed in one
+  /// Returns whether the triangle is a copy of the last large triangle with a higher id. Objects may be placed in one
   /// place twice or a million times. The lower id hides the copy, except with material culling, which may cull the
   /// lower id alone.
   [[nodiscard]] bool IsThereAlready(const LargeTriangle<SingleCorners>& large) {

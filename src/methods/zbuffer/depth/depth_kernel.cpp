@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws triangles into a depth buffer: the depth test of every fragment in the order of submission.
+// Draws triangles into a depth buffer, with the depth tests of all fragments in the order of submission.
 //
 //    walk      lane 0: mask of 8 x 8 pixels     lane 1: mask     ...        all triangles of a packet in step
 //    draw      fragments of triangle 0, then those of triangle 1, ...       in the order of submission
@@ -468,8 +468,7 @@ class DepthPackets {
   std::size_t count_ = 0;
   double offset_[kMaxLanes] = {};
   // State of the packet at one sample.
-  std::uint64_t by_row_ = 0, drawn_ = 0;         // by_row_: lanes drawn by rows; drawn_: these and all lanes that cover
-                                                 // a pixel
+  std::uint64_t by_row_ = 0, drawn_ = 0;         // lanes drawn by rows; all lanes that are drawn
   VI from_x_, from_y_;                           // from the key plane's origin to the sample of the first pixel
   HWY_ALIGN_MAX std::int32_t first_[kMaxLanes];  // index of each triangle's first pixel, counted from the tile's first
   HWY_ALIGN_MAX std::uint32_t mask_[2][kMaxLanes];

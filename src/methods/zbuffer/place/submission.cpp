@@ -5,8 +5,8 @@
 //    tiles       A     A     A,B   A,B   B          runs of A: [0,1] [2,3]      runs of B: [2,3] [4]
 //
 // If triangles are scattered over the picture, every run has one triangle, and lists get as long as the batch. Such
-// triangles are first sorted by their tiles. Sorting loses the order of submission, which only pictures that do
-// not depend on this order can afford.
+// triangles are first sorted by their tiles. Sorting loses the order of submission, so it is left out for pictures
+// that depend on this order.
 
 #include "zbuffer/place/submission.h"
 

@@ -35,7 +35,8 @@ constexpr int kWalkWidth = kMostWalked.x, kWalkHeight = kMostWalked.y;
 // A triangle of more pixels than this is first tested against the hierarchical depth.
 constexpr std::int32_t kWalkUnseen = 96;
 
-/// Small triangles that wait to be drawn, one array a vertex. The room is one vector more than is drawn at a time.
+/// Small triangles that wait to be drawn, with an array for each coordinate of each vertex. The room is one vector more
+/// than the queue ever holds, because stores write whole vectors.
 struct TriangleQueue {
   static constexpr std::size_t kRoom = 3 * kMaxLanes;
   HWY_ALIGN_MAX std::int32_t x[3][kRoom], y[3][kRoom];

@@ -178,7 +178,7 @@ class TileBuffer {
   TileBuffer(const Picture& picture, const Tile& tile, TileScratch& scratch)
       : picture_(picture), tile_(tile), words_(scratch.words.data()), bounds_(scratch.bounds[0]) {}
 
-  /// The blocks that a rectangle of pixels touches. Precondition: not empty, within the tile.
+  /// The blocks that a rectangle of pixels touches. Precondition: the rectangle is not empty, and within the tile.
   [[nodiscard]] static HWY_INLINE std::uint64_t BlocksOf(const PixelRect& rect) {
     constexpr std::uint64_t kFirstColumn = 0x0101010101010101u;
     const int x0 = rect.x0 / kBlockSize, x1 = rect.x1 / kBlockSize;
@@ -223,7 +223,7 @@ class TileBuffer {
     dirty_ = 0;
   }
 
-  /// The farthest key of every block; 0 for a block with a sample that is not covered.
+  /// Stores the farthest key of every block, or 0 if a sample of the block is not covered.
   void FindFarthest(float* farthest) {
     Refresh();
     std::copy_n(bounds_.farthest, BlockBounds::count, farthest);
