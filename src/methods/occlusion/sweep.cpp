@@ -256,7 +256,7 @@ class LongObject {
     }
   }
   /// Chooses triangles of nearer slabs that share a vertex with `triangle`. Corners at which both neighbours of the
-  /// triangle are of its slab are left out.
+  /// triangle are of the slab are left out.
   void choose_around(const HidingObject& occluder, int slab, std::uint32_t triangle) {
     const std::uint32_t first = occluder.part.first_triangle;
     const auto mark = std::uint16_t(slab + 1);

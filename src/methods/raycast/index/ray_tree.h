@@ -25,7 +25,7 @@ namespace frontmost {
 /// Boxes or triangles side by side: the lanes of one vector of the widest instruction set.
 inline constexpr std::size_t kRayLanes = 16;
 
-/// A child is the number of a leaf with this bit set, or the number of a node.
+/// A child is the index of a leaf, with this bit set, or the index of a node.
 inline constexpr std::uint32_t kLeafBit = 0x80000000u;
 
 /// World-space boxes of `count` children. Unused lanes hold zeros.

@@ -162,7 +162,7 @@ class QueryWalker {
 
   void Note(const RayLeaf& leaf, std::size_t lane, float from) {
     if (leaf.id[lane] == no_primitive) return;
-    // Deciding early only costs time; triangles beyond the end are left out later.
+    // If there is no room, the noted triangles are decided now, which only costs time.
     if (noted_ == kMostNoted) Settle();
     notes_[noted_++] = {from, leaf.id[lane], leaf.corners_of(lane)};
   }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws one tile from batches: the same triangles into the same buffer as tile_kernel.cpp, from another source.
 //
-// A batch is left out of a tile if its nearest key is hidden in all blocks of the tile that it touches. Its triangles
-// come from columns, in runs. Small triangles are queued like those of clusters; large ones are records and come first.
+// A batch is left out of a tile if its nearest key is hidden in all blocks of the tile that it touches. The batch's
+// triangles are read from its columns, in runs. Small triangles are queued like those of clusters; large triangles are
+// records and are drawn first.
 
 #include <bit>
 

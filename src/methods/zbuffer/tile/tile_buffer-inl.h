@@ -89,7 +89,7 @@ class LeastKey {
   LeastKey() : least_(hn::BitCast(D(), hn::Set(DWI(), std::int64_t(kOutsideImage)))) {}
   HWY_INLINE void Fold(hn::Vec<DWI> words) { least_ = hn::Min(least_, hn::BitCast(D(), words)); }
 
-  /// False if some key is no greater than `key`; in rare cases also if all are greater.
+  /// Returns false if some key is not greater than `key`, and in rare cases also if all keys are greater.
   [[nodiscard]] HWY_INLINE bool IsAbove(float key) const {
     const auto limit =
         hn::BitCast(D(), hn::Set(DWI(), std::int64_t(std::uint64_t(bits_as<std::uint32_t>(key)) << 32 | kLowHalf)));
