@@ -26,7 +26,7 @@ struct Span {
   double begin, end;
 };
 
-/// A path, addressed by length.
+/// A path whose points are addressed by their distance along the path.
 class Ruler {
  public:
   Ruler(const PageGroup& group, const PagePath& path) : is_closed_(path.is_closed) {
@@ -59,7 +59,8 @@ class Ruler {
     return spans;
   }
 
-  /// Adds the part of the path within the span as a path. On a closed path, the span may cross the end once.
+  /// Adds the part of the path within the span to `group`, as a path of its own. On a closed path, the span may cross
+  /// the path's end once.
   void cut(const Span& span, PageGroup& group) const {
     PagePath path{std::uint32_t(group.points.size()), 0, false};
     for (int round = 0; round < (is_closed_ ? 2 : 1); ++round)
@@ -123,10 +124,11 @@ class Pattern {
     for (const double dash : dashes) period_ += dash;
   }
 
-  /// The approximate number of dashes on a line of that length.
+  /// The approximate number of dashes on a line of length `length`.
   [[nodiscard]] double count_on(double length) const { return length / period_ * double(dashes_.size() / 2); }
 
-  /// Appends the dashes of a span, which begins and ends with the first one; a span too short for a gap is one dash.
+  /// Appends the dashes of a span. The span begins and ends with the pattern's first dash; a span too short for a gap
+  /// is one dash.
   void fill(const Span& span, std::vector<Span>& drawn) const {
     const double length = span.end - span.begin, times = std::round((length - dashes_[0]) / period_);
     if (times < 1) return append(span, drawn);
@@ -185,7 +187,7 @@ PageGroup with_cut_dashes(const PageGroup& group, std::size_t most, const Execut
   PageGroup cut{group.name, group.pen};
   cut.pen.dashes.clear();
   std::size_t steps = 0;
-  const auto poll = [&] {  // only sometimes: a check takes longer than a dash
+  const auto poll = [&] {  // only sometimes, because a check takes longer than a dash
     if (++steps % 1024 == 0) check_cancelled(execution);
   };
   for (const PagePath& path : group.paths) {

@@ -21,7 +21,7 @@
 namespace frontmost::detail {
 namespace {
 
-/// Release 12 allows capitals, digits, $, - and _.
+/// The name in characters that release 12 allows: capitals, digits, $, - and _.
 std::string table_text(const std::string& name) {
   std::string clean;
   for (const char c : name) {
@@ -52,7 +52,7 @@ class TableNames {
   std::map<std::string, int> next_;
 };
 
-/// A longer list of layers helps nobody.
+/// With more layers, each layer of the page is only one DXF layer, because a longer list helps nobody.
 constexpr std::size_t most_layers = 1000;
 
 struct Layer {
@@ -61,7 +61,7 @@ struct Layer {
   int color = 7;
 };
 
-/// The nearest of the colours with a standard number.
+/// The number of the standard colour nearest to `color`.
 int color_number(const PageColor& color) {
   struct Numbered {
     int number, red, green, blue;
@@ -78,8 +78,8 @@ int color_number(const PageColor& color) {
       ->number;
 }
 
-/// The colour of a layer's lines. Black lines get a colour by their class, the digit at which the page layer's name
-/// begins. So programs and lasers can distinguish classes; release 12 has no line widths for that.
+/// The colour of a layer's lines. Black lines get a colour by their class, the digit with which the name of their page
+/// layer begins. So programs and lasers can distinguish classes, for which release 12 has no line widths.
 int layer_color(const std::string& page_layer, const Pen& pen) {
   const int color = color_number(pen.color);
   // Hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame, sections: all are visible on black
@@ -162,7 +162,7 @@ class DxfWriter {
     text(2, name);
   }
   void end_section() { text(0, "ENDSEC"); }
-  /// Flips y from down to up.
+  /// Writes a point, with y flipped from down to up.
   void point(const glm::dvec2& p, int code = 10) {
     number(code, p.x);
     number(code + 10, page_.height - p.y);
@@ -191,9 +191,9 @@ class DxfWriter {
     end_section();
   }
 
-  /// The line type of a pen. Some readers know only standard names and draw all others solid. A name tells how many
-  /// dashes a period has. The suffix "2" or "X2" means a period about half or twice as long as that of the first such
-  /// pen.
+  /// The name of a pen's line type. Some readers know only standard names, and draw all other types solid. The name
+  /// tells how many dashes a period has. The suffix "2" or "X2" means that the period is about half or twice as long as
+  /// the period of the first pen with the same name.
   [[nodiscard]] std::string type_name(const Pen& pen) const {
     constexpr const char* names[] = {"CONTINUOUS", "HIDDEN", "CENTER", "PHANTOM"};
     const std::string name = names[std::min(pen.dashes.size() / 2, std::size(names) - 1)];

@@ -67,7 +67,7 @@ std::optional<Arc> whole_arc(const PageGroup& group, const PagePath& path) {
     if (!same) return std::nullopt;
     whole->turn += arc->turn;
   }
-  // More than once around is another shape.
+  // A path that goes around more than once is no arc.
   if (whole && std::abs(whole->turn) > 6.2832) return std::nullopt;
   return whole;
 }
