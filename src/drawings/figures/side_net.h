@@ -92,7 +92,8 @@ class SideNet {
     std::uint32_t outline, trap;
   };
 
-  /// All sides between two points: in the direction low to high they are [begin, turn), in the other [turn, end).
+  /// All sides between two points. Sides [begin, turn) lead from the low point to the high point, sides [turn, end)
+  /// back.
   struct Pairs {
     std::size_t begin, turn, end;
     [[nodiscard]] std::size_t count() const { return std::min(turn - begin, end - turn); }

@@ -42,7 +42,8 @@ class Torus {
       for (int i = 0; i < cells_along; ++i) crowd[i] += sign * double(near[i]);
     }
   }
-  /// The most crowded of the taken cells, or the least crowded of the free ones; the first of equals.
+  /// With `taken`, the most crowded of the taken cells; otherwise the least crowded of the free cells. Among equals,
+  /// the first.
   [[nodiscard]] int extreme(bool taken) const {
     const double sign = taken ? 1 : -1;
     const auto value = [&](int cell) { return sign * crowd_[std::size_t(cell)] + barred_[taken][std::size_t(cell)]; };

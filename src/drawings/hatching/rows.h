@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines of a hatch set on the screen, their intersections with triangles, and the brightness along them.
+// Computes the lines of a hatch set on the screen, their intersections with triangles, and the brightness along them.
 //
 //      line 2  - - -/- - -\- - -      Lines are parallel and evenly spaced, and are numbered across their direction.
 //      line 1  - - / - - - \ - -      A line meets a triangle in a segment in space with both ends on the triangle's
@@ -118,7 +118,7 @@ class HatchRows {
     return segment;
   }
 
-  /// The position along the line, in pixels, of a point on it.
+  /// The position of a point on a line, in pixels along the line.
   [[nodiscard]] double along(const glm::dvec2& screen) const { return glm::dot(screen, direction_); }
 
   /// The position along the line that is nearest to `along` and within the picture.
@@ -144,7 +144,7 @@ class HatchRows {
 
   [[nodiscard]] double height_of(std::int32_t line) const { return offset_ + line * spacing_; }
   [[nodiscard]] double weight(const glm::dvec3& in_eye) const { return is_parallel_ ? 1 : in_eye.z; }
-  /// The distance across the lines in pixels, times the weight.
+  /// A point's distance across the lines, in pixels, times its weight.
   [[nodiscard]] double weighted_height(const glm::dvec3& in_eye) const {
     return glm::dot(plane_, {in_eye.x, in_eye.y, weight(in_eye)});
   }

@@ -68,7 +68,7 @@ struct SquareGrid {
   }
 
  private:
-  /// The square's index along one axis, from -1 to `count`; both of these lie outside of the grid.
+  /// The index of a square along one axis, from -1 to `count`. Squares -1 and `count` are outside of the grid.
   [[nodiscard]] int index(double offset, int count) const {
     return int(std::clamp(offset / size + 1, 0.0, count + 1.0)) - 1;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns dashes into paths of their own. A path is measured from corner to corner. Between two corners the pattern is
-// stretched so that it begins and ends with a dash (ISO 128-2, 5.2), which then meets the next one around the corner.
+// Turns dashes into paths of their own. A path is measured from corner to corner. Between two corners, the pattern is
+// stretched so that it begins and ends with a dash (ISO 128-2, 5.2). So two dashes meet at each corner.
 //
 //   corner                                     corner
 //     +-----  -----  -----  -----  -----  -------+        one span: a whole number of periods, and one more dash
@@ -42,7 +42,8 @@ class Ruler {
   [[nodiscard]] double length() const { return length_; }
   [[nodiscard]] bool is_empty() const { return legs_.empty(); }
 
-  /// The spans from corner to corner. A closed path begins at a corner, or is one span if it has none.
+  /// The spans from corner to corner. The first span of a closed path begins at its first corner; without corners, a
+  /// closed path has no spans.
   [[nodiscard]] std::vector<Span> spans() const {
     std::vector<double> corners;
     if (!is_closed_) corners.push_back(0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// DXF of AutoCAD release 12 (AC1009), which all programs read: pairs of lines, a group code and its value.
+// Writes DXF of AutoCAD release 12 (AC1009), which all programs read. A file consists of pairs of lines: a group code
+// and its value.
 //
 //   0           a group code: the value is the kind of an entity
 //   LINE
@@ -7,8 +8,8 @@
 //   2_VISIBLE
 //
 // Release 12 has neither groups nor line widths, so layers represent both: each group is a layer, which gives its line
-// type and colour. The page's layer comes first in the name, so that programs can select all of it. The y axis of a
-// page points down and that of DXF up, so places are flipped and arcs change their direction.
+// type and colour. The name of a DXF layer begins with the page's layer, so that programs can select all of that layer.
+// The y axis of a page points down and that of DXF up, so places are flipped and arcs change their direction.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -82,8 +83,8 @@ int color_number(const PageColor& color) {
 /// layer begins. So programs and lasers can distinguish classes, for which release 12 has no line widths.
 int layer_color(const std::string& page_layer, const Pen& pen) {
   const int color = color_number(pen.color);
-  // Hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame, sections: all are visible on black
-  // and on white.
+  // For 0, and for hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame and sections: colours
+  // that are visible on black and on white.
   constexpr int of_classes[] = {7, 6, 7, 5, 8, 9, 1, 3, 4, 3};
   const bool is_numbered = !page_layer.empty() && page_layer[0] >= '0' && page_layer[0] <= '9';
   return color == 7 && is_numbered ? of_classes[page_layer[0] - '0'] : color;
@@ -103,7 +104,8 @@ struct Layers {
       for (const PageGroup& group : layer.groups) {
         if (groups <= most_layers && !group.name.empty()) {
           of_groups.back().push_back(list.size());
-          // The class is not shortened, so that programs can select all of it.
+          // On sheets, every class with named groups fits into 11 characters, so that programs can select all of a
+          // class.
           list.push_back({names.add(of_class.substr(0, 11) + "-" + table_text(group.name)), group.pen,
                           layer_color(layer.name, group.pen)});
           continue;
@@ -252,7 +254,7 @@ class DxfWriter {
     }
   }
 
-  /// Properties that are not written are those of the layer, and change with it.
+  /// Begins an entity. Properties that are not written are those of the layer, and change with the layer.
   void entity(std::string_view kind, const std::string& layer) {
     text(0, kind);
     text(8, layer);

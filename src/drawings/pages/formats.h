@@ -46,7 +46,7 @@ struct Join {
   return path.is_closed ? path.count : path.count - 1;
 }
 
-/// The circle on which a whole path lies, in one direction; none otherwise.
+/// The arc that a whole path forms, if all its joins run along one circle in one direction; none otherwise.
 [[nodiscard]] std::optional<Arc> whole_arc(const PageGroup& group, const PagePath& path);
 
 /// Rounds a coordinate in millimetres to thousandths. Coordinates are at most 1e9, so the result fits.

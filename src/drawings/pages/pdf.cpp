@@ -135,7 +135,7 @@ class PdfContent {
       points += group.paths[i].count;
       for (std::size_t k = i + 1; paint.fill && k < group.paths.size() && group.paths[k].is_part; ++k)
         write_path(group, group.paths[k]);
-      // Lines share a painting operator. Fills do not: where they overlap, the later one is above.
+      // Lines share a painting operator. Fills do not, because the later of two overlapping fills is above the other.
       if (paint.fill) {
         out_ << (paint.line ? "B\n" : "f\n");
         points = 0;

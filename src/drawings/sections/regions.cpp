@@ -130,7 +130,8 @@ class Walker {
     return is_turned ? steps_[step].from : steps_[step].to;
   }
 
-  /// \returns the place to which the leftmost step from the path's end leads; no_index if there is none.
+  /// Takes the leftmost unused step from the path's end. \returns the place to which it leads; no_index if there is
+  /// none.
   std::uint32_t next() {
     const std::uint32_t end = path_.back();
     std::uint32_t best = no_index;

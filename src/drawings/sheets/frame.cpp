@@ -226,7 +226,8 @@ class FrameDrawing {
   }
 
  private:
-  /// Two rectangles of 10 x 5 mm in an L shape, filled by rounds of the pen, because DXF has no fills.
+  /// Adds a trimming mark: two rectangles of 10 x 5 mm in an L shape. The pen fills them in rounds, because DXF has no
+  /// fills.
   void trimming_mark(PageGroup& group, const glm::dvec2& corner) const {
     constexpr double length = 10, width = 5;
     const glm::dvec2 inwards = 1.0 - 2.0 * corner;
@@ -239,7 +240,7 @@ class FrameDrawing {
     }
   }
 
-  /// Marks from the zones' border into the drawing, but not into the title block.
+  /// Adds marks that lead from the zones' border into the drawing, but not into the title block.
   void centring_marks(PageGroup& group) const {
     const glm::dvec2 middle = page_ * 0.5;
     for (const int axis : {0, 1})

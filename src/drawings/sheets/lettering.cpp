@@ -312,7 +312,8 @@ Character character_of(char32_t code) {
   return character;
 }
 
-/// Calls visit(character, its left) for every character. \returns the end of the last one; negative if there is none.
+/// Calls visit(character, left side) for every character of a text. \returns the end of the last character; negative if
+/// there is none.
 template <class Visit>
 double for_each_character(std::string_view text, const Visit& visit) {
   double left = 0;

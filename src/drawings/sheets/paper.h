@@ -24,7 +24,7 @@ struct PageBox {
   glm::dvec2 low{0}, high{0};
 };
 
-/// An arrowhead, three pen widths wide and `length` millimetres long. It consists of two slender triangles side by
+/// Adds an arrowhead, three pen widths wide and `length` millimetres long. It consists of two slender triangles side by
 /// side, whose sides are so near each other that the pen fills them, in every format and on a plotter.
 inline void add_arrowhead(PageGroup& group, const glm::dvec2& tip, const glm::dvec2& pointing, double length) {
   const double width = group.pen.width;

@@ -67,7 +67,8 @@ struct FigureTriangles {
 /// Prepares a scene for shading points. Several threads may use it at once, each with its own FragmentShader.
 class PointShader {
  public:
-  /// Borrows all but the options; prepares whatever the scene lacks. \throws Error as check_opacity() does.
+  /// Borrows all arguments but the options, and prepares whatever the scene lacks. \throws Error as check_opacity()
+  /// does.
   PointShader(PreparedScene& scene, const ShadeInput& input, const FigureTriangles& triangles,
               const ShadeOptions& options, const Execution& execution)
       : source_(smoothed(scene, triangles.large, execution), input.first().view, &triangles.large),
@@ -98,8 +99,8 @@ class PointShader {
 /// In pixels: the least width of a cut piece, and the distance from a cut below which no samples are taken. Textures
 /// and shadows are filtered over about this distance, so colours this close to a cut belong to neither side.
 constexpr double kLeastWidth = 0.25, kBesideCut = 0.35;
-/// The share of the tolerance for differences within a piece, where pieces are grouped; the rest is for differences
-/// between pieces of a group.
+/// If pieces are grouped, the share of the tolerance for differences within a piece. The rest is for differences
+/// between the pieces of a group.
 constexpr double kWithin = 2.0 / 3;
 /// The factor by which the tolerance is larger for pieces narrower than a pixel. They are hardly visible, and there are
 /// many of them where textures are cut.
@@ -344,7 +345,7 @@ class PolygonColors {
     }
   }
 
-  /// Lines along the coordinates of the base colour's texture, which the picture mostly shows.
+  /// The lines of equal coordinates in the texture of the base colour, which the picture mostly shows.
   [[nodiscard]] std::span<const TexcoordLines> texture_lines(const Piece& piece) {
     Polygon& polygon = polygons_[piece.polygon];
     if (polygon.texture_lines) return *polygon.texture_lines;

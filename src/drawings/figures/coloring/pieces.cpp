@@ -7,7 +7,7 @@
 //    direction in which the colours of the best cut differ          squared differences on both sides
 //
 // For the last kind, samples are sorted by their distance from a line of that direction, and running sums give the gain
-// of every place of the line. Among equal gains the line that was tried first wins, regardless of rounding.
+// for every position of the line. Among equal gains the line that was tried first wins, regardless of rounding.
 #include "figures/coloring/pieces.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 //
 //        +---------+         Samples (x dark, o light) are spread over a piece, which one straight line
 //        | x x /o o|         cuts in two. Both sides are sampled again, and cut again if necessary.
-//        | x  / o o|         The line is only a place in the picture: pieces keep their polygon's place
+//        | x  / o o|         A cut only divides the picture: pieces keep their polygon's place
 //        |x  /o o  |         in the painting order, so a cut never changes what hides what.
 //        +---------+
 #pragma once
@@ -85,9 +85,10 @@ struct ColorPiece {
   double range;        ///< greatest difference in a channel that counts as one colour
 };
 
-/// The line with the least sum of squared differences from the mean colours of both sides, among lines along `texture`
-/// coordinates, in some fixed directions, and across the direction of change. None if no line separates the samples. If
-/// colours change evenly in one direction, the line is a border of the fewest bands of one colour each.
+/// The line that leaves the least sum of squared differences between samples and the mean colour of their side. It is
+/// chosen among lines of equal `texture` coordinates, lines in some fixed directions, and lines across the direction of
+/// change. None if no line separates the samples. If colours change evenly in one direction, the line is a border of
+/// the fewest bands of one colour each.
 [[nodiscard]] std::optional<ScreenLine> best_cut(const ColorPiece& piece, std::span<const TexcoordLines> texture);
 
 /// A convex outline and its size.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each fold is judged by the surfaces beside it, in the plane across its edge. Then folds that share vertices are
-// judged together.
+// Each fold is judged by the surfaces beside it, in the plane perpendicular to its edge. Then folds that share vertices
+// are judged together.
 //
 //     left normal   right normal        The angle between both normals is how far the surface turns at the fold.
 //             \      /                  Beyond each triangle the surface turns on by some angle, which is found by
 //       _______\____/                   walking around the triangle's tip. Half of that angle is subtracted for each
-//      /        edge \                  side: the rest is the jump, 0 on a cylinder however few sides it has.
+//      /        edge \                  side. The rest is the jump: 0 on a cylinder, however few sides it has.
 //
 // Angles are computed from the tangents of their halves, by a series for the arctangent, without functions of the C
 // library. Every machine rounds the operations of the series alike, so drawings are the same on all machines.
@@ -54,7 +54,7 @@ class Fan {
     std::size_t entry;  ///< the triangle's index in the fan
   };
 
-  /// The side from the fan's vertex to `rim`, of a triangle in the fan.
+  /// The side of `triangle`, a triangle of the fan, that leads from the fan's vertex to `rim`.
   [[nodiscard]] Side side(const TurnedTriangle& triangle, std::uint32_t rim) const {
     std::size_t entry = 0;
     while (entry < count_ && entries_[entry].triangle != triangle.number) ++entry;
@@ -292,7 +292,7 @@ struct Turn {
   double on = 0, back = 0;
 
   [[nodiscard]] double most() const { return std::max(on, back); }
-  /// True for a cylinder or a plane; a rough surface turns both ways.
+  /// Whether the surface turns in one sense only, as a cylinder or a plane does; a rough surface turns both ways.
   [[nodiscard]] bool is_one_way() const { return std::min(on, back) <= kOneWay * most(); }
   [[nodiscard]] bool is_beyond(double half) const { return half > on || -half > back; }
   void add(double half) {
@@ -306,7 +306,7 @@ class Jump {
  public:
   explicit Jump(double half) : half_(half), angle_(angle_of(half)) {}
 
-  /// Subtracts half the turn of a side, weighted by `share`, 0 to 1.
+  /// Subtracts half of the turn of one side, weighted by `share` (0 to 1).
   void take_off(const Turn& turn, double share) {
     angle_ -= 0.5 * share * angle_of(std::min(turn.on, half_));
     rough_ = std::max(rough_, share * std::min(angle_of(turn.back), kRoughest));
@@ -523,7 +523,7 @@ class CreaseGraph {
   [[nodiscard]] glm::dvec3 direction_from(std::uint32_t edge, std::uint32_t vertex) const {
     return glm::normalize(mesh_.positions[other_end(edge, vertex)] - mesh_.positions[vertex]);
   }
-  /// The cosine of the angle between the end of one edge and the beginning of the next.
+  /// The cosine of the angle by which a line that goes from `edge` to `next` bends at `vertex`.
   [[nodiscard]] double bend(std::uint32_t edge, std::uint32_t next, std::uint32_t vertex) const {
     return -glm::dot(direction_from(edge, vertex), direction_from(next, vertex));
   }

@@ -212,7 +212,7 @@ class BoxTree {
   }
 
  private:
-  /// Calls visit(other, its box) for every group from `group` on whose box touches that of `group`.
+  /// Calls visit(other, other's box) for `group` itself and for every later group whose box touches the box of `group`.
   template <class Visitor>
   void visit_groups(std::size_t group, const Visitor& visit) const {
     const Box box = levels_[0].get(group);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments along which triangles pass through each other.
+// Finds the segments along which triangles pass through each other.
 //
 //           /|             The segment that two triangles share ends where an edge of one of them passes through
 //      ____/_|___          the other (o). An end is identified by the edge that it is on. The next triangle of the
@@ -26,12 +26,12 @@ struct Crossing {
   std::uint32_t left, right;  ///< the triangles
 };
 
-/// Finds the segments of all pairs of triangles in which each triangle has corners strictly on both sides of the
-/// other's plane, decided by exact signs, and those of add_contacts(). An end is computed from its edge and plane
+/// Finds the segments of all pairs of triangles in which each has corners strictly on both sides of the other's plane,
+/// which exact signs decide. The segments of add_contacts() are included. An end is computed from its edge and plane
 /// alone, so segments along a surface join to the bit. Copies of a triangle do not repeat segments. Sorted by the
 /// segments' ends. O(triangles log triangles + pairs whose boxes touch).
-/// \throws Error limit_exceeded for more than 2^20 segments and 16 for each triangle, or more than 2^27 pairs and 32
-/// for each triangle.
+/// \throws Error limit_exceeded for more than 2^20 segments plus 16 per triangle, or more than 2^27 pairs plus 32 per
+/// triangle.
 [[nodiscard]] std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features,
                                                    const Execution& execution);
 

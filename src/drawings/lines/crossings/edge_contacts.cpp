@@ -6,9 +6,10 @@
 // through a plane exactly along an edge, neither of the edge's two triangles has such corners, and yet the surfaces
 // cross there:
 //
-//        \     |               The edge (o) lies in the plane of a third triangle, and its own two lie on different
-//    -----o----- plane         sides of it. find_crossings() lists such edges with the triangles in whose planes they
-//         |                    lie. This file decides them all together, because it needs to know their neighbours.
+//        \     |               The edge (o) lies in the plane of a third triangle. Its own two triangles lie on
+//    -----o----- plane         different sides of this plane. find_crossings() lists such edges with the triangles in
+//         |                    whose planes they lie. This file decides all of them together, because it needs to know
+//                              their neighbours.
 #include <algorithm>
 #include <optional>
 #include <tuple>
@@ -49,7 +50,7 @@ void visit_edges(const glm::uvec3& t, const Visitor& visit) {
   }
 }
 
-/// The wedges of the contacts' edges and of the edges of their triangles.
+/// The wedges of all edges that matter: the edges of the contacts, and the sides of the contacts' triangles.
 class Wedges {
  public:
   Wedges(const WeldedMesh& mesh, const std::vector<EdgeContact>& contacts) {

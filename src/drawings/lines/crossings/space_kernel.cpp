@@ -75,7 +75,7 @@ HWY_INLINE LanePlane PlaneThrough(const Vector3& corner, const Vector3& one, con
           {bound(c.y, d.z, c.z, d.y), bound(c.z, d.x, c.x, d.z), bound(c.x, d.y, c.y, d.x)}};
 }
 
-/// Whether a point is certainly above a plane, or below it; neither for NaN.
+/// Whether a point is certainly above a plane, and whether it is certainly below the plane; neither for NaN.
 struct Height {
   M is_above, is_below;
 

@@ -27,7 +27,7 @@ struct SpaceBoxes {
       low[axis] = Buffer<float>(padded_to_lanes(count));
       high[axis] = Buffer<float>(padded_to_lanes(count));
     }
-    // A padding box touches nothing; an empty box would still touch an infinite one.
+    // A padding box of NaN touches nothing; an empty box would still touch an infinite box.
     constexpr float none = std::numeric_limits<float>::quiet_NaN();
     for (std::size_t i = count; i < low[0].size(); ++i) set(i, {glm::vec3(none), glm::vec3(none)});
   }
@@ -61,7 +61,7 @@ struct SpaceTriangles {
 
 /// Added to the size of a normal, because products of floats may lose that much by underflow.
 inline constexpr float kLeastSize = 1e-32f;
-/// Sixteen triangles, from `first` on, with which others are compared.
+/// Sixteen triangles, from number `first` on, with which other triangles are compared.
 struct SpaceProbes {
   std::size_t first;
   alignas(64) std::uint32_t spread[3][kSpaceLanes];  ///< the vertices; no_index in place of vertices with kNotSpread

@@ -83,7 +83,7 @@ Interval where_positive(const Signed& at_0, const Signed& at_1, bool is_strict) 
     return {0, 1};
   }
   if (at_0.sign <= 0 && at_1.sign <= 0) return {1, 0};
-  // The values may be wrong by rounding; their signs are not.
+  // Rounding may make the values wrong, but not their signs.
   const double a = std::abs(at_0.value), b = std::abs(at_1.value);
   const double root = a + b > 0 ? a / (a + b) : 0.5;
   if (at_0.sign < 0) return {root, 1};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where an edge is hidden. Each edge is compared with the occluders in the cells that it passes, and cut where the
+// Finds where edges are hidden. Each edge is compared with the occluders in the cells that it passes, and cut where the
 // hidden stretches begin and end. A cutter reuses its memory from edge to edge, so each thread has its own.
 #pragma once
 
@@ -72,7 +72,7 @@ class HiddenIntervals {
     return at != hidden_.end() && at->interval.begin <= part.begin;
   }
 
-  /// The stretch from the first to the last open point of `part`; empty where none is open.
+  /// The stretch from the first to the last open point of `part`; empty if no point is open.
   [[nodiscard]] Interval open_part(Interval part) const {
     if (counts_) return part;
     if (const auto at = first_to(part.begin); at != hidden_.end() && at->interval.begin <= part.begin)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of an edge that a triangle hides: the part in the triangle's shadow, as if the eye were a lamp.
+// Finds the part of an edge that a triangle hides. This part lies in the triangle's shadow, if the eye is taken as a
+// lamp.
 //
 //            ____        The shadow is bounded by the triangle's own plane and by three planes through the eye, one
 //   eye  .--|    |.....  along each side. Each plane is a linear function along the edge. Its signs at both ends, and
@@ -126,9 +127,9 @@ struct ShadowKernels {
   /// Bit i: the segment is neither wholly outside of a side of triangle i nor wholly before its plane. Tests the first
   /// `count` triangles, at most 64; may read 64.
   std::uint64_t (*within_sides)(const ScreenSides& sides, std::size_t count, const ScreenSegment& segment);
-  /// hidden_by() of every occluder of the batch, to the bit, except for those left open.
+  /// Computes hidden_by() of every occluder in the batch, to the bit, except for occluders that are left open.
   void (*hide)(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden);
-  /// covered_by() of every occluder of the batch, in the same form.
+  /// Computes covered_by() of every occluder in the batch, in the same way.
   void (*cover)(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden);
 };
 [[nodiscard]] ShadowKernels shadow_kernels(Isa isa);

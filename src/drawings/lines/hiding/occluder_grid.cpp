@@ -92,7 +92,7 @@ class CellDepth {
                      (std::abs(linear_.by_x) + std::abs(linear_.by_y)) * (most * 1e-3 + 0.1 / reach));
   }
 
-  /// Bounds of the triangle's distance within a square.
+  /// A lower bound on the triangle's distance within a square; farthest(): an upper bound.
   [[nodiscard]] double nearest(const Square& square) const {
     if (!has_plane_) return low_;
     const double value = linear_.at(square, is_parallel_ ? -1 : 1);
@@ -223,7 +223,8 @@ class GridPlan {
   [[nodiscard]] bool is_near(const Footprint& footprint) const {
     return double(footprint.nearest) <= sight.near() + 1e-6 * std::abs(sight.near());
   }
-  /// Calls visit(cell, nearest) for every cell that the footprint's triangle may touch, with its least distance there.
+  /// Calls visit(cell, nearest) for every cell that the footprint's triangle may touch, with the triangle's least
+  /// distance in that cell.
   template <class Visitor>
   void visit_cells(std::size_t number, const Visitor& visit) const {
     const CellRange& all = ranges[number];

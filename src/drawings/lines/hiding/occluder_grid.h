@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lists occluders by the cells of the picture that they may cover, the nearest first.
 //
-// A grid of square cells lies over the picture, with about 32 triangles to the cell. Each cell lists the triangles that
+// A grid of square cells lies over the picture, with about 32 triangles per cell. Each cell lists the triangles that
 // may cover some of it. A triangle behind another that covers the whole cell hides nothing more there and is left out.
 #pragma once
 
@@ -49,8 +49,8 @@ class OccluderGrid {
     return {low_x_.data() + entry, low_y_.data() + entry, high_x_.data() + entry, high_y_.data() + entry,
             nearest_.data() + entry};
   }
-  /// Whether the cell stores the sides of its triangles, as full cells do. Without sides, an edge among many parallel
-  /// slanting triangles would be compared with all triangles whose boxes it meets.
+  /// Whether the cell stores the sides of its triangles, as cells with many entries do. Without sides, an edge among
+  /// many parallel slanting triangles would be compared with all triangles whose boxes it meets.
   [[nodiscard]] bool has_sides(const Visit& visit) const { return has_sides(visit.cell); }
   /// The sides of the cell's entries from index `offset` on. Precondition: has_sides().
   [[nodiscard]] ScreenSides sides(std::uint32_t cell, std::size_t offset) const {

@@ -35,7 +35,7 @@ struct Values {
   V value;
   M is_positive, is_negative, is_zero;
 
-  /// n.v times `sign`; zero where `is_on`. Each coordinate of v may be wrong by `slack`.
+  /// Dot products of n and v, times `sign`; zero in the lanes of `is_on`. Each coordinate of v may be wrong by `slack`.
   HWY_INLINE Values(const LaneNormals& n, const Vector3& v, V sign, M is_on, double slack) {
     const D d;
     value = hn::Mul(Dot(n.value, v), sign);

@@ -388,7 +388,7 @@ struct Drawn {
   std::uint32_t left, right;
 };
 
-/// An edge with several pairs is drawn once, with the kind that comes first in EdgeKind.
+/// How an edge with these pairs is drawn, if at all: once, with the kind that comes first in EdgeKind.
 std::optional<Drawn> first_of(std::span<const SidePair> pairs, const Classifier& classifier) {
   std::optional<Drawn> first;
   for (const SidePair& pair : pairs)

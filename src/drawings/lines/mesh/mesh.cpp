@@ -6,7 +6,7 @@
 //    corners of the seam           A N M B               sorted along any axis on which two of them differ
 //    a triangle with the side A-B  becomes A-N-C, N-M-C, M-B-C
 //
-// Whether a triangle has no area is an exact sign, and the order along a line is the order of one coordinate.
+// An exact sign tells whether a triangle has no area. The order of corners along a line is the order of one coordinate.
 #include "lines/mesh/mesh.h"
 
 #include <algorithm>
@@ -26,8 +26,9 @@ namespace {
 
 constexpr std::size_t kWeldedPerPart = 8192;
 
-/// Calls visit(instance, first, last) for the pieces of the range from `begin` to `end` within each instance. The range
-/// counts over all instances; `firsts` are the instances' first numbers, followed by the count of all.
+/// Splits the range from `begin` to `end`, which counts over all instances, into one piece for each instance, and calls
+/// visit(instance, first, last) for each piece. `firsts` are the first numbers of the instances, followed by the count
+/// of all.
 template <class Visitor>
 void visit_instances(const std::vector<std::size_t>& firsts, std::size_t begin, std::size_t end, const Visitor& visit) {
   auto i = std::size_t(std::upper_bound(firsts.begin(), firsts.end(), begin) - firsts.begin()) - 1;

@@ -34,8 +34,8 @@ struct WeldedMesh {
   Buffer<PrimitiveId> ids;  ///< ids of the triangles
 };
 
-/// Leaves out triangles with a vertex that is not finite, and those with two vertices at one place. Vertices are
-/// numbered in the order in which their places first occur. O(triangles).
+/// Welds the triangles of a scene. Triangles with a vertex that is not finite are left out, and triangles with two
+/// vertices at one place. Vertices are numbered in the order in which their places first occur. O(triangles).
 [[nodiscard]] WeldedMesh weld(const Surfaces& surfaces, const Execution& execution);
 
 /// Removes the triangles whose corners lie exactly on one line (fillers), and splits triangles beside them at the
@@ -58,8 +58,8 @@ struct SeenTriangle {
   [[nodiscard]] bool is_open() const { return bits >= kOpen; }
   /// Sight::facing()
   [[nodiscard]] int facing() const { return int(bits >> kFacingShift) - 1; }
-  /// Bit i: seen along axis i, the triangle certainly turns left (i = 0 to 2) or right (i = 3 to 5). 0 if nothing is
-  /// known.
+  /// Bit i, for i from 0 to 2: seen along axis i, the triangle certainly turns left. Bit 3 + i: it certainly turns
+  /// right. 0 if nothing is known.
   [[nodiscard]] std::uint32_t turns() const { return bits & 63; }
   /// Bit i: seen along axis i, the next vertex lies below the corner and the last one above, so a walk around the
   /// corner rises in this triangle. Valid if turns() knows how the triangle turns along axis i.
@@ -110,7 +110,7 @@ class Corner {
   std::uint32_t number_;
 };
 
-/// By vertex, the corners of all triangles that have it, in the order of these triangles.
+/// For each vertex, the corners of all triangles that have the vertex, in the order of the triangles.
 using CornerTable = Buckets<Corner>;
 
 /// Lists the corners at each vertex. O(triangles). \throws Error limit_exceeded for more than Corner::most_triangles.
@@ -121,7 +121,8 @@ struct Star {
   /// Nothing is found for a vertex with more triangles than this; such vertices are rare.
   static constexpr std::size_t most = 16;
 
-  /// Whether every edge at the vertex belongs to two triangles with different third corners that are wound alike.
+  /// Whether every edge at the vertex belongs to exactly two triangles, which are wound alike and have different third
+  /// corners.
   bool is_paired;
   /// Whether the star is paired and its triangles lie side by side: seen along one of the axes, all of them turn the
   /// same way, and together they go around the vertex once.

@@ -254,7 +254,7 @@ class LaidLines {
   };
   LaidLines(const Extent& extent, const Nearness& nearness);
 
-  /// A distance, including a margin, within which all lines are that count as lying on `line`.
+  /// All lines that count as lying on `line` are within this distance, which includes a margin.
   [[nodiscard]] double reach_of(const Line& line) const { return near_.reach_of(line.length + Nearness::shortest); }
 
   const Nearness near_;

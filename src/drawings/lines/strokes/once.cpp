@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coincident lines are drawn once: segments are added by rank, each without the stretches that earlier ones cover.
+// Coincident lines are drawn once: segments are added by rank, each without the stretches that earlier segments cover.
 //
 //    there already       ======      =====
 //    the new line    ----------------------------

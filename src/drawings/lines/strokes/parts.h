@@ -45,7 +45,7 @@ inline constexpr double places_per_pixel = 1000;
 /// Joins segments of one rank wherever exactly two ends meet. Chains are sorted by rank, then by their first segment.
 [[nodiscard]] std::vector<Chain> chained(const std::vector<LineSegment>& segments);
 
-/// Removes corners that lie within `tolerance` of the line between the remaining ones.
+/// Removes corners from a chain. Each removed corner lies within `tolerance` of the straight line that replaces it.
 void straighten(Chain& chain, double tolerance);
 
 /// Replaces runs of at least four chords by arcs. The ends of these chords lie within `tolerance` of a circle. Each

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rank is a number for everything that the parts of a stroke have in common: whether they are hidden, whether they
-// are an outline, their kind and their instance, as far as the options ask for it. Sorting by rank sorts by drawing
-// order.
+// A rank is a number for the properties that all parts of a stroke have in common: whether they are hidden, whether
+// they are an outline, their kind, and their instance. Properties that the options ignore do not count. Sorting by rank
+// sorts by drawing order.
 //
 //        a ________________ b          Short chain c ends in the air and is left out. Without short chain d, line e
 //              |    d/                 would end in the air, so d stays. Before any chain is left out, a grid of the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines and texts on a page, to find free places for more text.
+// Stores the lines and texts on a page, to tell which places are free for more text.
 //
 //    +----+----+----+----+      Cells are about as large as a number. A box is free if it lies on the page and touches
 //    |  __|____|___ |    |      neither a line of its cells nor a text. A leader may cross lines, each at a cost, but
