@@ -61,7 +61,7 @@ class SideNet {
     });
   }
 
-  /// Calls share(a, b) for each two outlines that share a side. If several outlines have the side in one direction,
+  /// Calls share(a, b) for each pair of outlines that share a side. If several outlines have the side in one direction,
   /// they are paired in ascending order.
   template <class Share>
   void for_each_shared(const Share& share) const {

@@ -118,7 +118,7 @@ class Ruler {
   double length_ = 0;
 };
 
-/// The dashes of a pen: drawn, gap, drawn and so on.
+/// The dash pattern of a pen: a dash, a gap, a dash and so on.
 class Pattern {
  public:
   explicit Pattern(const std::vector<double>& dashes) : dashes_(dashes) {
@@ -156,7 +156,8 @@ class Pattern {
     return at;
   }
 
-  /// Appends a dash, or extends the last one if it ends where this one begins, around a corner.
+  /// Appends a dash. If the last dash ends where the new one begins, around a corner, the last dash is extended
+  /// instead.
   static void append(const Span& span, std::vector<Span>& drawn) {
     if (!drawn.empty() && drawn.back().end == span.begin)
       drawn.back().end = span.end;
@@ -168,7 +169,7 @@ class Pattern {
   double period_ = 0;
 };
 
-/// The spans of a path that its pattern draws.
+/// The spans of a path that are drawn as dashes.
 std::vector<Span> drawn_of(const Ruler& ruler, const Pattern& pattern, bool is_closed) {
   const std::vector<Span> spans = ruler.spans();
   std::vector<Span> drawn;
@@ -182,7 +183,7 @@ std::vector<Span> drawn_of(const Ruler& ruler, const Pattern& pattern, bool is_c
   return drawn;
 }
 
-/// Turns the dashes of a group, `most` at most, into paths.
+/// Turns the dashes of a group, at most `most` of them, into paths.
 PageGroup with_cut_dashes(const PageGroup& group, std::size_t most, const Execution& execution) {
   const Pattern pattern(group.pen.dashes);
   PageGroup cut{group.name, group.pen};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-//           |                 A circle seen along its axis has a cross; a cylinder seen from the side has its axis.
+//           |                 A circle seen along its axis gets a cross; a cylinder seen from the side gets its axis.
 //        .--+--.              Both are a little longer than the round itself. All are pieces of straight lines,
 //     --(---+---)--           sorted by direction, by the line's distance from the corner of the picture, and along
 //        '--+--'              the line.

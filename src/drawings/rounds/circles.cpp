@@ -255,9 +255,9 @@ class WallGrower {
     return grown(true);
   }
 
-  /// Grows a wall from a side of a circle whose triangle is parallel to the axis. With `may_be_cut`, vertices may also
-  /// lie inside of the radius, on chords, because something else cuts the wall there. A circle is precise enough to
-  /// allow that.
+  /// Grows a wall from `triangle`, which has a side on `circle`, if the triangle is parallel to the circle's axis.
+  /// `step` is the angle of a side. With `may_be_cut`, vertices may also lie inside of the radius, on chords, because
+  /// something else cuts the wall there. A circle is precise enough to allow that.
   [[nodiscard]] std::optional<FoundWall> grow(const Circle3& circle, double step, std::uint32_t triangle,
                                               bool may_be_cut) {
     if (is_used_[triangle]) return std::nullopt;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces of revolution and prisms, and the public list of all rounds.
+// Finds surfaces of revolution and prisms, and makes the public list of all rounds.
 //
 // Rings with corners at equal angles have equal moments in all directions across their axis. So the axis passes through
 // the mean of the corners, in the direction whose second moment differs from the other two, which are equal. Regions
 // that pass this test are checked ring by ring.
 //
-// A prism has two rims about one axis, each with its corners on a circle. Each rim has a key: the point of its axis
-// that is nearest to the origin, measured along a direction that is parallel to no usual row of holes. Rims are sorted
-// by their keys, so the other rim of a prism is among the next rims.
+// A prism has two rims about one axis, each with its corners on a circle. Each rim has a key: where the point of its
+// axis nearest to the origin lies along a direction that is parallel to no usual row of holes. Rims are sorted by their
+// keys, so the other rim of a prism is among the next rims.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -110,7 +110,7 @@ class Walker {
     for (const std::uint32_t place : path_) at_[place] = no_index;
   }
 
-  /// Takes a loop off the path, whose end has reached the path's own place number `begin`.
+  /// Removes a loop from the path and keeps it. The path's end has come back to the path's place number `begin`.
   void take_loop(std::size_t begin) {
     if (path_.size() - begin > 2) closed.push_back(points_from(begin));
     for (std::size_t i = begin + 1; i < path_.size(); ++i) at_[path_[i]] = no_index;

@@ -34,7 +34,7 @@ inline void add_arrowhead(PageGroup& group, const glm::dvec2& tip, const glm::dv
   group.add(corners, true);
 }
 
-/// A number with at most `digits` significant digits, without trailing zeros: "0.25", "1e+07".
+/// The text of a number with at most `digits` significant digits, without trailing zeros: "0.25", "1e+07".
 [[nodiscard]] inline std::string number_text(double value, int digits = 6) { return general_text(value, digits); }
 
 /// The text of two side lengths: "210 x 297".
@@ -75,7 +75,7 @@ struct ViewCell {
 /// projection, and on the left in third-angle projection.
 [[nodiscard]] glm::ivec2 cell_of(NamedView view, ProjectionMethod method);
 
-/// The columns and rows in use, each as wide as its widest view.
+/// Arranges views in columns and rows, each as wide as its widest view.
 class SheetLayout {
  public:
   /// `gap` is the distance between columns and between rows, in millimetres at any scale. Precondition: there are

@@ -242,8 +242,8 @@ struct Lanes {
     const M below = hn::And(hn::And(a.is_below, b.is_below), hn::And(c.is_below, d.is_below));
     return frontmost::HWY_NAMESPACE::BitsOf(D(), hn::Or(above, below)) & known;
   }
-  /// Lanes that share a vertex with the probe, and that certainly lie on the other side of this vertex than the probe
-  /// along the planes' common line, as most neighbours do.
+  /// Lanes that share a vertex with the probe, but along the planes' common line certainly lie on the opposite side of
+  /// this vertex, as most neighbours do.
   HWY_INLINE M LiesApart(const Probe& probe, const M (&has)[3]) const {
     const D d;
     const Vector3 p[3] = {probe.Corner(0), probe.Corner(1), probe.Corner(2)};

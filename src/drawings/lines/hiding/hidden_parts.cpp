@@ -8,7 +8,7 @@
 //
 // A triangle hides the edge within four planes. Each plane is a linear function along the edge, so its signs at both
 // ends decide. A vertex of the triangle is recognized by its number, so no arithmetic decides that it lies in the
-// planes through it. The value at a root may be rounded; a sign never is.
+// planes through it. The position of a root may be rounded, but a sign never is.
 #include "lines/hiding/hidden_parts.h"
 
 #include <algorithm>

@@ -32,8 +32,8 @@ struct Features {
   std::vector<FeatureEdge> edges;    ///< in the order of their vertices
   VertexPairs continued;             ///< pairs of vertices across gaps, from leave_out_gaps()
   std::vector<std::uint32_t> twins;  ///< triangles that repeat the corners of an earlier triangle; ascending
-  /// For each vertex, Star::is_spread: no two of its triangles meet except in their common corners. 0 means unknown; an
-  /// empty list means unknown for all.
+  /// For each vertex, Star::is_spread: no two triangles of the vertex meet except in their common corners. 0 means
+  /// unknown; an empty list means unknown for all.
   Buffer<std::uint8_t> is_spread;
 };
 

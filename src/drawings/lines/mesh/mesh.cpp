@@ -182,7 +182,7 @@ class Seams {
   struct Range {
     std::size_t first, last;  ///< `last` is one past the end
   };
-  /// Range of corner(), for the seam's corners that lie strictly between its corners `a` and `b`.
+  /// The indices, as for corner(), of the seam's corners that lie strictly between its corners `a` and `b`.
   [[nodiscard]] Range between(std::uint32_t seam, std::uint32_t a, std::uint32_t b) const {
     const std::size_t i = place_of(seam, a), j = place_of(seam, b);
     return {std::min(i, j) + 1, std::max(i, j)};

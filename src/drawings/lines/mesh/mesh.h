@@ -39,11 +39,11 @@ struct WeldedMesh {
 [[nodiscard]] WeldedMesh weld(const Surfaces& surfaces, const Execution& execution);
 
 /// Removes the triangles whose corners lie exactly on one line (fillers), and splits triangles beside them at the
-/// corners on their sides. A long side A-B, a filler A-M-B and short sides A-M and M-B become two edges of two
-/// triangles each. The pieces of a triangle take its position and its id. A seam stays open, but loses its fillers, if
-/// its splits would make the mesh more than five times as large: n overlapping sides on one line could add n^2
-/// triangles. `facing` holds Sight::facing() of the mesh's triangles, for any view. O(triangles) without fillers, else
-/// O(triangles log fillers).
+/// corners on their sides. For example, a long side A-B, a filler A-M-B and the short sides A-M and M-B become two
+/// edges, A-M and M-B, each of two triangles. The pieces of a triangle take its position and its id. A seam stays open,
+/// but loses its fillers, if its splits would make the mesh more than five times as large: n overlapping sides on one
+/// line could add n^2 triangles. `facing` holds Sight::facing() of the mesh's triangles, for any view. O(triangles)
+/// without fillers, else O(triangles log fillers).
 /// \returns whether there were fillers; else the mesh is unchanged.
 [[nodiscard]] bool close_seams(WeldedMesh& mesh, const Buffer<std::int8_t>& facing, const Execution& execution);
 

@@ -57,10 +57,10 @@ struct Dimensions {
 
 /// Places the overall sizes of overall_sizes_of(), and the diameters of circles and cylinders that are seen along their
 /// axes. Each diameter is on the sheet once; circles of one size in a view share a number ("6x⌀10"). An overall size
-/// that is a cylinder's diameter has the diameter sign, and stands for both. Circles at the end of a cone or chamfer
-/// have no diameter, nor do arcs up to little more than a half circle. At most 64 diameters stand on leader lines,
-/// which are short and cross few lines. Numbers avoid lines and texts of the drawing and `taken`, and stay within
-/// `area` (the page within its frame). O(lines + rounds).
+/// that is a cylinder's diameter has the diameter sign, and replaces that diameter. Circles at the end of a cone or
+/// chamfer have no diameter, nor do arcs up to little more than a half circle. At most 64 diameters stand on leader
+/// lines, which are short and cross few lines. Numbers avoid lines and texts of the drawing and `taken`, and stay
+/// within `area` (the page within its frame). O(lines + rounds).
 /// \throws Error bad_argument for options out of range.
 [[nodiscard]] Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBox& area,
                                           std::span<const PageBox> taken, const DimensionOptions& options = {});
