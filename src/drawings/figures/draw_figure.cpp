@@ -26,7 +26,8 @@ using painter_detail::ScreenPolygon;
 using painter_detail::TrapList;
 using painter_detail::TrappedCorner;
 
-/// Polygons with a group number; a group looks the same everywhere. All polygons of a group hide, or none.
+/// The polygons of all shapes, each with the number of its group. The polygons of a group have one colour, and either
+/// all of them are occluders or none is.
 std::vector<ScreenPolygon> polygons_in_groups(const ColoredOrder& colored, const Occluders& occluders) {
   std::vector<ScreenPolygon> polygons;
   polygons.reserve(colored.polygons.size());
@@ -52,7 +53,7 @@ std::vector<ScreenPolygon> polygons_in_groups(const ColoredOrder& colored, const
 /// Consecutive shapes of one blend group.
 struct PaintedGroup {
   std::size_t begin, end;  ///< range of ColoredOrder::polygons
-  bool has_traps;          ///< translucent, with several shapes
+  bool has_traps;          ///< the group is translucent and has several shapes
 };
 
 std::vector<PaintedGroup> groups_of(const ColoredOrder& colored) {
@@ -70,8 +71,9 @@ std::vector<PaintedGroup> groups_of(const ColoredOrder& colored) {
   return groups;
 }
 
-/// The traps of each polygon. Opaque polygons have traps under later ones, translucent ones under others of their blend
-/// group. Polygons of the same shape hide a trap, and so do parts of the same primitive with the same colour.
+/// The traps of each polygon. An opaque polygon has traps under later polygons, a translucent one under other polygons
+/// of its blend group. A trap may also lie under polygons of the same shape, and under parts of the same primitive that
+/// have the same colour.
 TrapList find_traps(const ColoredOrder& colored, double width, const Occluders& occluders, const Execution& execution) {
   std::vector<ScreenPolygon> polygons = polygons_in_groups(colored, occluders);
   TrapList opaque = make_traps(polygons, colored.view, width, execution);
@@ -89,8 +91,9 @@ TrapList find_traps(const ColoredOrder& colored, double width, const Occluders& 
   return all;
 }
 
-/// Pixels that a polygon reaches under its neighbours, against hairlines in viewers that blend edges. Lines around
-/// polygons are no alternative: they widen everything, in poppler by much more than their width.
+/// The distance in pixels that a polygon reaches under its neighbours, so that viewers that blend edges show no
+/// hairlines. Lines around polygons are no alternative, because they widen every shape, in poppler by much more than
+/// their width.
 constexpr double kTrap = 4;
 
 Occluders occluders_of(const Surfaces& surfaces, const FigureOptions& options, bool holes_are_cut_out) {
@@ -99,7 +102,8 @@ Occluders occluders_of(const Surfaces& surfaces, const FigureOptions& options, b
       [&surfaces, holes_are_cut_out](PrimitiveId id) { return is_opaque(surfaces, id, holes_are_cut_out); });
 }
 
-/// Near the eye polygons are millions of pixels wide, and all of these would be sampled.
+/// Whether any polygon reaches beyond the picture. Near the eye, polygons are millions of pixels wide, and all these
+/// pixels would be sampled.
 bool reaches_beyond_picture(const PaintOrder& order) {
   const glm::dvec2 size(order.view.width, order.view.height);
   return std::any_of(order.corners.begin(), order.corners.end(), [&](const PaintCorner& corner) {
@@ -107,7 +111,7 @@ bool reaches_beyond_picture(const PaintOrder& order) {
   });
 }
 
-/// All polygons of an order within the picture, hidden or not.
+/// The parts of all polygons within the picture, hidden or not.
 VisibleParts all_parts(PaintOrder order, const Execution& execution) {
   if (reaches_beyond_picture(order)) return visible_parts(order, Occluders::none(), execution);
   return {order.view, std::move(order.polygons), std::move(order.corners)};

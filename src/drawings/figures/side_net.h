@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The outlines of adjacent polygons, without the sides that two of them share.
+// Finds the outlines of adjacent polygons, without the sides that two polygons share.
 //
-//    A ------------------ B           Corners are rounded to a grid. B's neighbour has a corner C on the side A-B. The
-//    |         C          |           side becomes A-C and C-B, so that each of the three polygons has the same sides
-//    as
-//    +---------+----------+           its neighbours, in opposite directions. Shared sides are found by their numbers.
+//    A ------------------ B           Corners are rounded to a grid. Two polygons below the side A-B have a corner C
+//    |         C          |           on that side. The side is split into A-C and C-B, so that neighbours have the
+//    +---------+----------+           same sides, in opposite directions. Shared sides are found by the numbers of
+//                                     their ends.
 //
-// Points are sorted by rows of the picture, and by x within a row. Points on a side are found in the rows that it
-// passes. The sides that are not shared form closed rings: as many sides end at a point as begin there.
+// Points are sorted by rows of the picture, and by x within a row. Points on a side are found in the rows that the side
+// passes. The sides that are not shared form closed rings, because as many sides end at each point as begin there.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,9 @@
 
 namespace frontmost::shading {
 
-/// Corners are rounded to 1/4096 pixel, and sides are split at corners of others. So adjacent outlines have the same
-/// sides, in opposite directions. O(n log n) in the number of corners, for sides that are short beside the whole.
+/// Finds the sides that outlines share. Corners are rounded to 1/4096 pixel, and sides are split at corners of other
+/// outlines. So adjacent outlines have the same sides, in opposite directions. O(n log n) in the number of corners, if
+/// sides are short in comparison with the whole.
 class SideNet {
  public:
   using Corner = painter_detail::TrappedCorner;
@@ -39,7 +40,7 @@ class SideNet {
 
   void clear() { raw_.clear(); }
 
-  /// Splits sides. Call it after all outlines were added.
+  /// Splits sides at the corners that lie on them. Call this after all outlines are added.
   void weave() {
     sides_.clear();
     if (raw_.empty()) return;
@@ -60,8 +61,8 @@ class SideNet {
     });
   }
 
-  /// Calls share(a, b) for outlines that share a side. Where several coincide there, outlines are paired in ascending
-  /// order.
+  /// Calls share(a, b) for each pair of outlines that share a side. If several outlines have the side in one direction,
+  /// they are paired in ascending order.
   template <class Share>
   void for_each_shared(const Share& share) const {
     for (std::size_t i = 0; i < sides_.size();) {
@@ -79,7 +80,7 @@ class SideNet {
 
  private:
   static constexpr double kUnits = 4096;  ///< per pixel
-  /// Units that a corner may lie beside its side: both were rounded.
+  /// The greatest distance, in units, between a corner and the side on which it lies. Both were rounded.
   static constexpr double kBesideSide = 1.5;
 
   using Point = glm::i64vec2;
@@ -91,7 +92,8 @@ class SideNet {
     std::uint32_t outline, trap;
   };
 
-  /// All sides between two points: in the direction low to high they are [begin, turn), in the other [turn, end).
+  /// All sides between two points. Sides [begin, turn) lead from the low point to the high point, sides [turn, end)
+  /// back.
   struct Pairs {
     std::size_t begin, turn, end;
     [[nodiscard]] std::size_t count() const { return std::min(turn - begin, end - turn); }
@@ -139,7 +141,7 @@ class SideNet {
     for (std::size_t r = rows_.size() - 1; r-- > 0;) rows_[r] = std::min(rows_[r], rows_[r + 1]);
   }
 
-  /// Sets between_ to the points on a side, in its direction.
+  /// Sets between_ to the points on a side, in the order of the side's direction.
   void find_between(const Point& from, const Point& to) {
     between_.clear();
     const glm::dvec2 way(to - from);
@@ -175,7 +177,7 @@ class SideNet {
 
   void begin_rings() {
     left_.clear();
-    // Drops equal numbers of sides in both directions.
+    // Sides in opposite directions cancel out, so equal numbers of both are dropped.
     for (std::size_t i = 0; i < sides_.size();) {
       const Pairs pairs = pairs_at(i);
       for (std::size_t k = i + pairs.count(); k < pairs.turn; ++k) left_.push_back(sides_[k]);
@@ -189,7 +191,8 @@ class SideNet {
     next_ = 0;
   }
 
-  /// Every point has as many ending sides as beginning ones, so every walk returns.
+  /// Finds the next ring. \returns whether there is one. As many sides end at each point as begin there, so every walk
+  /// returns to its first point.
   bool next_ring() {
     while (next_ < left_.size() && is_used_[next_]) ++next_;
     if (next_ == left_.size()) return false;
@@ -208,7 +211,7 @@ class SideNet {
     return true;
   }
 
-  /// Removes corners at which nothing turns.
+  /// Removes corners at which the ring does not turn.
   void straighten() {
     std::vector<Corner> kept;
     const std::size_t count = ring_.size();
@@ -224,12 +227,12 @@ class SideNet {
   }
 
   std::vector<Raw> raw_;
-  std::vector<Point> points_;      ///< by rows, and by x in a row
+  std::vector<Point> points_;      ///< sorted by row, then by x
   std::vector<std::size_t> rows_;  ///< by row: index of its first point
   std::int64_t low_y_ = 0, row_height_ = 1;
   std::vector<std::pair<double, std::uint32_t>> between_;
   std::vector<Side> sides_;  ///< sides between the same points are consecutive
-  std::vector<Side> left_;   ///< sorted by first point
+  std::vector<Side> left_;   ///< sides that are not shared, sorted by first point
   std::vector<std::uint8_t> is_used_;
   std::size_t next_ = 0;
   std::vector<Corner> ring_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines of a hatch set on the screen, their intersections with triangles, and the brightness along them.
+// Computes the lines of a hatch set on the screen, their intersections with triangles, and the brightness along them.
 //
 //      line 2  - - -/- - -\- - -      Lines are parallel and evenly spaced, and are numbered across their direction.
 //      line 1  - - / - - - \ - -      A line meets a triangle in a segment in space with both ends on the triangle's
@@ -28,7 +28,7 @@ struct HatchedTriangle {
   std::uint32_t number;
   glm::uvec3 vertices;
   glm::dvec3 places[3];
-  glm::dvec3 in_eye[3];  ///< as Sight::in_eye()
+  glm::dvec3 in_eye[3];  ///< places in eye space, from Sight::in_eye()
 };
 
 /// The segment of a line in a triangle. Each end lies between two vertices, at a share of the way.
@@ -45,7 +45,7 @@ struct HatchSegment {
   }
 };
 
-/// Lines are numbered; number 0 is `HatchSet::offset` from the picture's corner.
+/// The numbered lines of a set. Line 0 is at the distance HatchSet::offset from the picture's corner.
 class HatchRows {
  public:
   HatchRows(const HatchSet& set, const View& view)
@@ -79,7 +79,8 @@ class HatchRows {
       low = std::min(low, height);
       high = std::max(high, height);
     }
-    // One more on each side, because the division rounds; the signs in segment() decide. Clamped before the conversion.
+    // The range has one line more on each side, because the division rounds; the signs in segment() decide. Numbers are
+    // clamped before they are converted to integers.
     const auto number = [&](double height) {
       return std::clamp((height - offset_) / spacing_, picture_.first - 2.0, picture_.last + 2.0);
     };
@@ -87,8 +88,8 @@ class HatchRows {
             std::min(picture_.last, std::int32_t(std::floor(number(high))) + 1)};
   }
 
-  /// The segment of the line in the triangle. A vertex on the line counts as above, so that a line passes from triangle
-  /// to triangle at one place, to the bit.
+  /// The segment of the line in the triangle. A vertex on the line counts as above the line, so that a line passes from
+  /// triangle to triangle at one place, to the bit.
   [[nodiscard]] std::optional<HatchSegment> segment(const HatchedTriangle& triangle, std::int32_t line) const {
     double heights[3];
     for (int k = 0; k < 3; ++k)
@@ -100,7 +101,7 @@ class HatchRows {
     for (int k = 0; k < 3; ++k) {
       int p = k, q = k == 2 ? 0 : k + 1;
       if ((heights[p] >= 0) == (heights[q] >= 0)) continue;
-      // Computed from the lower vertex, for both triangles.
+      // Both triangles at the side compute the place from the lower vertex.
       if (triangle.vertices[p] > triangle.vertices[q]) std::swap(p, q);
       const double from_p = std::abs(heights[p]), t = from_p / (from_p + std::abs(heights[q]));
       const glm::dvec3 &from = triangle.places[p], &to = triangle.places[q];
@@ -117,10 +118,10 @@ class HatchRows {
     return segment;
   }
 
-  /// The position along the line, in pixels, of a point on it.
+  /// The position of a point on a line, in pixels along the line.
   [[nodiscard]] double along(const glm::dvec2& screen) const { return glm::dot(screen, direction_); }
 
-  /// The nearest position along the line within the picture.
+  /// The position along the line that is nearest to `along` and within the picture.
   [[nodiscard]] double within_picture(std::int32_t line, double along) const {
     const glm::dvec2 start = point(line, 0);
     for (int axis = 0; axis < 2; ++axis) {
@@ -143,7 +144,7 @@ class HatchRows {
 
   [[nodiscard]] double height_of(std::int32_t line) const { return offset_ + line * spacing_; }
   [[nodiscard]] double weight(const glm::dvec3& in_eye) const { return is_parallel_ ? 1 : in_eye.z; }
-  /// The distance across the lines in pixels, times the weight.
+  /// A point's distance across the lines, in pixels, times its weight.
   [[nodiscard]] double weighted_height(const glm::dvec3& in_eye) const {
     return glm::dot(plane_, {in_eye.x, in_eye.y, weight(in_eye)});
   }
@@ -188,7 +189,7 @@ class CornerNormals {
   }
 
  private:
-  /// The tip of a cone with more sides is flat: its normal means nothing.
+  /// A vertex with more triangles, such as the tip of a cone, has no normal that means anything.
   static constexpr std::size_t most_at_vertex = 256;
 
   [[nodiscard]] static glm::dvec3 unit(const glm::dvec3& v, const glm::dvec3& otherwise) {
@@ -196,8 +197,8 @@ class CornerNormals {
     return length > 0 && length < std::numeric_limits<double>::infinity() ? v / length : otherwise;
   }
 
-  /// The mean with weights by N. Max (Weights for Computing Vertex Normals from Facet Normals, 1999), exact on spheres
-  /// for any tessellation.
+  /// The mean normal at a corner, with the weights of N. Max (Weights for Computing Vertex Normals from Facet Normals,
+  /// 1999). It is exact on spheres for any tessellation.
   [[nodiscard]] glm::dvec3 at(std::uint32_t triangle, int corner, const glm::dvec3& own) const {
     const std::uint32_t vertex = mesh_.triangles[triangle][corner];
     const std::span<const Corner> around = corners_[vertex];
@@ -228,7 +229,7 @@ class CornerNormals {
   const CornerTable corners_;
 };
 
-/// The intervals in which that cosine is less than `limit`, in order: at most three.
+/// Sets `dark` to the intervals in which NormalAlong::cosine_at() is less than `limit`: at most three, in order.
 inline void find_dark(const NormalAlong& normal, const glm::dvec3& to_light, double limit,
                       std::vector<Interval>& dark) {
   dark.clear();

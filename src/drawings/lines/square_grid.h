@@ -5,7 +5,7 @@
 //   +-------+-------+-------+      A segment visits the cells that it passes, each with a box around the part of the
 //   |       |      .|--'    |      segment that may lie in the cell.
 //   |    .--+--' '  |       |
-//   |.--'   |       |       |      The grid knows cells only by their numbers, row by row. Callers keep the contents of
+//   |.--'   |       |       |      The grid itself only numbers its cells, row by row. Callers keep the contents of
 //   +-------+-------+-------+      cells in arrays, by cell number.
 #pragma once
 
@@ -31,7 +31,7 @@ struct PassedCell {
 /// Equal squares side by side, row by row.
 struct SquareGrid {
   glm::dvec2 low{0};
-  double size = 1;  ///< side of a square
+  double size = 1;  ///< side length of a square
   int columns = 1, rows = 1;
 
   [[nodiscard]] std::size_t count() const { return std::size_t(columns) * std::size_t(rows); }
@@ -43,7 +43,7 @@ struct SquareGrid {
     return square(int(number % std::size_t(columns)), int(number / std::size_t(columns)));
   }
 
-  /// Calls visit(PassedCell) for the squares that the segment from `a` to `b` passes within `pad`, row by row, until it
+  /// Calls visit(PassedCell) for each square within `pad` of the segment from `a` to `b`, row by row, until `visit`
   /// returns false.
   template <class Visitor>
   void visit_along(const glm::dvec2& a, const glm::dvec2& b, double pad, const Visitor& visit) const {
@@ -68,7 +68,7 @@ struct SquareGrid {
   }
 
  private:
-  /// The square's index along one axis, from -1 to `count`; both of these lie outside of the grid.
+  /// The index of a square along one axis, from -1 to `count`. Squares -1 and `count` are outside of the grid.
   [[nodiscard]] int index(double offset, int count) const {
     return int(std::clamp(offset / size + 1, 0.0, count + 1.0)) - 1;
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// DXF of AutoCAD release 12 (AC1009), which all programs read: pairs of lines, a group code and its value.
+// Writes DXF of AutoCAD release 12 (AC1009), which all programs read. A file consists of pairs of lines: a group code
+// and its value.
 //
 //   0           a group code: the value is the kind of an entity
 //   LINE
@@ -7,8 +8,8 @@
 //   2_VISIBLE
 //
 // Release 12 has neither groups nor line widths, so layers represent both: each group is a layer, which gives its line
-// type and colour. The page's layer comes first in the name, so that programs can select all of it. The y axis of a
-// page points down and that of DXF up, so places are flipped and arcs change their direction.
+// type and colour. The name of a DXF layer begins with the page's layer, so that programs can select all of that layer.
+// The y axis of a page points down and that of DXF up, so places are flipped and arcs change their direction.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -21,7 +22,7 @@
 namespace frontmost::detail {
 namespace {
 
-/// Release 12 allows capitals, digits, $, - and _.
+/// The name in characters that release 12 allows: capitals, digits, $, - and _.
 std::string table_text(const std::string& name) {
   std::string clean;
   for (const char c : name) {
@@ -52,7 +53,7 @@ class TableNames {
   std::map<std::string, int> next_;
 };
 
-/// A longer list of layers helps nobody.
+/// With more layers, each layer of the page is only one DXF layer, because a longer list helps nobody.
 constexpr std::size_t most_layers = 1000;
 
 struct Layer {
@@ -61,7 +62,7 @@ struct Layer {
   int color = 7;
 };
 
-/// The nearest of the colours with a standard number.
+/// The number of the standard colour nearest to `color`.
 int color_number(const PageColor& color) {
   struct Numbered {
     int number, red, green, blue;
@@ -78,12 +79,12 @@ int color_number(const PageColor& color) {
       ->number;
 }
 
-/// The colour of a layer's lines. Black lines get a colour by their class, the digit at which the page layer's name
-/// begins. So programs and lasers can distinguish classes; release 12 has no line widths for that.
+/// The colour of a layer's lines. Black lines get a colour by their class, the digit with which the name of their page
+/// layer begins. So programs and lasers can distinguish classes, for which release 12 has no line widths.
 int layer_color(const std::string& page_layer, const Pen& pen) {
   const int color = color_number(pen.color);
-  // Hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame, sections: all are visible on black
-  // and on white.
+  // For 0, and for hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame and sections: colours
+  // that are visible on black and on white.
   constexpr int of_classes[] = {7, 6, 7, 5, 8, 9, 1, 3, 4, 3};
   const bool is_numbered = !page_layer.empty() && page_layer[0] >= '0' && page_layer[0] <= '9';
   return color == 7 && is_numbered ? of_classes[page_layer[0] - '0'] : color;
@@ -103,7 +104,8 @@ struct Layers {
       for (const PageGroup& group : layer.groups) {
         if (groups <= most_layers && !group.name.empty()) {
           of_groups.back().push_back(list.size());
-          // The class is not shortened, so that programs can select all of it.
+          // On sheets, every class with named groups fits into 11 characters, so that programs can select all of a
+          // class.
           list.push_back({names.add(of_class.substr(0, 11) + "-" + table_text(group.name)), group.pen,
                           layer_color(layer.name, group.pen)});
           continue;
@@ -162,7 +164,7 @@ class DxfWriter {
     text(2, name);
   }
   void end_section() { text(0, "ENDSEC"); }
-  /// Flips y from down to up.
+  /// Writes a point, with y flipped from down to up.
   void point(const glm::dvec2& p, int code = 10) {
     number(code, p.x);
     number(code + 10, page_.height - p.y);
@@ -191,9 +193,9 @@ class DxfWriter {
     end_section();
   }
 
-  /// The line type of a pen. Some readers know only standard names and draw all others solid. A name tells how many
-  /// dashes a period has. The suffix "2" or "X2" means a period about half or twice as long as that of the first such
-  /// pen.
+  /// The name of a pen's line type. Some readers know only standard names, and draw all other types solid. The name
+  /// tells how many dashes a period has. The suffix "2" or "X2" means that the period is about half or twice as long as
+  /// the period of the first pen with the same name.
   [[nodiscard]] std::string type_name(const Pen& pen) const {
     constexpr const char* names[] = {"CONTINUOUS", "HIDDEN", "CENTER", "PHANTOM"};
     const std::string name = names[std::min(pen.dashes.size() / 2, std::size(names) - 1)];
@@ -252,7 +254,7 @@ class DxfWriter {
     }
   }
 
-  /// Properties that are not written are those of the layer, and change with it.
+  /// Begins an entity. Properties that are not written are those of the layer, and change with the layer.
   void entity(std::string_view kind, const std::string& layer) {
     text(0, kind);
     text(8, layer);

@@ -3,11 +3,10 @@
 //
 // Page --validate()--> layers --> groups --> paths --paint_of()--> fill and line colours
 //
-//              . - .          A writer is a class over one page that appends text to a PageText; no writer converts the
-//          .-'   |   '-.      page first. The bulge of a join is the height of its arc by half of the chord: the
-//          tangent
-//        from ---+--- to      of a quarter of the arc's angle. Formats need a radius and flags, a centre and angles, or
-//                             approximating curves instead.
+//              . - .          A writer is a class that reads one page and appends text to a PageText. No writer
+//          .-'   |   '-.      converts the page first. The bulge of a join is the height of its arc divided by half of
+//        from ---+--- to      the chord, which is the tangent of a quarter of the arc's angle. Formats need a radius
+//                             and flags, a centre and angles, or approximating curves instead.
 #pragma once
 
 #include <cmath>
@@ -47,10 +46,10 @@ struct Join {
   return path.is_closed ? path.count : path.count - 1;
 }
 
-/// The circle on which a whole path lies, in one direction; none otherwise.
+/// The arc that a whole path forms, if all its joins run along one circle in one direction; none otherwise.
 [[nodiscard]] std::optional<Arc> whole_arc(const PageGroup& group, const PagePath& path);
 
-/// Coordinates are rounded to thousandths. Millimetres are doubles of at most 1e9, so the result fits.
+/// Rounds a coordinate in millimetres to thousandths. Coordinates are at most 1e9, so the result fits.
 [[nodiscard]] inline std::int64_t thousandths(double value) { return std::llround(value * 1000); }
 [[nodiscard]] inline glm::i64vec2 thousandths(const glm::dvec2& p) { return {thousandths(p.x), thousandths(p.y)}; }
 
@@ -74,8 +73,8 @@ class PageText {
   PageText& integer(std::int64_t value);
   /// Writes value / 10^digits without trailing zeros. `digits` is 1 to 9.
   PageText& fixed(std::int64_t value, int digits = 3);
-  /// Writes a number rounded to `digits`, with the zero before the point, which JSON and DXF need and other formats do
-  /// not.
+  /// Writes a number rounded to `digits` decimals, with a zero before the point, which JSON and DXF need and other
+  /// formats do not.
   PageText& decimal(double value, int digits = 3);
   /// Number of bytes written so far.
   [[nodiscard]] std::uint64_t size() const { return passed_on_ + used_; }
@@ -103,7 +102,7 @@ class PageText {
 /// A PDF text string in UTF-16, cleaned by printable_text(), as hexadecimal digits in brackets.
 [[nodiscard]] std::string pdf_text(std::string_view name);
 
-/// Writers get valid pages, and do not commit the file.
+/// The writers of the formats. They get valid pages, and do not commit the file.
 void save_svg(const Page& page, OutputFile& file, const Execution& execution);
 void save_pdf(std::span<const Page> pages, OutputFile& file, const Execution& execution);
 /// \throws Error unsupported if some path is filled, before anything is written.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages are validated here, so that their writers have no error paths. Refused is whatever a format could not write:
-// numbers that are not finite or have too many digits, lists of different lengths, paths with missing points.
+// Pages are validated here, so that their writers have no error paths. A page is refused if a format could not write
+// it: for numbers that are not finite or have too many digits, for lists of different lengths, and for paths with
+// missing points.
 //
 // The shapes of a figure become filled paths of a page, and each of its blend groups becomes a group with an opacity.
 #include <cmath>
@@ -47,7 +48,7 @@ void check_group(const PageGroup& group, const std::string& where) {
     refuse(where, "the first path is part of a path, but there is none before it");
 }
 
-/// The size of a pixel in style sheets, so that a figure is as large on a page as the picture in a browser.
+/// Millimetres per pixel, as in style sheets, so that a figure is as large on a page as the picture in a browser.
 constexpr double kMillimetres = 25.4 / 96;
 
 PageColor page_color(const glm::u8vec4& color) { return {color.r, color.g, color.b, color.a}; }
@@ -63,7 +64,8 @@ PageGroup backdrop(const glm::vec3& color, const Page& page) {
   return group;
 }
 
-/// The end of a blend group of several shapes; otherwise the begin of the next such group.
+/// The end of the shapes from `begin` on that become one page group: a blend group of several shapes, or all shapes
+/// before the next such blend group.
 std::size_t end_of_group(std::span<const FigureShape> shapes, std::size_t begin) {
   const auto goes_on = [&](std::size_t i) {
     return i + 1 < shapes.size() && shapes[i + 1].blend_group == shapes[i].blend_group;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Circles among the sharp edges of a mesh, and cylinders (walls) that begin at them or at two smooth neighbours.
+// Finds circles among the sharp edges of a mesh, and cylinders (walls) that begin at circles or at two smooth
+// neighbours.
 //
 //    corners of a chain     0   1   2   3   4   5   6   7   8   9 ...
 //    tried                  |---------------|  4 sides fit, then 8, until some do not; then the step is halved
@@ -8,8 +9,8 @@
 // are in, because a rim is split wherever another edge meets it.
 //
 // A wall grows over all smooth neighbours that are parallel to its axis and have their vertices at its radius. Walls
-// from circles come first: a circle determines the axis better than two neighbours, whose tube is fitted again as they
-// get more.
+// from circles come first, because a circle determines the axis better than two neighbours do. The tube of a wall that
+// begins at two neighbours is fitted again as the wall grows.
 #include <algorithm>
 #include <map>
 #include <numbers>
@@ -40,8 +41,8 @@ class RunFinder {
         return;
       }
     }
-    // A closed chain is a run from its first vertex, which may lie in the middle of an arc. Such an arc comes in two
-    // parts, which are united later.
+    // A closed chain is searched from its first vertex, which may lie in the middle of an arc. Such an arc is found in
+    // two parts, which are united later.
     for (std::size_t at = 0; at + kFewestSides <= sides_;) {
       const std::size_t end = longest_run(at);
       if (end == at) {
@@ -60,7 +61,8 @@ class RunFinder {
     return mesh_.mesh.positions[chain_.vertices[i % chain_.vertices.size()]];
   }
 
-  /// The angle around the circle of the sides from `first` to `last`; none if they are not chords of it.
+  /// The angle that the sides from `first` to `last` cover around the circle; none if these sides are not chords of the
+  /// circle.
   [[nodiscard]] std::optional<double> turn_along(const Circle3& circle, std::size_t first, std::size_t last) const {
     if (!(circle.radius >= kSmallestRadius * mesh_.noise)) return std::nullopt;
     double turn = 0;
@@ -129,7 +131,7 @@ class ArcJoiner {
     const Key middle{std::int64_t(std::floor(cell.x)), std::int64_t(std::floor(cell.y)),
                      std::int64_t(std::floor(cell.z))};
     for (int i = 0; i < 8; ++i) {
-      // The neighbours on the nearer sides: equal circles are less than half a cell away.
+      // The cell and its neighbours on the nearer sides suffice, because equal circles are less than half a cell away.
       const auto moved = [&](int axis) {
         const bool is_high = cell[axis] - std::floor(cell[axis]) >= 0.5;
         return (i >> axis & 1) == 0 ? 0 : is_high ? 1 : -1;
@@ -165,8 +167,8 @@ class ArcJoiner {
 };
 
 constexpr std::size_t kSeedsPerPart = 4096;
-constexpr double kFlat = 0.9999999;  // cosine of 0.026 degrees: the two halves of a plane
-constexpr double kUpright = 0.01;    // radians from the axis, for neighbours of the two triangles
+constexpr double kFlat = 0.9999999;  // cosine of 0.026 degrees: triangles that turn by less lie in one plane
+constexpr double kUpright = 0.01;    // radians: greatest lean of a triangle that counts as parallel to the axis
 constexpr double kRoughlyUpright = 0.1;
 constexpr double kFacesOut = 0.9;       // least cosine between the normal and the direction from the axis
 constexpr double kWholeSagitta = 1.05;  // times the sagitta of the mean side
@@ -209,9 +211,9 @@ class Seeds {
     return has_one;
   }
 
-  /// Whether the next ring leans twice as much as this triangle. Then the triangle is beside a ring of a sphere or
-  /// torus, which is no cylinder and no higher than the next ring. In contrast, a fillet leans by half a step where it
-  /// begins at a wall and by three halves next; a slight chamfer does not lean more.
+  /// Whether the next ring leans twice as much as `triangle`, as on a sphere or a torus. The triangle is then beside a
+  /// ring of such a surface, which is no cylinder. In contrast, a fillet leans by half a step where it begins at a
+  /// wall, and by three halves of a step in the next ring; a slight chamfer does not lean more in the next ring.
   [[nodiscard]] bool leans_on(std::uint32_t triangle, const glm::dvec3& axis) const {
     const double first = lean(triangle, axis);
     const auto is_twice = [&](std::uint32_t t) { return std::abs(lean(t, axis) / first - 2) < 0.4; };
@@ -219,7 +221,7 @@ class Seeds {
       if (!mesh_.is_smooth(triangle, k)) continue;
       const std::uint32_t next = mesh_.across(triangle, k);
       if (is_twice(next)) return true;
-      // The next ring may begin behind the other half of the triangle's quad.
+      // The next ring may begin beyond the other half of the triangle's quad.
       for (int j = 0; j < 3; ++j)
         if (mesh_.is_smooth(next, j) && is_twice(mesh_.across(next, j))) return true;
     }
@@ -245,15 +247,17 @@ class WallGrower {
  public:
   explicit WallGrower(const SmoothMesh& mesh) : mesh_(mesh), is_used_(mesh.mesh.triangles.size()) {}
 
-  /// None if the seed's surface is no cylinder, or already part of one. Visited triangles are not visited again.
+  /// Grows a wall from a seed. None if the seed's surface is no cylinder, or is already part of one. Triangles that
+  /// earlier calls took are skipped.
   [[nodiscard]] std::optional<FoundWall> grow(const Seed& seed) {
     const std::uint32_t other = mesh_.across(seed.triangle, seed.side);
     if (is_used_[seed.triangle] || is_used_[other] || !start(seed, other)) return std::nullopt;
     return grown(true);
   }
 
-  /// Grows a wall from a side of a circle whose triangle is parallel to the axis. `may_be_cut`: vertices may lie on
-  /// chords, inside of the radius, where something else cuts the wall; a circle is precise enough to allow that.
+  /// Grows a wall from `triangle`, which has a side on `circle`, if the triangle is parallel to the circle's axis.
+  /// `step` is the angle of a side. With `may_be_cut`, vertices may also lie inside of the radius, on chords, because
+  /// something else cuts the wall there. A circle is precise enough to allow that.
   [[nodiscard]] std::optional<FoundWall> grow(const Circle3& circle, double step, std::uint32_t triangle,
                                               bool may_be_cut) {
     if (is_used_[triangle]) return std::nullopt;
@@ -268,7 +272,8 @@ class WallGrower {
   }
 
  private:
-  /// Grows the current triangles. The axis of a circle is better than a fit to few triangles, so it is not fitted.
+  /// Grows the wall from the current triangles. With `fits`, the tube is fitted again as the wall grows. The axis of a
+  /// circle is better than a fit to few triangles, so walls from circles are not fitted.
   std::optional<FoundWall> grown(bool fits) {
     std::size_t fitted = std::max(triangles_.size(), kFewestTriangles / 2);
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
@@ -285,7 +290,7 @@ class WallGrower {
       if (!fits || (fit() && holds_all())) return measured();
       return std::nullopt;
     }
-    // A short run of triangles may belong to a wall that begins with a better axis.
+    // Too few triangles are released again, because they may belong to a wall that begins with a better axis.
     for (const std::uint32_t t : triangles_) is_used_[t] = false;
     return std::nullopt;
   }
@@ -371,14 +376,15 @@ class WallGrower {
   const SmoothMesh& mesh_;
   std::vector<bool> is_used_;
   Tube tube_{};
-  double slack_ = 0, within_ = 0, outside_ = 1;  ///< how far vertices may be outside of the radius, and inside
+  double slack_ = 0, within_ = 0, outside_ = 1;  ///< slack_ and within_: how far vertices may lie outside and inside of
+                                                 ///< the radius; outside_: 1, or -1 if hollow
   std::vector<std::uint32_t> triangles_;
 };
 
 }  // namespace
 
 double covered(const FoundCircle& circle) {
-  std::vector<std::pair<double, double>> spans;  // angles from the begin of the first arc
+  std::vector<std::pair<double, double>> spans;  // angles from the beginning of the first arc
   for (const FoundCircle::Arc& arc : circle.arcs) {
     double begin = circle.circle.turn_between(circle.arcs[0].from, arc.from);
     if (begin < 0) begin += kWhole;
@@ -419,7 +425,7 @@ std::vector<FoundWall> find_walls(const SmoothMesh& mesh, const std::vector<Foun
   const auto grow_from_circles = [&](bool may_be_cut) {
     for (const FoundCircle& circle : circles) {
       check_cancelled(execution);
-      // Most sides have two triangles.
+      // The mean angle of a side, because most sides have two triangles.
       const double step = std::min(kWidestStep, 2 * covered(circle) / double(circle.triangles.size()));
       for (const std::uint32_t triangle : circle.triangles)
         keep(grower.grow(circle.circle, step, triangle, may_be_cut));

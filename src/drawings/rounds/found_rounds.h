@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Round shapes in a mesh: circles among its sharp edges, cylinders among its smooth surfaces, and other surfaces of
-// revolution.
+// Finds round shapes in a mesh: circles among its sharp edges, cylinders among its smooth surfaces, and other surfaces
+// of revolution.
 //
 //    sharp edges --chains--> arcs --on one circle--> circles ------+
 //                                                                  v
@@ -27,12 +27,13 @@ struct Circle3 {
   glm::dvec3 centre, axis;  ///< unit axis; seen from its tip, the circle runs anticlockwise
   double radius;
 
-  /// The angle from one point to the next around the axis, in (-pi, pi].
+  /// The angle from point a to point b around the axis, in (-pi, pi].
   [[nodiscard]] double turn_between(const glm::dvec3& a, const glm::dvec3& b) const {
     const glm::dvec3 u = a - centre, v = b - centre;
     return std::atan2(glm::dot(axis, glm::cross(u, v)), glm::dot(u, v) - glm::dot(u, axis) * glm::dot(v, axis));
   }
-  /// The approximate distance of a point: the greater of its distances from the plane and from the radius.
+  /// The approximate distance of a point from the circle: its distance from the circle's plane, or its distance from
+  /// the cylinder over the circle, whichever is greater.
   [[nodiscard]] double distance(const glm::dvec3& point) const {
     const glm::dvec3 u = point - centre;
     const double height = glm::dot(u, axis);
@@ -51,7 +52,7 @@ struct Circle3 {
   return Circle3{a + to_centre, normal / std::sqrt(square), radius};
 }
 
-/// The distance between the middle of a chord and its circle.
+/// The distance between the circle and the middle of a chord that spans `step` radians.
 [[nodiscard]] inline double sagitta(double radius, double step) { return radius * (1 - std::cos(step / 2)); }
 
 /// A cylinder without ends.
@@ -59,7 +60,7 @@ struct Tube {
   glm::dvec3 point, axis;  ///< `point` is on the axis; the axis has unit length
   double radius;
 
-  /// The vector from the axis to the point, at a right angle.
+  /// The vector from the axis to the point `at`, perpendicular to the axis.
   [[nodiscard]] glm::dvec3 outwards(const glm::dvec3& at) const {
     const glm::dvec3 u = at - point;
     return u - glm::dot(u, axis) * axis;
@@ -67,7 +68,7 @@ struct Tube {
   [[nodiscard]] double distance(const glm::dvec3& at) const { return std::abs(glm::length(outwards(at)) - radius); }
 };
 
-/// Two unit vectors across a third.
+/// Two unit vectors that are perpendicular to each other and to `axis`.
 struct Across {
   glm::dvec3 u, v;
   explicit Across(const glm::dvec3& axis);
@@ -80,16 +81,16 @@ struct Across {
 /// The direction that is closest to perpendicular to all vectors.
 [[nodiscard]] glm::dvec3 common_perpendicular(std::span<const glm::dvec3> vectors);
 
-/// 20.01 degrees: a larger turn between two neighbours is an edge, and between two sides of a polygon a corner. The
-/// same limit as for arcs of strokes.
+/// 20.01 degrees. Two neighbouring triangles that turn by more form a sharp edge, and two sides of a polygon a corner.
+/// Arcs of strokes have the same limit.
 inline constexpr double kWidestStep = 0.34924038;
 inline constexpr double kWidestCosine = 0.93963;
 
 struct SmoothMesh {
   WeldedMesh mesh;
-  Buffer<glm::dvec3> normals;  ///< unit length; zero where rounding leaves no direction
+  Buffer<glm::dvec3> normals;  ///< unit length; zero if rounding leaves no direction
   EdgeNeighbours neighbours;
-  double noise = 0;  ///< by how much corners may be off their places: what six digits leave open
+  double noise = 0;  ///< greatest error of a corner's place, as in files with six digits
 
   [[nodiscard]] glm::dvec3 corner(std::uint32_t triangle, int k) const {
     return mesh.positions[mesh.triangles[triangle][k]];
@@ -104,7 +105,8 @@ struct SmoothMesh {
   }
 };
 
-/// O(triangles log triangles at a vertex). \throws Error limit_exceeded as EdgeNeighbours does.
+/// Welds a scene and finds neighbours. O(triangles log triangles at a vertex). \throws Error limit_exceeded as
+/// EdgeNeighbours does.
 [[nodiscard]] SmoothMesh smooth_mesh(const Surfaces& surfaces, const Execution& execution);
 
 /// An edge and its triangles; `right` may be no_index.
@@ -123,11 +125,11 @@ struct SharpChains {
   std::vector<SharpChain> chains;
 };
 
-inline constexpr std::size_t kFewestSides = 4;  ///< the fewest of an arc
+inline constexpr std::size_t kFewestSides = 4;  ///< the fewest sides of an arc
 
-/// Each edge is in one chain, except edges of chains that are shorter than an arc. Where several edges meet, the
-/// straightest pairs continue each other, unless the cosine of the turn is below `least_cosine`. O(edges log edges at a
-/// vertex).
+/// Joins the sharp edges of a mesh to chains. Each edge is in one chain; chains that are shorter than an arc are left
+/// out. Where several edges meet, the straightest pairs continue each other, unless the cosine of the turn is below
+/// `least_cosine`. O(edges log edges at a vertex).
 [[nodiscard]] SharpChains sharp_chains(const SmoothMesh& mesh, const Execution& execution,
                                        double least_cosine = kWidestCosine);
 
@@ -151,14 +153,15 @@ struct FoundCircle {
 
 /// A cylinder among the smooth surfaces of a mesh.
 struct FoundWall {
-  glm::dvec3 from, to, axis;  ///< the ends of its axis; unit direction
+  glm::dvec3 from, to, axis;  ///< `from` and `to` are the ends of the cylinder on its axis; unit axis
   double radius, turn;        ///< `turn`: the covered angle in radians, at most 2 pi
   bool is_hollow;
   std::vector<std::uint32_t> triangles;  ///< ascending
 };
 
-/// The cylinders of a mesh: first those that begin at circles, in their order; last those that are cut between their
-/// ends. Each triangle belongs to at most one. O(triangles log triangles).
+/// The cylinders of a mesh: first those that begin at circles, in the order of the circles; then those that begin at
+/// two smooth neighbours; last those that something cuts between their ends. Each triangle belongs to at most one
+/// cylinder. O(triangles log triangles).
 [[nodiscard]] std::vector<FoundWall> find_walls(const SmoothMesh& mesh, const std::vector<FoundCircle>& circles,
                                                 const Execution& execution);
 

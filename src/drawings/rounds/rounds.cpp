@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces of revolution and prisms, and the public list of all rounds.
+// Finds surfaces of revolution and prisms, and makes the public list of all rounds.
 //
 // Rings with corners at equal angles have equal moments in all directions across their axis. So the axis passes through
-// the mean of the corners, in the direction whose second moment differs from two equal ones. Regions that pass this
-// test are checked ring by ring.
+// the mean of the corners, in the direction whose second moment differs from the other two, which are equal. Regions
+// that pass this test are checked ring by ring.
 //
-// A prism has two rims about one axis, each with its corners on a circle. Rims are sorted by the point of their axis
-// nearest to the origin, along a direction that is parallel to no usual row of holes. So the other rim is among the
-// next.
+// A prism has two rims about one axis, each with its corners on a circle. Each rim has a key: where the point of its
+// axis nearest to the origin lies along a direction that is parallel to no usual row of holes. Rims are sorted by their
+// keys, so the other rim of a prism is among the next rims.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -23,22 +23,23 @@ namespace {
 using namespace lines_detail;
 
 struct FoundRevolved {
-  glm::dvec3 from, to, axis;             ///< its ends along the axis; unit direction
+  glm::dvec3 from, to, axis;             ///< `from` and `to` are the ends of the surface on its axis; unit axis
   double radius;                         ///< the largest radius
   std::vector<std::uint32_t> triangles;  ///< ascending
 };
 
 constexpr std::size_t kFewestCorners = 19;  // a ring and a tip
-constexpr double kEqualMoments = 1e-5;      // of the largest
+constexpr double kEqualMoments = 1e-5;      // share of the sum of the moments
 constexpr double kSameRing = 8;             // in units of noise: the greatest distance within a ring
-constexpr double kSmallestRevolved = 400;   // in units of noise
+constexpr double kSmallestRevolved = 400;   // smallest radius, in units of noise
 
 /// A vertex relative to an axis.
 struct Polar {
   double height, radius, angle;
 };
 
-/// The triangles that are connected with `first` by smooth edges, ascending; empty if `first` is taken. Takes them.
+/// The triangles that are connected with `first` by smooth edges, ascending; empty if `first` is taken. Marks these
+/// triangles as taken.
 std::vector<std::uint32_t> region_from(std::uint32_t first, const SmoothMesh& mesh, std::vector<bool>& is_taken) {
   std::vector<std::uint32_t> region;
   if (is_taken[first]) return region;
@@ -56,10 +57,11 @@ std::vector<std::uint32_t> region_from(std::uint32_t first, const SmoothMesh& me
   return region;
 }
 
-/// The direction whose second moment differs from two equal ones; none if all are equal or all differ.
+/// The direction whose second moment differs from the other two, which are equal. None if all three are equal or all
+/// differ.
 std::optional<glm::dvec3> odd_direction(const glm::dmat3& moments) {
-  // With the equal moments m: moments = m * 1 + (odd - m) * outerProduct(axis, axis). The traces of this and of its
-  // square give a quadratic equation for m; either root may be right.
+  // If both equal moments are m, then moments = m * 1 + (odd - m) * outerProduct(axis, axis). The traces of this and of
+  // its square give a quadratic equation for m; either root may be right.
   const double trace = moments[0][0] + moments[1][1] + moments[2][2], mean = trace / 3;
   glm::dmat3 deviator = moments;
   for (int k = 0; k < 3; ++k) deviator[k][k] -= mean;
@@ -103,7 +105,7 @@ class RevolvedFinder {
     const auto [thinnest, widest] = std::minmax_element(polar.begin(), polar.end(), by_radius);
     const auto [lowest, highest] = std::minmax_element(polar.begin(), polar.end(), by_height);
     const double radius = widest->radius, low = lowest->height, high = highest->height;
-    // Discs need no axis, walls are cylinders, and whole spheres are round about any axis.
+    // Left out: discs need no axis, walls are cylinders, and whole spheres are round about any axis.
     if (high - low <= slack_ || radius - thinnest->radius <= slack_ || is_sphere(middle, corners)) return std::nullopt;
     if (radius < kSmallestRevolved * mesh_.noise || !is_in_rings(polar)) return std::nullopt;
     return FoundRevolved{middle + low * *axis, middle + high * *axis, *axis, radius, std::move(region)};
@@ -141,7 +143,8 @@ class RevolvedFinder {
     return polar;
   }
 
-  /// Calls use(begin, end) for each run of vertices whose sorted values are within a ring's tolerance of each other.
+  /// Sorts the vertices by value, and splits them into runs where a gap is wider than a ring's tolerance. \returns
+  /// whether every run lies within the tolerance and use(run) returns true for each.
   template <class Value, class Use>
   [[nodiscard]] bool all_runs(std::span<Polar> polar, const Value& value, const Use& use) const {
     std::sort(polar.begin(), polar.end(), [&](const Polar& a, const Polar& b) { return value(a) < value(b); });
@@ -189,12 +192,12 @@ std::vector<FoundRevolved> find_revolved(const SmoothMesh& mesh, const Execution
 
 constexpr std::size_t kFewestPrismSides = 7, kMostPrismSides = 17;
 constexpr double kWidestPrismTurn = 0.91;  // radians, a little more than the turn between two of seven sides
-constexpr double kSamePrism = 1e-3;        // of the radius
+constexpr double kSamePrism = 1e-3;        // tolerance, as a share of the radius
 constexpr std::size_t kMostLookedAt = 4096;
 
 struct PrismRim {
   Circle3 circle;
-  double key, slack;  ///< `key`: the axis' nearest point to the origin, along one direction; `slack`: its uncertainty
+  double key, slack;  ///< `key`: the axis' nearest point to the origin, along one direction; `slack`: error of the key
   bool is_used = false;
 };
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles are neighbours where exactly two share an edge and run along it in opposite directions. Every other edge,
-// as of copies or of three triangles, is a border: nothing smooth goes on across it.
+// Two triangles are neighbours if no other triangle has their common edge, and they run along this edge in opposite
+// directions. Every other edge, such as an edge of copies or of three triangles, is a border, across which no smooth
+// surface continues.
 //
-//       |                  Where several sharp edges meet at a vertex (o), pairs of them continue each other, the
-//    ---o---               straightest pair first. Chains are followed from their open ends first; the others are
-//    closed.
+//       |                  Where several sharp edges meet at a vertex (o), pairs of them continue each other; the
+//    ---o---               straightest pair is joined first. Open chains are followed from their ends first. The
+//                          remaining chains are closed.
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -18,7 +19,7 @@ namespace frontmost::lines_detail {
 namespace {
 
 constexpr std::size_t kTrianglesPerPart = 4096;
-constexpr double kSixDigits = 2e-6;  // of the largest coordinate
+constexpr double kSixDigits = 2e-6;  // share of the largest coordinate
 
 Buffer<glm::dvec3> normals_of(const WeldedMesh& mesh, const Execution& execution) {
   Buffer<glm::dvec3> normals(mesh.triangles.size());
@@ -32,7 +33,7 @@ Buffer<glm::dvec3> normals_of(const WeldedMesh& mesh, const Execution& execution
   return normals;
 }
 
-/// Fillers of T-junctions have no area and would split smooth surfaces.
+/// Removes the fillers of T-junctions, which have no area and would split smooth surfaces.
 void close_all_seams(WeldedMesh& mesh, const Execution& execution) {
   Buffer<std::int8_t> may_be_flat(mesh.triangles.size());
   for (std::size_t i = 0; i < may_be_flat.size(); ++i) {
@@ -45,7 +46,7 @@ void close_all_seams(WeldedMesh& mesh, const Execution& execution) {
 }
 
 constexpr std::size_t kSharpPerPart = 4096;
-/// More edges at one vertex belong to no circle, and would take the square of their number.
+/// If more edges meet at a vertex, they belong to no circle, and pairing them would take the square of their number.
 constexpr std::size_t kMostAtVertex = 16;
 
 std::vector<SharpEdge> sharp_edges(const SmoothMesh& mesh, const Execution& execution) {
@@ -79,7 +80,7 @@ class Chainer {
   void run(const Execution& execution) {
     join_all(execution);
     std::vector<bool> is_done(edges_.size());
-    // First open chains from their ends, then the rest, which are closed.
+    // Open chains are followed first, from their ends; the remaining chains are closed.
     for (const bool closed : {false, true})
       for (std::uint32_t edge = 0; edge < edges_.size(); ++edge) {
         if (edge % 65536 == 0) check_cancelled(execution);
@@ -181,7 +182,7 @@ std::optional<Tube> tube_through(std::span<const glm::dvec3> points, const glm::
   glm::dvec3 middle(0);
   for (const glm::dvec3& p : points) middle += p;
   middle /= double(points.size());
-  // x^2 + y^2 = 2 a x + 2 b y + c, about the middle: sums of x and y are 0.
+  // Solves x^2 + y^2 = 2 a x + 2 b y + c. Coordinates are relative to the middle, so the sums of x and y are 0.
   double xx = 0, xy = 0, yy = 0, xs = 0, ys = 0, squares = 0;
   for (const glm::dvec3& p : points) {
     const double x = glm::dot(p - middle, across.u), y = glm::dot(p - middle, across.v), s = x * x + y * y;

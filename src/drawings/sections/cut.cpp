@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each object is cut separately, and closed with a face where the plane passes through it:
 //
-//        before            behind the plane        A triangle with one vertex behind leaves a triangle, one with two
-//      /\      .           /|                      leaves two. The side along the plane is kept as a segment, with the
-//     /  \     .  plane   / |  cut face            removed part on its left. The segments of an object form outlines,
-//    /____\    .         /__|                      and the outlines bound the regions of the cut face.
+//        before            behind the plane      A triangle with one vertex behind the plane leaves one triangle,
+//      /\      .           /|                    and a triangle with two leaves two. The side along the plane is
+//     /  \     .  plane   / |  cut face          kept as a segment, with the removed part on its left. Segments
+//    /____\    .         /__|                    of one object form outlines, which bound its cut face.
 //
 // The intersection of an edge with the plane is computed from the edge's lesser end. So both triangles at the edge get
 // the same place to the bit, and outlines close without a tolerance.
@@ -35,7 +35,7 @@ glm::vec3 meeting(const PlaneAxes& plane, glm::vec3 p, glm::vec3 q) {
   return place + 0.0f;  // -0 is 0
 }
 
-/// One object: the remaining part, and the segments of the cut.
+/// Cuts one object: `left` is the remaining part, `segments` are the segments of the cut.
 class ObjectCutter {
  public:
   ObjectCutter(const PlaneAxes& plane, const Mesh& mesh, bool is_mirrored)
@@ -125,7 +125,7 @@ CutFace close(const std::vector<CutSegment>& segments, const PlaneAxes& plane, s
   return face;
 }
 
-/// The scene without objects. Materials lose their textures, for which the face has no coordinates.
+/// The scene without objects. Materials lose their textures, because the cut face has no coordinates for them.
 Scene without_objects(const Scene& from) {
   Scene scene;
   scene.name = from.name;
@@ -139,7 +139,7 @@ Scene without_objects(const Scene& from) {
   return scene;
 }
 
-/// The material of the object's other triangles, under the object's name.
+/// The material of the object's first triangle, renamed to the object's name.
 Material material_of_face(const Scene& scene, const Instance& instance, const Mesh& mesh) {
   Material material;
   if (const std::uint32_t own = mesh.material_of(0); own != no_index) material = scene.materials[own];
@@ -149,7 +149,7 @@ Material material_of_face(const Scene& scene, const Instance& instance, const Me
 
 constexpr int style_count = 6;
 constexpr std::size_t most_compared = 2048;
-constexpr double spacings[] = {1, 0.7, 1.4};  // two angles of each
+constexpr double spacings[] = {1, 0.7, 1.4};  // factors of the spacing, each used at two angles
 
 Box box_of(const CutFace& face) {
   Box box;
@@ -162,7 +162,7 @@ bool may_touch(const Box& a, const Box& b) {
   return glm::all(glm::lessThanEqual(a.low, b.high)) && glm::all(glm::lessThanEqual(b.low, a.high));
 }
 
-/// Twice the area by the perimeter: about the width of a long strip.
+/// Twice the area divided by the perimeter: about the width of a long strip.
 double thickness_of(const CutFace& face) {
   double around = 0;
   for (const std::vector<glm::vec3>& outline : face.outlines)
@@ -171,7 +171,7 @@ double thickness_of(const CutFace& face) {
   return around > 0 ? 2 * face.area / around : 0;
 }
 
-/// A cut face among those of several sections.
+/// A cut face of one of several sections.
 struct PlacedFace {
   std::uint32_t instance;
   std::size_t section;

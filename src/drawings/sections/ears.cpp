@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Holes are joined to the outer line by a bridge, a side that is there twice. Then ears are cut off until three corners
-// are left; an ear is a corner whose neighbours see each other (G. Meisters. Polygons Have Ears. 1975).
+// Each hole is joined to the outer line by a bridge, a side that runs there and back. Then ears are cut off until three
+// corners are left; an ear is a corner whose neighbours see each other (G. Meisters. Polygons Have Ears. 1975).
 //
 //     +-----------------+                   +-----------------+         an ear at b: a, b, c turn left, and no other
 //     |      +---+      |        ->         |------+---+      |         corner lies in the triangle that they make
@@ -8,8 +8,8 @@
 //     +-----------------+                   +-----------------+
 //
 // All turns are exact signs, so no ear overlaps another. Only reflex corners may lie in an ear; they are found in a
-// grid. Where outlines cross there may be no ear: then flat corners are cut, then any corner that turns left, then any
-// corner.
+// grid. If outlines cross, there may be no ear. Then a flat corner is cut; if there is none, any corner that turns
+// left; if there is none either, any corner.
 #include <algorithm>
 #include <cmath>
 
@@ -42,7 +42,7 @@ class Rings {
     links_[links_[i].next].last = links_[i].last;
   }
 
-  /// Joins the rings of two corners at one place, where a bridge would have no length.
+  /// Joins the rings of two corners that lie at one place, where a bridge would have no length.
   void splice(std::uint32_t a, std::uint32_t b) {
     std::swap(links_[a].next, links_[b].next);
     links_[links_[a].next].last = a;
@@ -62,7 +62,7 @@ class Rings {
     links_[b].last = a;
   }
 
-  /// Whether the side from corner i to `to` runs into the polygon at i, and not along its sides.
+  /// Whether a side from corner i to the point `to` leads into the polygon at i, and not along one of its sides.
   [[nodiscard]] bool runs_inside(std::uint32_t i, const glm::vec2& to) const {
     const glm::vec2 &before = at(last(i)), &here = at(i), &behind = at(next(i));
     const bool left_of_next = orientation(here, behind, to) > 0, right_of_last = orientation(here, before, to) < 0;
@@ -95,7 +95,7 @@ class Joiner {
   void run() {
     std::vector<std::uint32_t> leftmost;
     for (std::size_t k = 1; k < rings_.firsts().size(); ++k) leftmost.push_back(leftmost_of(rings_.firsts()[k]));
-    // From the left, so that each hole sees a part of the outer line or of a joined hole.
+    // Holes are joined from left to right, so that each hole sees a part of the outer line or of a joined hole.
     std::sort(leftmost.begin(), leftmost.end(),
               [&](std::uint32_t a, std::uint32_t b) { return is_left_of(rings_.at(a), rings_.at(b)); });
     add_joined(rings_.firsts()[0]);
@@ -137,7 +137,7 @@ class Joiner {
     std::vector<std::pair<double, std::uint32_t>> near;
     for (const std::uint32_t i : joined_)
       if (!is_left_of(from, rings_.at(i))) near.emplace_back(distance(i), i);
-    // The first is nearly always in sight.
+    // The nearest corner is nearly always in sight.
     const auto is_farther = [](const auto& a, const auto& b) { return a > b; };
     std::make_heap(near.begin(), near.end(), is_farther);
     while (!near.empty()) {
@@ -152,7 +152,7 @@ class Joiner {
   [[nodiscard]] bool sees(std::uint32_t corner, std::uint32_t other) const {
     const glm::vec2 &a = rings_.at(corner), &b = rings_.at(other);
     if (!rings_.runs_inside(other, a != b ? a : rings_.at(rings_.next(corner)))) return false;
-    // Tests sides of outlines only: bridges connect corners of these and cross nothing that is in sight.
+    // The line of sight must not cross a side of an outline or of a bridge.
     for (std::uint32_t i = 0; i < rings_.size(); ++i) {
       const glm::vec2 &p = rings_.at(i), &q = rings_.at(rings_.next(i));
       if (p == a || q == a || p == b || q == b) continue;
@@ -165,7 +165,7 @@ class Joiner {
     return !has_place_between(a, b);
   }
 
-  /// Precondition: both segments lie on one line.
+  /// Whether two segments overlap. Precondition: both lie on one line.
   static bool overlap(const glm::vec2& a, const glm::vec2& b, const glm::vec2& p, const glm::vec2& q) {
     const auto [low, high] = is_left_of(a, b) ? std::pair(a, b) : std::pair(b, a);
     const auto [first, second] = is_left_of(p, q) ? std::pair(p, q) : std::pair(q, p);
@@ -246,7 +246,7 @@ class EarCutter {
         cut(corner);
         since_cut = 0;
         patience = Patience::ears;
-        corner = rings_.next(next);  // not the next one: its triangle would be as narrow again
+        corner = rings_.next(next);  // skips the next corner, whose triangle would be as narrow again
         while (is_cut_[corner]) corner = rings_.next(corner);
         continue;
       }
@@ -258,7 +258,7 @@ class EarCutter {
   }
 
  private:
-  /// The kind of corner that may be cut off; later kinds are used when there are no earlier ones.
+  /// The kind of corner that may be cut off. A later kind is used only if there is no corner of an earlier kind.
   enum class Patience : std::uint8_t { ears, flat, crossing, any };
 
   [[nodiscard]] bool may_go(std::uint32_t i, Patience patience) const {
@@ -273,7 +273,7 @@ class EarCutter {
       if (is_cut_[k] || k == i || k == rings_.last(i) || k == rings_.next(i)) return false;
       const glm::vec2& p = rings_.at(k);
       if (p == a || p == c) return false;
-      // Another corner at the same place blocks the ear if one of its sides leads into it.
+      // Another corner at the same place blocks the ear if one of its sides leads into the ear.
       if (p == b) return leads_into(i, rings_.at(rings_.last(k))) || leads_into(i, rings_.at(rings_.next(k)));
       return orientation(a, b, p) >= 0 && orientation(b, c, p) >= 0 && orientation(c, a, p) >= 0;
     };
@@ -285,7 +285,8 @@ class EarCutter {
     return orientation(a, b, p) > 0 && orientation(b, c, p) > 0;
   }
 
-  /// Cuts an ear, and spikes that it leaves: these have no width and would hide the direction of the sides beside them.
+  /// Cuts off an ear and the spikes that it leaves. A spike has no width, and would hide the direction of the sides
+  /// beside it.
   void cut(std::uint32_t i) {
     std::uint32_t ends[] = {rings_.last(i), rings_.next(i)};
     take(i);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments are joined at places that are equal to the bit. Where several continue at a place, the leftmost is taken, so
-// that outlines touch but never cross:
+// Segments are joined at places that are equal to the bit. If several segments continue at a place, the leftmost is
+// taken, so that outlines touch but never cross:
 //
 //        \ | /          a walk from below takes the left one; another walk that comes by, or begins there,
 //         \|/           takes the others
 //          o
 //
 // A line that does not close is joined to another line, or to itself, where their ends are near. Closed lines are
-// nested, each with a winding number on either side. A line bounds a region if one side is filled and the other is not:
-// as the outer line of a region, or as a hole in the smallest region around it.
+// nested, and each has a winding number on either side. A line bounds a region if one of its sides is filled and the
+// other is not. It is then the outer line of a region, or a hole in the smallest region around it.
 #include "sections/regions.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr double joined_gap = 1e-5;  // of the size of the section
+constexpr double joined_gap = 1e-5;  // the widest gap that is closed, as a share of the section's size
 constexpr std::size_t steps_per_poll = 1 << 14;
 
 /// A segment between two places, by their numbers.
@@ -31,7 +31,7 @@ struct Step {
   std::uint32_t from, to;
 };
 
-/// Segments as steps without duplicates. Pairs in opposite directions cancel out.
+/// The steps of segments, without duplicates; steps in opposite directions cancel out. Sets `places`.
 std::vector<Step> steps_of(const std::vector<CutSegment>& segments, std::vector<glm::vec2>& places) {
   for (const CutSegment& segment : segments) {
     places.push_back(segment.from);
@@ -64,7 +64,7 @@ std::vector<Step> steps_of(const std::vector<CutSegment>& segments, std::vector<
   return steps;
 }
 
-/// The steps at each place, by an end of them.
+/// The steps at each place; `end` chooses the end of the step that counts.
 Buckets<std::uint32_t> steps_at(const std::vector<Step>& steps, std::size_t places, std::uint32_t Step::*end,
                                 const Execution& execution) {
   const auto list = [&](std::size_t i, const auto& add) { add(steps[i].*end, std::uint32_t(i)); };
@@ -110,7 +110,7 @@ class Walker {
     for (const std::uint32_t place : path_) at_[place] = no_index;
   }
 
-  /// Takes the loop of a path whose end has met its own place number `begin`.
+  /// Removes a loop from the path and keeps it. The path's end has come back to the path's place number `begin`.
   void take_loop(std::size_t begin) {
     if (path_.size() - begin > 2) closed.push_back(points_from(begin));
     for (std::size_t i = begin + 1; i < path_.size(); ++i) at_[path_[i]] = no_index;
@@ -130,7 +130,8 @@ class Walker {
     return is_turned ? steps_[step].from : steps_[step].to;
   }
 
-  /// \returns the place to which the leftmost step from the path's end leads; no_index if there is none.
+  /// Takes the leftmost unused step from the path's end. \returns the place to which it leads; no_index if there is
+  /// none.
   std::uint32_t next() {
     const std::uint32_t end = path_.back();
     std::uint32_t best = no_index;
@@ -142,7 +143,8 @@ class Walker {
     return no_index;
   }
 
-  /// Whether place a comes before place b, clockwise around the path's end from the direction the path came from.
+  /// Whether place a comes before place b, clockwise around the path's end, counted from the direction from which the
+  /// path came.
   [[nodiscard]] bool is_before(std::uint32_t a, std::uint32_t b) const {
     if (path_.size() < 2) return false;
     const glm::vec2 &from = places_[path_[path_.size() - 2]], &end = places_[path_.back()];
@@ -156,7 +158,7 @@ class Walker {
   const Execution& execution_;
   const Buckets<std::uint32_t> out_, in_;
   std::vector<std::uint8_t> is_used_;
-  std::vector<std::uint32_t> path_, at_;  ///< at_: by place, its number in the path
+  std::vector<std::uint32_t> path_, at_;  ///< at_: by place, the place's index in the path, or no_index
   std::size_t taken_ = 0;
 };
 
@@ -183,7 +185,7 @@ std::vector<std::uint32_t> successors(const std::vector<SectionOutline>& lines, 
   return next;
 }
 
-/// Joins lines across small gaps. \returns the closed ones; `open_count` counts the others.
+/// Joins lines across small gaps. \returns the closed lines; `open_count` counts the others.
 std::vector<SectionOutline> close_gaps(const std::vector<SectionOutline>& lines, double gap, std::size_t& open_count) {
   const std::vector<std::uint32_t> next = successors(lines, gap);
   std::vector<std::uint8_t> is_done(lines.size()), has_before(lines.size());
@@ -210,8 +212,8 @@ std::vector<SectionOutline> close_gaps(const std::vector<SectionOutline>& lines,
   return closed;
 }
 
-constexpr double area_rounding = 1e-12;  // of the sum of absolute terms
-constexpr double crossed_area = 1e-6;    // likewise, for lines that turn as much one way as the other
+constexpr double area_rounding = 1e-12;  // an area is 0 up to this share of the sum of absolute terms
+constexpr double crossed_area = 1e-6;    // a line without area counts if it turns by more than this: it crosses itself
 
 /// A closed line with its properties.
 struct Ring {
@@ -256,7 +258,7 @@ RegionPlace place_in(const SectionOutline& ring, const glm::vec2& p) {
   return is_inside ? RegionPlace::inside : RegionPlace::outside;
 }
 
-/// Precondition: the rings do not cross.
+/// Whether ring `inner` lies in ring `outer`. Precondition: the rings do not cross.
 bool lies_in(const Ring& inner, const Ring& outer) {
   const bool may = inner.low.x >= outer.low.x && inner.low.y >= outer.low.y && inner.high.x <= outer.high.x &&
                    inner.high.y <= outer.high.y;
@@ -267,7 +269,7 @@ bool lies_in(const Ring& inner, const Ring& outer) {
   return std::abs(inner.area) < std::abs(outer.area);
 }
 
-/// By ring: the rings that contain it.
+/// For each ring, the rings that contain it.
 std::vector<std::vector<std::uint32_t>> rings_around(const std::vector<Ring>& rings, const Execution& execution) {
   std::vector<std::vector<std::uint32_t>> around(rings.size());
   for (std::uint32_t i = 0; i < rings.size(); ++i) {
@@ -278,7 +280,7 @@ std::vector<std::vector<std::uint32_t>> rings_around(const std::vector<Ring>& ri
   return around;
 }
 
-/// -1: a hole begins within the ring; 1: a filled region; 0: neither.
+/// What begins within the ring. 1: a filled region; -1: a hole; 0: neither.
 int boundary_of(const std::vector<Ring>& rings, const std::vector<std::uint32_t>& around, std::uint32_t ring,
                 bool by_winding) {
   const auto turn = [&](std::uint32_t k) { return rings[k].area > 0 ? 1 : -1; };

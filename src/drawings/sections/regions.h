@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the segments of triangles in a plane to closed lines, to the regions that these bound, and to triangles that
-// fill the regions.
+// Joins the segments in which a plane cuts triangles to closed lines, finds the regions that these lines bound, and
+// fills the regions with triangles.
 //
 //    segments --find_outlines--> closed lines --regions_of--> outer lines with their holes --fill--> triangles
 //
@@ -20,9 +20,10 @@ namespace frontmost::lines_detail {
   return a.x != b.x ? a.x < b.x : a.y < b.y;
 }
 
-/// Coordinates in a cutting plane: two axes within the plane and one across it, right-handed in this order with
-/// CuttingPlane::towards. The plane is perpendicular to a world axis, so coordinates are selected and never computed.
-/// Points in the plane stay there to the bit, and vertices of the cut face are vertices of the walls beside it.
+/// The axes of a cutting plane: two within the plane and one across it. The first two and CuttingPlane::towards are
+/// right-handed, in this order. The plane is perpendicular to a world axis, so coordinates are selected and never
+/// computed. Points in the plane stay there to the bit, and vertices of the cut face are vertices of the walls beside
+/// it.
 class PlaneAxes {
  public:
   explicit PlaneAxes(const CuttingPlane& plane)
@@ -49,7 +50,8 @@ class PlaneAxes {
   float at_;
 };
 
-/// A segment of a triangle in the plane. If the triangle is wound outwards, the removed part is on the segment's left.
+/// The segment in which the plane cuts a triangle. If the triangle is wound outwards, the removed part is on the
+/// segment's left.
 struct CutSegment {
   glm::vec2 from, to;
 };
@@ -74,17 +76,17 @@ struct Region {
   double area = 0;
 };
 
-/// The regions within lines, by the nonzero rule if lines are wound alike, else by the even-odd rule. Lines may touch
-/// but must not cross. Lines without area, except for rounding, bound nothing; nor do lines with the same state on both
-/// sides. O(points), times the number of lines around each.
+/// The regions that lines enclose, by the nonzero rule if all lines are wound alike, else by the even-odd rule. Lines
+/// may touch but must not cross. A line bounds nothing if its area is 0 up to rounding, or if both of its sides are
+/// filled, or neither is. O(points), times the number of lines around each point.
 [[nodiscard]] std::vector<Region> regions_of(Outlines outlines, const Execution& execution);
 
 using FlatTriangle = std::array<glm::vec2, 3>;
 
-/// Appends counter-clockwise triangles that fill the region. Each side is a side of another triangle or of an outline;
-/// corners on one line may give triangles without area. All signs are exact. Outlines that cross themselves are filled
-/// by triangles that may overlap and run clockwise, so that their sides have triangles, too. O(n log n) for usual
-/// parts, at worst O(n^2).
+/// Appends counter-clockwise triangles that fill the region. Each side of a triangle is also a side of another triangle
+/// or of an outline. Corners on one line may give triangles without area. All signs are exact. Outlines that cross
+/// themselves are filled by triangles that may overlap and run clockwise, so that their sides have triangles, too. O(n
+/// log n) for usual parts, at worst O(n^2).
 void fill(const Region& region, std::vector<FlatTriangle>& triangles, const Execution& execution);
 
 }  // namespace frontmost::lines_detail

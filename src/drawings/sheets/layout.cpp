@@ -4,10 +4,11 @@
 //    before  anchor  behind   gap   before  anchor  behind
 //    |---------+--------|           |-----------+------|        one line of cells, along one axis
 //
-// A line of cells is as wide as its widest view before the anchor and its widest behind it, both times the scale, plus
-// room for annotations, which does not scale. So the largest scale for an area is a division. Candidate pages are tried
-// in order of preference. Next to a title block, whether a layout fits depends on its place. There the largest scale is
-// found by bisection: a layout that fits at a scale fits at every smaller one.
+// A line of cells is as wide as the greatest extent of its views before the anchor plus the greatest extent behind it,
+// both times the scale, plus room for annotations, which does not scale. So a division gives the largest scale for an
+// area. Candidate pages are tried in order of preference. Next to a title block, whether a layout fits depends on its
+// place. The largest scale is then found by bisection, because a layout that fits at a scale fits at every smaller
+// scale.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -106,8 +107,8 @@ Area area_on(const glm::dvec2& page, const SheetOptions& options) {
   return {page, space.low + options.margin, space.high - options.margin, space.block - options.margin};
 }
 
-/// The corner of a layout that fits into the area: centred, or centred in the part above or beside the block, or as far
-/// from the block as possible.
+/// The upper left corner of a layout in the area. The layout is centred if that fits, else centred in the part above or
+/// beside the block, else as far from the block as possible. None if the layout does not fit.
 std::optional<glm::dvec2> corner_in(const Area& area, const SheetLayout& layout, double scale) {
   const glm::dvec2 size = layout.size(scale);
   const auto middle_of = [&](const glm::dvec2& high) { return area.low + (high - area.low - size) * 0.5; };
@@ -122,7 +123,7 @@ std::optional<glm::dvec2> corner_in(const Area& area, const SheetLayout& layout,
   return std::nullopt;
 }
 
-/// The largest scale with such a corner; smaller ones have one too.
+/// The largest scale at which corner_in() finds a corner; it finds one at every smaller scale, too.
 double largest_scale(const Area& area, const SheetLayout& layout) {
   double most = layout.largest_scale(area.size());
   if (!area.block || corner_in(area, layout, most)) return most;
@@ -174,7 +175,7 @@ std::vector<glm::dvec2> pages_of(const Paper& paper, const SheetOptions& options
   std::vector<glm::dvec2> pages = {paper.size};
   if (paper.may_turn) pages.emplace_back(paper.size.y, paper.size.x);
   if (!options.title_block) return pages;
-  // ISO 5457: A4 is upright, all larger pages lie.
+  // ISO 5457: A4 is upright, and all larger pages are landscape.
   if (paper.may_turn && paper.size.x > upright_width) std::swap(pages[0], pages[1]);
   const auto is_small = [](const glm::dvec2& page) {
     return page.x < least_framed_page.x || page.y < least_framed_page.y;
@@ -187,7 +188,7 @@ std::vector<glm::dvec2> pages_of(const Paper& paper, const SheetOptions& options
 }
 
 /// The area on the page with the largest drawing, and its largest scale. `taken` maps a largest scale to the scale that
-/// will be used; the first of the pages with equal results is best.
+/// will be used; among pages with equal results, the first is taken.
 template <class Taken>
 std::pair<Area, double> best_area(const std::vector<glm::dvec2>& pages, const SheetLayout& layout,
                                   const SheetOptions& options, const Taken& taken) {

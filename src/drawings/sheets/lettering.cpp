@@ -19,10 +19,10 @@
 namespace frontmost {
 namespace {
 
-/// Strokes of a letter, in tenths of the height of its lettering: the path of the pen's centre, x to the right from the
-/// letter's left, y up from the baseline. Capitals end at 9 and small letters at 6. Points "x,y" are joined in order;
-/// ";" separates strokes. Before a point, each ( turns the way to it by an eighth of a circle to the left, and each )
-/// to the right: "5,6 ((((0,6" is the upper half of a circle.
+/// The strokes of a letter, as the path of the pen's centre in tenths of the height of capitals: x to the right from
+/// the letter's left side, y up from the baseline. Capitals end at 9 and small letters at 6. Points "x,y" are joined in
+/// order; ";" separates strokes. Each ( before a point turns the way to that point by an eighth of a circle to the
+/// left, and each ) to the right: "5,6 ((((0,6" is the upper half of a circle.
 struct Glyph {
   char32_t code;
   double width;  ///< width of the glyph; its strokes stay within [0, width]
@@ -254,8 +254,8 @@ Composite find_composite(char32_t code) {
   return {0, nullptr, false};
 }
 
-constexpr double gap = 3;       // between the middles of strokes: ISO 3098-1 has two pen widths between letters
-constexpr double rise = 3;      // of a mark above a tall letter
+constexpr double gap = 3;       // between the middles of strokes, which leaves two pen widths, as in ISO 3098-1
+constexpr double rise = 3;      // height by which a mark is raised above a tall letter
 constexpr double tall = 6.5;    // letters that reach higher are tall
 constexpr double edge = 0.5;    // half of the pen width
 constexpr double capital = 10;  // height of capitals, from edge to edge
@@ -312,7 +312,8 @@ Character character_of(char32_t code) {
   return character;
 }
 
-/// Calls visit(character, its left) for every character. \returns the end of the last one; negative if there is none.
+/// Calls visit(character, left side) for every character of a text. \returns the end of the last character; negative if
+/// there is none.
 template <class Visit>
 double for_each_character(std::string_view text, const Visit& visit) {
   double left = 0;

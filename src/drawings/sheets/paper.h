@@ -7,8 +7,8 @@
 //    row  0     left     front  right  back
 //    row  1              bottom
 //
-// Views in line share an axis: anchors of a row have the same height, so an edge has the same height in all of them.
-// Marks are pen strokes like the lines of the model, so plotters and DXF have them, too.
+// Views in line share an axis: anchors of a row have the same height, so an edge has the same height in all views of
+// the row. Marks are pen strokes like the lines of the model, so plotters and DXF have them, too.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ struct PageBox {
   glm::dvec2 low{0}, high{0};
 };
 
-/// An arrowhead, three pen widths wide and `length` millimetres long. It consists of two slender triangles side by
+/// Adds an arrowhead, three pen widths wide and `length` millimetres long. It consists of two slender triangles side by
 /// side, whose sides are so near each other that the pen fills them, in every format and on a plotter.
 inline void add_arrowhead(PageGroup& group, const glm::dvec2& tip, const glm::dvec2& pointing, double length) {
   const double width = group.pen.width;
@@ -34,10 +34,10 @@ inline void add_arrowhead(PageGroup& group, const glm::dvec2& tip, const glm::dv
   group.add(corners, true);
 }
 
-/// A number with at most so many significant digits, without trailing zeros: "0.25", "1e+07".
+/// The text of a number with at most `digits` significant digits, without trailing zeros: "0.25", "1e+07".
 [[nodiscard]] inline std::string number_text(double value, int digits = 6) { return general_text(value, digits); }
 
-/// Two sides: "210 x 297".
+/// The text of two side lengths: "210 x 297".
 [[nodiscard]] inline std::string size_text(const glm::dvec2& size, int digits = 6) {
   return number_text(size.x, digits) + " x " + number_text(size.y, digits);
 }
@@ -57,12 +57,13 @@ inline constexpr glm::dvec2 least_framed_page{210, 100};
 [[nodiscard]] DrawingSpace drawing_space(const glm::dvec2& page);
 
 /// The layer "8 frame" for a page of that size: frame (0.7 mm), zones of 50 mm from the middle with letters and
-/// numbers, centring marks, trimming marks, title block and its text. Zones are only above and on the right if a side
-/// is at most 210 mm. Everything is pen lines, also for plotters and DXF. \throws Error as drawing_space() does.
+/// numbers, centring marks, trimming marks, title block and its text. If a side of the page is at most 210 mm, zones
+/// are only above and on the right. All marks are pen lines, so plotters and DXF have them, too. \throws Error as
+/// drawing_space() does.
 [[nodiscard]] PageLayer draw_frame(const glm::dvec2& page, const TitleBlock& block);
 
-/// The extent of a view around its anchor, in millimetres at scale 1:1, y down, and its cell. Views in line share the
-/// row or the column. Anchors of a row have the same height, those of a column the same x.
+/// The extent of a view around its anchor, in millimetres at scale 1:1, y down, and the view's cell. Views in line
+/// share a row or a column. Anchors of a row have the same height, anchors of a column the same x.
 struct ViewCell {
   glm::dvec2 low{0}, high{0};
   int column = 0, row = 0;
@@ -74,21 +75,23 @@ struct ViewCell {
 /// projection, and on the left in third-angle projection.
 [[nodiscard]] glm::ivec2 cell_of(NamedView view, ProjectionMethod method);
 
-/// The columns and rows in use, each as wide as its widest view.
+/// Arranges views in columns and rows, each as wide as its widest view.
 class SheetLayout {
  public:
-  /// Precondition: not empty. `gap` is in millimetres at any scale, between columns and between rows.
+  /// `gap` is the distance between columns and between rows, in millimetres at any scale. Precondition: there are
+  /// cells.
   SheetLayout(const std::vector<ViewCell>& cells, const glm::dvec2& gap);
   /// The layout of these views with another gap.
   [[nodiscard]] SheetLayout with_gap(const glm::dvec2& gap) const { return {cells_, gap}; }
 
   [[nodiscard]] glm::dvec2 size(double scale) const { return extent_ * scale + gaps_; }
-  /// The largest scale at which the layout fits into `area`; 1 if it has no size.
+  /// The largest scale at which the layout fits into `area`; 1 if the layout has no size.
   [[nodiscard]] double largest_scale(const glm::dvec2& area) const;
   [[nodiscard]] const glm::dvec2& gap() const { return gap_; }
   /// The number of columns and rows in use.
   [[nodiscard]] glm::dvec2 counts() const { return {lines_[0].size(), lines_[1].size()}; }
-  /// Whether no view extends beyond `block` to the right and downwards. `corner` is the layout's upper left corner.
+  /// Whether no view reaches into the corner of the page to the right of `block` and below it. `corner` is the layout's
+  /// upper left corner.
   [[nodiscard]] bool leaves_free(const glm::dvec2& block, double scale, const glm::dvec2& corner) const;
   /// The places of the anchors. `corner` is the layout's upper left corner.
   [[nodiscard]] std::vector<glm::dvec2> anchors(double scale, const glm::dvec2& corner) const;
@@ -116,8 +119,9 @@ struct SheetPlan {
   std::vector<glm::dvec2> anchors;
 };
 
-/// Plans the sheet. Views avoid the title block and are spread evenly if there is room. A given scale without a page
-/// takes the smallest of A4 to A0 that has room. `has_scale` is false in perspective.
+/// Chooses the page, the scale and the places of the views. Views avoid the title block and are spread evenly if there
+/// is room. If a scale is given but no page, the smallest of A4 to A0 that has room is taken. `has_scale` is false in
+/// perspective.
 /// \throws Error when the drawing does not fit; the message says what would.
 [[nodiscard]] SheetPlan plan_sheet(const SheetLayout& layout, const SheetOptions& options, bool has_scale);
 

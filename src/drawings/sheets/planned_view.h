@@ -17,12 +17,12 @@
 namespace frontmost::detail {
 
 struct PlannedView : DrawnView {
-  std::optional<NamedView> direction;    ///< empty if the view was given
+  std::optional<NamedView> direction;    ///< none if the caller gave the view
   CuttingPlane plane;                    ///< cutting plane of a section
   std::string letter;                    ///< letter of a section: "A"
   double millimetres_per_pixel = 1;      ///< at scale 1:1; meaningless by itself in perspective
   std::shared_ptr<const Rounds> rounds;  ///< circles of the surfaces; null if not needed
-  /// Millimetres of paper on the left and below that marks of sections occupy.
+  /// Millimetres of paper that marks of sections occupy on the left of the view and below it.
   glm::dvec2 taken{0};
 };
 
@@ -38,13 +38,14 @@ struct CutScene {
   std::shared_ptr<const Section> section;
   CuttingPlane plane;
 };
-/// Cuts `surfaces` for a view of them. \throws Error bad_argument if the plane misses them.
+/// Cuts `surfaces` for the section that `camera` sees. \throws Error bad_argument if the plane misses the surfaces.
 [[nodiscard]] CutScene cut_for(const SectionView& wanted, const Surfaces& surfaces, const View& camera,
                                const Execution& execution);
 
-/// Sets the cells of sections: those of the views with the same direction if free, else a column of their own.
+/// Leaves a section in the cell of its direction if no other view has that cell; otherwise gives the section a column
+/// of its own.
 void place_sections(std::vector<ViewCell>& cells, const std::vector<PlannedView>& views);
-/// Reserves room in the cells for cutting lines and names, and records it in the views.
+/// Reserves room in the cells for cutting lines and names, and records it in PlannedView::taken.
 void keep_section_room(std::vector<ViewCell>& cells, std::vector<PlannedView>& views);
 
 /// Hatches the cut faces of views whose places on the sheet are final.
@@ -52,14 +53,14 @@ void hatch_sections(std::vector<PlannedView>& views, const SheetOptions& options
 
 /// The line of an edge-on cutting plane on the page.
 struct CuttingLine {
-  glm::dvec2 from{0}, to{0};  ///< ends of the part that it cuts
+  glm::dvec2 from{0}, to{0};  ///< ends of the part that the plane cuts
   glm::dvec2 looking{0};      ///< the section's view direction, across the line; unit length
   std::string letter;         ///< "A"
 };
 
 /// The name of a view.
 struct ViewName {
-  glm::dvec2 at{0};  ///< the middle of its lower edge
+  glm::dvec2 at{0};  ///< the middle of the text's lower edge
   std::string text;  ///< "A-A"
 };
 
@@ -77,8 +78,9 @@ struct SectionMarks {
   std::vector<PageBox> boxes;     ///< boxes of arrows and letters
 };
 
-/// Draws cutting lines in long dashes and dots, with thick ends 3 to 9 mm beyond the cut part, an arrow at each end and
-/// its letter behind it; and the names of views. All are pen strokes, also for plotters.
+/// Draws cutting lines and the names of views. A cutting line has long dashes and dots, and thick ends 3 to 9 mm beyond
+/// the cut part. Each end has an arrow, with the letter behind the arrow. All marks are pen strokes, so plotters have
+/// them, too.
 [[nodiscard]] SectionMarks draw_section_marks(std::span<const CuttingLine> lines, std::span<const ViewName> names,
                                               const SectionMarkOptions& options = {});
 

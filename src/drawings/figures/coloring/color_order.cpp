@@ -6,8 +6,9 @@
 //                          |                 best_cut --> two halves ---> waiting
 //                          +------------------------------------------------+
 //
-// Waiting pieces are taken first, the last one first, so that few wait at a time. Samples of many pieces are shaded
-// together. A tree of cuts keeps the order of the halves, so the order of writing does not depend on that of shading.
+// Waiting pieces are taken before new polygons, and the newest piece first, so that few pieces wait at a time. Samples
+// of many pieces are shaded together. A tree of cuts keeps the order of the halves, so the order in which pieces are
+// written does not depend on the order in which they are shaded.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -29,10 +30,10 @@ namespace {
 
 using namespace shading;
 
-/// A point has one sample, at its own place.
+/// A shaded point has one sample, at its own place.
 constexpr glm::ivec2 kAtPoint[] = {{0, 0}};
 
-/// The scene's triangles, with smooth normals of the large ones.
+/// The scene's triangles, with smooth normals for the large ones.
 const TriangleStore& smoothed(PreparedScene& scene, const BitSet& large, const Execution& execution) {
   scene.triangles.smooth(large, execution);
   return scene.triangles;
@@ -63,10 +64,11 @@ struct FigureTriangles {
   BitSet large;  ///< triangles that need a smooth normal if the model has none
 };
 
-/// Safe for several threads at once; each has its own FragmentShader.
+/// Prepares a scene for shading points. Several threads may use it at once, each with its own FragmentShader.
 class PointShader {
  public:
-  /// Borrows all but the options; prepares whatever the scene lacks. \throws Error as check_opacity() does.
+  /// Borrows all arguments but the options, and prepares whatever the scene lacks. \throws Error as check_opacity()
+  /// does.
   PointShader(PreparedScene& scene, const ShadeInput& input, const FigureTriangles& triangles,
               const ShadeOptions& options, const Execution& execution)
       : source_(smoothed(scene, triangles.large, execution), input.first().view, &triangles.large),
@@ -97,13 +99,13 @@ class PointShader {
 /// In pixels: the least width of a cut piece, and the distance from a cut below which no samples are taken. Textures
 /// and shadows are filtered over about this distance, so colours this close to a cut belong to neither side.
 constexpr double kLeastWidth = 0.25, kBesideCut = 0.35;
-/// The share of the tolerance for differences within a piece, where pieces are grouped; the rest is for differences
-/// between pieces of a group.
+/// If pieces are grouped, the share of the tolerance for differences within a piece. The rest is for differences
+/// between the pieces of a group.
 constexpr double kWithin = 2.0 / 3;
-/// The factor of the tolerance for pieces narrower than a pixel: they are hardly visible, and there are many beside
-/// textures.
+/// The factor by which the tolerance is larger for pieces narrower than a pixel. They are hardly visible, and there are
+/// many of them where textures are cut.
 constexpr double kOfSlivers = 8;
-/// Samples that are shaded together: some batches of the shader, and few enough to stay in the cache.
+/// The number of samples that are shaded together: they fill several batches of the shader, but stay in the cache.
 constexpr std::size_t kSamplesAtOnce = 2048;
 
 bool is_hole(const glm::vec4& color) { return color.w < 0; }
@@ -118,7 +120,8 @@ glm::u8vec4 rounded(const glm::vec4& color) {
   throw Error(ErrorCode::limit_exceeded, "figure", "more than " + std::to_string(most) + " polygons and pieces");
 }
 
-/// Samples many pieces before it judges them, so that the shader has whole batches. Not for several threads at once.
+/// Cuts polygons into pieces of one colour. Many pieces are sampled before they are judged, so that the shader has
+/// whole batches. Not for several threads at once.
 class PolygonColors {
  public:
   /// Borrows all but the view.
@@ -128,8 +131,9 @@ class PolygonColors {
     shader_.begin(shader.source(), shader.colorist(), execution.isa);
   }
 
-  /// Appends some of these parts in pieces, without holes and clear pieces. The result depends only on these polygons.
-  /// Precondition: each has at least three corners. \throws Error cancelled, and as refuse_more_than() does.
+  /// Appends the pieces of `polygons`, some of the polygons of `parts`, without holes and fully transparent pieces. The
+  /// result depends only on these polygons. Precondition: each polygon has at least three corners. \throws Error
+  /// cancelled, and as refuse_more_than() does.
   void color(const VisibleParts& parts, std::span<const PaintPolygon> polygons, ColoredOrder& into) {
     begin(polygons);
     while (started_ < polygons_.size() || !waiting_.empty()) {
@@ -148,17 +152,17 @@ class PolygonColors {
     std::vector<glm::dvec2> corners;
     std::vector<ColorSample> samples;  ///< includes samples of the piece from which it was cut
     std::size_t known_samples = 0;
-    bool is_sliver = false;        ///< all of it lies beside cuts
+    bool is_sliver = false;        ///< the whole piece lies close to cuts
     std::uint32_t polygon = 0;     ///< index of its polygon
     std::uint32_t node = 0;        ///< node in the tree of cuts
     std::uint32_t cut = no_index;  ///< the last cut that made it
   };
-  /// A cut, linked to the one before it: a piece lies on one side of all of its cuts.
+  /// A cut, linked to the cut before it. A piece lies on one side of each of its cuts.
   struct Cut {
     ScreenLine line;
     std::uint32_t before = no_index;
   };
-  /// A cut piece or a kept one. The order of the tree is the painting order.
+  /// A piece that was cut, or a piece that is kept. The order of the tree is the painting order.
   struct Node {
     std::uint32_t below = no_index, above = no_index;  ///< nodes
     std::uint32_t kept = no_index;
@@ -176,7 +180,8 @@ class PolygonColors {
     std::optional<std::vector<TexcoordLines>> texture_lines{};  ///< made when first needed
   };
   void begin(std::span<const PaintPolygon> polygons) {
-    // A triangle is set up about its first sample, which must be on one of these polygons.
+    // The shader is cleared because it sets up a triangle around its first sample, which must be on one of these
+    // polygons.
     shader_.clear();
     polygons_.clear();
     nodes_.clear();
@@ -203,7 +208,7 @@ class PolygonColors {
     piece.node = polygon.node;
   }
 
-  /// Takes pieces with samples for some batches; first the ones that were cut last.
+  /// Takes pieces until their samples fill several batches. The pieces that were cut last are taken first.
   void take_pieces(const VisibleParts& parts) {
     looked_at_.clear();
     std::size_t samples = 0;
@@ -220,8 +225,9 @@ class PolygonColors {
     }
   }
 
-  /// Whole polygons are also sampled at their corners; corners of other pieces are known or lie beside a cut. Known
-  /// samples count, so a piece gets fewer new ones than its size suggests, often none.
+  /// Chooses the places of new samples. Whole polygons are also sampled at their corners; the corners of cut pieces
+  /// were sampled before, or lie beside a cut. Known samples count, so a piece gets fewer new samples than its size
+  /// suggests, often none.
   void place_samples(Piece& piece) {
     const PieceSize size(piece.corners);
     const auto add = [&](const glm::dvec2& at) {
@@ -244,7 +250,7 @@ class PolygonColors {
     const auto hand_out = [&] {
       shader_.hand_out([&](const FragmentShader::Shaded& shaded) {
         const glm::vec3& light = shaded.light;
-        // Paper shows nothing brighter than white: brighter reflections hide what is behind instead.
+        // Paper shows nothing brighter than white, so brighter reflections become white and more opaque.
         const float brightest = std::max(1.0f, std::max(light.x, std::max(light.y, light.z)));
         const glm::vec3 shown = light / brightest;
         const float opacity = std::clamp(shaded.alpha * brightest * shading_.opacity(), 0.0f, 1.0f);
@@ -281,7 +287,7 @@ class PolygonColors {
     kept_.push_back({color, std::move(piece.corners)});
   }
 
-  /// The greatest difference, in steps, between a sample and the colour of its piece.
+  /// The greatest allowed difference, in steps, between a sample and the colour of its piece.
   [[nodiscard]] float within(const Piece& piece) const {
     return float(options_.tolerance * (polygons_[piece.polygon].is_grouped ? kWithin : 1) *
                  (piece.is_sliver ? kOfSlivers : 1));
@@ -294,8 +300,8 @@ class PolygonColors {
   }
 
   /// Whether a piece has one colour, and the colour. The majority of the samples decides between surface and hole. The
-  /// colour is the mean of the surface samples, if all are near enough to it: the middle between extremes would tint a
-  /// wide field for the sake of its edge.
+  /// piece has one colour, the mean of the surface samples, if all samples are near enough to the mean. (The middle
+  /// between the extremes would tint a wide field for the sake of its edge.)
   [[nodiscard]] std::pair<bool, glm::vec4> judge(const Piece& piece) const {
     std::size_t holes = 0;
     for (const ColorSample& sample : piece.samples) holes += is_hole(sample.color);
@@ -339,7 +345,7 @@ class PolygonColors {
     }
   }
 
-  /// Lines along the coordinates of the base colour's texture, which the picture mostly shows.
+  /// The lines of equal coordinates in the texture of the base colour, which the picture mostly shows.
   [[nodiscard]] std::span<const TexcoordLines> texture_lines(const Piece& piece) {
     Polygon& polygon = polygons_[piece.polygon];
     if (polygon.texture_lines) return *polygon.texture_lines;
@@ -365,7 +371,7 @@ class PolygonColors {
     return lines;
   }
 
-  /// Lists the kept pieces in painting order: below a cut before above it.
+  /// Lists the kept pieces in painting order: pieces below a cut come before pieces above it.
   void list_kept(const Polygon& polygon) {
     listed_.clear();
     path_.assign(1, polygon.node);
@@ -404,7 +410,7 @@ class PolygonColors {
   FragmentShader shader_;
 
   std::vector<Polygon> polygons_;
-  std::size_t started_ = 0;       ///< polygons
+  std::size_t started_ = 0;       ///< number of polygons that were started
   std::vector<Piece> waiting_;    ///< a stack: the next piece is last
   std::vector<Piece> looked_at_;  ///< the pieces of the current round
   std::vector<ColorSample*> asked_;

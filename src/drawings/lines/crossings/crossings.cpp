@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of triangles that may cross are found by a tree of boxes: triangles are sorted once by (class of size, place on
-// D. Hilbert's curve), in groups of sixteen, groups of sixteen groups, and so on. A group is compared with itself and
-// with all later groups whose boxes touch its own, so every pair meets once.
+// A tree of boxes finds the pairs of triangles that may cross. Triangles are sorted once, by class of size and then by
+// place on D. Hilbert's curve. Sixteen neighbours form a group, sixteen groups a larger group, and so on. A group is
+// compared with itself and with all later groups whose boxes touch its own, so every pair is compared once.
 //
-// Two triangles that straddle each other's planes meet the planes' common line in an interval each. The common part of
-// the intervals ends at those of their four ends that lie within the other triangle. Signs of tetrahedra decide that
-// before any point is constructed.
+// Two triangles that straddle each other's planes each meet the planes' common line in an interval. The intersection of
+// both intervals is bounded by those of their four ends that lie within the other triangle. Signs of tetrahedra tell
+// which ends lie there, before any point is constructed.
 // O. Devillers, P. Guigue. Faster Triangle-Triangle Intersection Tests. 2002.
 #include "lines/crossings/crossings.h"
 
@@ -49,7 +49,7 @@ Box box_of(const WeldedMesh& mesh, std::size_t triangle) {
   return box;
 }
 
-/// The exponent that std::frexp() gives for the box's longest side, but many times faster. That side is not 0.
+/// The exponent of the box's longest side, which is not 0. Equal to std::frexp()'s, but computed many times faster.
 int exponent_of(const Box& box) {
   const glm::dvec3 size = glm::dvec3(box.high) - glm::dvec3(box.low);
   const double longest = std::max({size.x, size.y, size.z});
@@ -60,12 +60,13 @@ int exponent_of(const Box& box) {
 
 /// Classes of triangles by size.
 struct SizeClasses {
-  /// By exponent: 0 for nine tenths of all triangles; each class beyond spans a factor of 4.
+  /// The class of each exponent. Class 0 has the smallest nine tenths of all triangles; further classes span a factor
+  /// of 4 each.
   std::array<std::uint32_t, 2 * kExponents> of{};
-  int usual = 0;  ///< the largest exponent of those nine tenths
+  int usual = 0;  ///< the largest exponent of class 0
 };
 
-/// Determined from every sixteenth triangle.
+/// Determines the classes from every sixteenth triangle.
 SizeClasses size_classes(const WeldedMesh& mesh, const Execution& execution) {
   const std::size_t asked = (mesh.triangles.size() + 15) / 16;
   Buffer<std::int16_t> exponents(asked);
@@ -98,7 +99,7 @@ Box bounds_of(const Buffer<glm::vec3>& places, const Execution& execution) {
   return all;
 }
 
-/// Keys on D. Hilbert's curve, 30 bits: the class of size, then the place of the box's middle.
+/// Computes sort keys of 30 bits: the class of size, then the place of the box's middle on D. Hilbert's curve.
 class Curve {
  public:
   Curve(const WeldedMesh& mesh, const Execution& execution) : classes_(size_classes(mesh, execution)) {
@@ -115,7 +116,8 @@ class Curve {
     return size << 3 * kBitsAnAxis | hilbert_place(step(at.x) | step(at.y) << 1 | step(at.z) << 2, kBitsAnAxis);
   }
   /// A power of two that makes most triangles about 1 in size. The kernels take products of many lengths, and denormal
-  /// floats cost hundreds of cycles. The scaling rounds nothing; what becomes infinite is left open by the kernels.
+  /// floats cost hundreds of cycles. The scaling rounds nothing, and the kernels leave pairs open whose values become
+  /// infinite.
   [[nodiscard]] float scale() const { return std::ldexp(1.0f, std::clamp(-classes_.usual, 0, kMostScale)); }
 
  private:
@@ -138,7 +140,7 @@ class BoxTree {
     const Curve curve(mesh, execution);
     Buffer<std::uint64_t> keys(count);
     parallel_for(execution, count, kPerPart, [&](std::size_t begin, std::size_t end) {
-      // Index i counts triangles that are not left out; `t` is the triangle's number with those before it added.
+      // `i` counts only the triangles that are not left out; `t` counts all triangles.
       std::size_t t = begin;
       auto next = left_out.begin();
       for (; next != left_out.end() && *next <= t; ++next) ++t;
@@ -185,8 +187,8 @@ class BoxTree {
   /// The number of groups of up to sixteen triangles.
   [[nodiscard]] std::size_t group_count() const { return triangles_.numbers.size() / kSpaceLanes; }
 
-  /// Calls visit(a, b) for every pair that SpaceKernels::crossing leaves open, with one triangle of this group and the
-  /// other of this group or a later one. Each pair is visited once.
+  /// Calls visit(a, b) once for every pair of triangles that SpaceKernels::crossing leaves open, if one triangle is in
+  /// this group and the other in this group or a later one.
   template <class Visitor>
   void visit_pairs(std::size_t group, const Visitor& visit) const {
     const std::size_t begin = group * kSpaceLanes;
@@ -210,7 +212,7 @@ class BoxTree {
   }
 
  private:
-  /// Calls visit(other, its box) for every group from `group` on whose box touches that of `group`.
+  /// Calls visit(other, other's box) for `group` itself and for every later group whose box touches the box of `group`.
   template <class Visitor>
   void visit_groups(std::size_t group, const Visitor& visit) const {
     const Box box = levels_[0].get(group);
@@ -241,8 +243,8 @@ class BoxTree {
 
 constexpr std::size_t kGroupsPerPart = 16, kPairsPerPoll = 16384;
 constexpr std::size_t kMostSegments = std::size_t(1) << 20, kMostSegmentsOfTriangle = 16;
-/// A pair counts as kStepsOfPair steps of ten nanoseconds; the other two bound all steps. A city has 42 thousand
-/// segments.
+/// A pair of triangles counts as kStepsOfPair steps of ten nanoseconds each. All pairs together may take kMostSteps
+/// steps, and kMostStepsOfTriangle more for each triangle. (A city has 42 thousand segments.)
 constexpr std::uint64_t kStepsOfPair = 8, kMostSteps = std::uint64_t(1) << 30, kMostStepsOfTriangle = 256;
 
 /// A triangle with its vertices in ascending order, so that every computation with its plane gives the same bits.
@@ -277,7 +279,7 @@ struct Heights {
     const auto any = [&](int sign) { return of[0].sign == sign || of[1].sign == sign || of[2].sign == sign; };
     return any(1) && any(-1);
   }
-  /// The only corner that is not in the plane; -1 if there is none or several.
+  /// Index of the only corner that is not in the plane; -1 if no corner or several are outside of the plane.
   [[nodiscard]] int beside() const {
     int corner = -1;
     for (int k = 0; k < 3; ++k) {
@@ -296,13 +298,14 @@ Heights heights(const WeldedMesh& mesh, const CrossedFace& face, const CrossedFa
   return heights;
 }
 
-/// The point in which a face's outline meets the plane of another: one end of its interval.
+/// A point in which a face's outline meets the plane of another face: an end of the first face's interval.
 struct EdgeMeeting {
   CrossingEnd end;
   std::uint32_t p, q;  ///< the edge that passes through the plane, or ends in it
 };
 
-/// The two meetings of a face that straddles the plane. A vertex in the plane is represented by one of its edges.
+/// The two points in which the outline of a face meets the plane that it straddles. A vertex in the plane is
+/// represented by one of its edges.
 std::array<EdgeMeeting, 2> meetings(const WeldedMesh& mesh, const CrossedFace& face, const Heights& heights) {
   std::array<EdgeMeeting, 2> found;
   std::size_t count = 0;
@@ -324,14 +327,15 @@ std::array<EdgeMeeting, 2> meetings(const WeldedMesh& mesh, const CrossedFace& f
   return found;
 }
 
-/// The orientation of the tetrahedron spanned by two edges; 0 where they meet.
+/// The orientation of the tetrahedron spanned by the edges p-q and r-s; 0 if these edges share a vertex.
 int turn(const WeldedMesh& mesh, std::uint32_t p, std::uint32_t q, std::uint32_t r, std::uint32_t s) {
   if (p == r || p == s || q == r || q == s) return 0;
   const auto& at = mesh.positions;
   return FacePlane(at[p], at[q], at[r]).height(at[s]).sign;
 }
 
-/// Whether the line through the meeting's edge passes through the face. The edge does not lie in the face's plane.
+/// Whether the line through the meeting's edge passes through the face. Precondition: the edge does not lie in the
+/// face's plane.
 bool is_within(const WeldedMesh& mesh, const EdgeMeeting& meeting, const CrossedFace& face) {
   const glm::uvec3& v = face.vertices;
   const int a = turn(mesh, meeting.p, meeting.q, v.x, v.y), b = turn(mesh, meeting.p, meeting.q, v.y, v.z);
@@ -346,22 +350,22 @@ std::optional<std::uint32_t> shared_vertex(const CrossedFace& a, const CrossedFa
   return std::nullopt;
 }
 
-/// For two faces that share a vertex and straddle each other's planes: whether they lie on different sides of that
-/// vertex along the planes' common line, as most neighbours do. The line meets the first face's opposite edge; seen
-/// along that edge, the second face is then turned the wrong way. `heights` are those of the first face over the
-/// second.
+/// Whether two faces with a shared vertex lie on different sides of that vertex along their planes' common line, as
+/// most neighbours do. The common line meets the edge of the first face that is opposite the vertex; the orientation of
+/// that edge to an edge of the second face decides. `heights` are heights of the first face's corners over the second
+/// face. Precondition: each face straddles the other's plane.
 bool lie_apart(const WeldedMesh& mesh, const std::array<const CrossedFace*, 2>& faces, const Heights& heights,
                std::uint32_t shared) {
   const glm::uvec3 &a = faces[0]->vertices, &b = faces[1]->vertices;
   const int from = a.x == shared ? 1 : 0, to = a.z == shared ? 1 : 2;
-  // The second face's other corners. The shared corner followed by these has the same order as all three, unless it is
-  // the middle one.
+  // `next` is the first of the second face's other corners. The shared corner followed by the other two keeps the
+  // winding of the face, unless the shared corner is the middle one.
   const std::uint32_t next = b.x == shared ? b.y : b.x;
   const int order = b.y == shared ? -1 : 1;
   return turn(mesh, a[from], a[to], shared, next) * heights.of[from].sign * order > 0;
 }
 
-/// The segments found so far, and edges that lie in planes.
+/// The segments found so far, and the edges that lie in planes of other triangles.
 struct Found {
   std::vector<Crossing> crossings;
   std::vector<EdgeContact> contacts;
@@ -373,7 +377,8 @@ struct Found {
   }
 };
 
-/// The segment of two triangles that share at most one vertex.
+/// The segment in which two triangles cross, if there is one. Adds contacts to `found`. Precondition: the triangles
+/// share at most one vertex.
 std::optional<Crossing> crossing(const WeldedMesh& mesh, const std::array<const CrossedFace*, 2>& faces, Found& found) {
   const Heights first = heights(mesh, *faces[0], *faces[1]);
   const int first_beside = first.beside();
@@ -392,7 +397,7 @@ std::optional<Crossing> crossing(const WeldedMesh& mesh, const std::array<const 
   for (std::size_t k = 0; k < 2; ++k)
     for (const EdgeMeeting& end : ends[k])
       if (is_within(mesh, end, *faces[1 - k])) within[k][count[k]++] = &end;
-  // Where edges meet, both triangles have an end there; two ends of one triangle are then enough.
+  // Where two edges meet, both triangles have an end at the same point. So two ends of one triangle are enough.
   for (std::size_t k = 0; k < 2; ++k)
     if (count[k] == 2) return Crossing{within[k][0]->end, within[k][1]->end, faces[0]->triangle, faces[1]->triangle};
   if (count[0] == 0 || count[1] == 0) return std::nullopt;
@@ -427,7 +432,7 @@ std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& fea
   const std::size_t parts = (tree.group_count() + kGroupsPerPart - 1) / kGroupsPerPart;
   std::vector<std::vector<Crossing>> crossings(parts);
   std::vector<std::vector<EdgeContact>> contacts(parts);
-  // Counted over all threads, so that the limit is checked before memory is requested.
+  // Segments are counted over all threads, so that the limit is checked before memory is requested.
   const std::size_t most_segments = kMostSegments + kMostSegmentsOfTriangle * mesh.triangles.size();
   std::atomic<std::size_t> segments{0};
   WorkLimit work(execution, kMostSteps + kMostStepsOfTriangle * mesh.triangles.size(), "lines");

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// All decisions are exact. Signs of tetrahedra tell where points lie in a plane, with a vertex beside the plane as
-// their fourth point. The order of coordinates tells which point comes first along a line.
+// All decisions are exact. Signs of tetrahedra tell where points lie within a plane; a vertex outside of the plane is
+// the fourth point of each tetrahedron. The order of coordinates tells which point comes first along a line.
 //
-// find_crossings() finds where a triangle has corners on both sides of another's plane. Where a surface passes through
-// a plane exactly along an edge, neither of the edge's two triangles does, and yet the surfaces cross there:
+// find_crossings() finds triangles that have corners on both sides of another triangle's plane. If a surface passes
+// through a plane exactly along an edge, neither of the edge's two triangles has such corners, and yet the surfaces
+// cross there:
 //
-//        \     |               The edge (o) lies in the plane of a third triangle, and its own two lie on different
-//    -----o----- plane         sides of it. find_crossings() lists such edges with the triangles in whose planes they
-//         |                    lie. They are decided here, all together, because their neighbours have to be known.
+//        \     |               The edge (o) lies in the plane of a third triangle. Its own two triangles lie on
+//    -----o----- plane         different sides of this plane. find_crossings() lists such edges with the triangles in
+//         |                    whose planes they lie. This file decides all of them together, because it needs to know
+//                              their neighbours.
 #include <algorithm>
 #include <optional>
 #include <tuple>
@@ -23,7 +25,8 @@ struct Edge {
   friend auto operator<=>(const Edge&, const Edge&) = default;
 };
 
-/// The triangles at an edge, by their third vertices.
+/// The triangles at an edge, each with its third vertex (apex). Only the first two are stored; `count` is the number of
+/// all.
 struct Wedge {
   std::uint32_t triangles[2] = {no_index, no_index}, apexes[2] = {no_index, no_index};
   int count = 0;
@@ -47,7 +50,7 @@ void visit_edges(const glm::uvec3& t, const Visitor& visit) {
   }
 }
 
-/// The wedges of the contacts' edges and of the edges of their triangles.
+/// The wedges of all edges that matter: the edges of the contacts, and the sides of the contacts' triangles.
 class Wedges {
  public:
   Wedges(const WeldedMesh& mesh, const std::vector<EdgeContact>& contacts) {
@@ -88,9 +91,10 @@ class Contacts {
     const glm::uvec3& t = mesh_.triangles[contact.triangle];
     const int above = turn(t.x, t.y, t.z, wedge.apexes[0]), below = turn(t.x, t.y, t.z, wedge.apexes[1]);
     if (above == 0 && below == 0) return std::nullopt;
-    // An apex in the triangle's plane puts all corners of its own triangle in one plane with the edge.
+    // With an apex in the triangle's plane, all points would lie in one plane. So an apex outside of the plane is
+    // chosen.
     const std::uint32_t beside = wedge.apexes[above != 0 ? 0 : 1];
-    int sides[3];  // of the triangle's corners beside the edge
+    int sides[3];  // on which side of the edge each corner of the triangle lies
     for (int k = 0; k < 3; ++k) sides[k] = turn(edge.from, edge.to, beside, t[k]);
     const auto any = [&](int sign) { return sides[0] == sign || sides[1] == sign || sides[2] == sign; };
     if (any(1) && any(-1)) return above * below < 0 ? within(edge, wedge, contact.triangle, sides) : std::nullopt;
@@ -121,14 +125,14 @@ class Contacts {
   [[nodiscard]] int turn(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t x) const {
     return height(a, b, c, x).sign;
   }
-  /// Order along a line. Precondition: both points are on that line.
+  /// Whether vertex `a` comes before vertex `b` along their line.
   [[nodiscard]] bool is_before(std::uint32_t a, std::uint32_t b) const {
     const glm::dvec3 p = mesh_.positions[a], q = mesh_.positions[b];
     return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
   }
   [[nodiscard]] CrossingEnd end_at(std::uint32_t vertex) const { return {mesh_.positions[vertex], {vertex, vertex}}; }
 
-  /// The part of the edge that lies in a triangle with corners on both sides of it.
+  /// The part of the edge that lies in the triangle. Precondition: the triangle has corners on both sides of the edge.
   [[nodiscard]] std::optional<Crossing> within(const Edge& edge, const Wedge& wedge, std::uint32_t triangle,
                                                const int (&sides)[3]) const {
     const glm::uvec3& t = mesh_.triangles[triangle];
@@ -158,7 +162,7 @@ class Contacts {
     return {t <= 0.5 ? a + (b - a) * t : b + (a - b) * (1 - t), {edge.from, edge.to}};
   }
 
-  /// The common part of two edges of one line, if their triangles alternate around it.
+  /// The common part of the edges `one` and p-q, if their triangles alternate around the line on which both edges lie.
   [[nodiscard]] std::optional<Crossing> along(const EdgeOfTwo& one, std::uint32_t p, std::uint32_t q) const {
     const Edge other{std::min(p, q), std::max(p, q)};
     const Wedge& wedge = wedges_.of(other);
@@ -172,17 +176,18 @@ class Contacts {
                     std::max(one.wedge.triangles[0], wedge.triangles[0])};
   }
 
-  /// Where a triangle of `other` lies around edge `e`: 1 between its two triangles in one sense of rotation, -1 between
-  /// them in the other sense, 0 on one of them.
+  /// Where a triangle of `other` lies around edge `e`. 1: between the two triangles of `e` in one sense of rotation;
+  /// -1: between them in the other sense; 0: on one of them.
   [[nodiscard]] int place_in(const EdgeOfTwo& e, const Wedge& other, int which) const {
     const std::uint32_t first = e.wedge.apexes[0], second = e.wedge.apexes[1], x = other.apexes[which];
     const auto around = [&](std::uint32_t a, std::uint32_t b) { return turn(e.edge.from, e.edge.to, a, b); };
-    // A point beside the first triangle's plane distinguishes that triangle's half plane from the opposite one.
+    // A point outside of the first triangle's plane distinguishes that triangle's half plane from the opposite one.
     std::uint32_t beside = no_index;
     for (const std::uint32_t apex : {second, other.apexes[0], other.apexes[1]})
       if (around(first, apex) != 0) beside = apex;
     if (beside == no_index) return 0;
-    // 0: with the first; 1: within half a turn; 2: opposite; 3: beyond.
+    // 0: in the direction of the first apex; 1: less than half a turn from it; 2: opposite to it; 3: more than half a
+    // turn.
     const auto quarter = [&](std::uint32_t apex) {
       const int side = around(first, apex);
       if (side != 0) return side > 0 ? 1 : 3;

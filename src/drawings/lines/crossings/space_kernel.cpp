@@ -33,7 +33,7 @@ using M = hn::Mask<D>;
 /// kShare bounds the rounding errors of the normal, the difference and the product, as a share of the sum of the terms'
 /// absolute values. kLeast bounds errors by underflow.
 constexpr float kShare = 32.0f / 16777216.0f, kLeast = 1e-36f;
-/// kLeast for heights, whose products must not underflow in turn; most sizes are about 1.
+/// Used in place of kLeast for heights, because products of heights must not underflow either; most sizes are about 1.
 constexpr float kLeastHeight = 1e-20f;
 
 HWY_INLINE M Overlaps(V low, V high, float box_low, float box_high) {
@@ -75,7 +75,7 @@ HWY_INLINE LanePlane PlaneThrough(const Vector3& corner, const Vector3& one, con
           {bound(c.y, d.z, c.z, d.y), bound(c.z, d.x, c.x, d.z), bound(c.x, d.y, c.y, d.x)}};
 }
 
-/// Whether a point is certainly above a plane, or below it; neither for NaN.
+/// Whether a point is certainly above a plane, and whether it is certainly below the plane; neither for NaN.
 struct Height {
   M is_above, is_below;
 
@@ -89,7 +89,8 @@ struct Height {
   }
 };
 
-/// Whether some corners may be above a plane, or below; vertices shared with the plane's triangle are neither.
+/// Whether any corner may be above a plane, and whether any may be below it. Vertices shared with the plane's triangle
+/// count as neither.
 struct LaneSides {
   M above, below;
 
@@ -105,8 +106,8 @@ HWY_INLINE Vector3 Choose(M mask, const Vector3& yes, const Vector3& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-/// A triangle that a plane cuts: the corner that is alone on its side, and the other two. Valid where `is_known`: each
-/// corner is certainly on one side.
+/// A triangle that a plane cuts: `alone` is the corner that is alone on its side, `one` and `other` are the other two.
+/// Valid only in the lanes of `is_known`, where the side of each corner is certain.
 struct Cut {
   Vector3 alone, one, other;
   M is_known;
@@ -122,11 +123,13 @@ struct Cut {
   }
 };
 
-/// A vector of any length from a corner in a plane to the point where the opposite edge passes through the plane.
+/// For a triangle with one corner in a plane: a vector of any length from that corner towards the point where the
+/// opposite edge passes through the plane.
 struct LaneReach {
   Vector3 to, error;
 
-  /// `a` and `b` lead from that corner to the other two. Valid only where these are not on one side of the plane.
+  /// `a` and `b` lead from that corner to the other two corners. Valid only if these two are not on one side of the
+  /// plane.
   HWY_INLINE LaneReach(const Vector3& a, const Vector3& b, const LanePlane& plane) {
     const D d;
     const Vector3 far_a = Abs(a), far_b = Abs(b);
@@ -136,7 +139,7 @@ struct LaneReach {
                      hn::Add(hn::Mul(p.z, t), hn::Mul(q.z, u))};
     };
     to = mix(a, high_b, b, high_a);
-    // A height is at most the sum of its own terms, so that sum bounds later roundings, too.
+    // A height is at most the sum of its terms, so that sum also bounds later rounding errors.
     const V share = hn::Set(d, 2 * kShare), least = hn::Set(d, kLeastHeight);
     const V error_a = hn::Add(hn::Mul(Dot(far_a, plane.size), share), least);
     const V error_b = hn::Add(hn::Mul(Dot(far_b, plane.size), share), least);
@@ -144,7 +147,7 @@ struct LaneReach {
   }
 };
 
-/// One of sixteen probes, in all lanes.
+/// One of sixteen probes, copied to all lanes.
 struct Probe {
   const SpaceTriangles& triangles;
   const SpaceProbes& all;
@@ -161,7 +164,7 @@ struct Probe {
   HWY_INLINE hn::Vec<DU> Vertex(int k) const { return hn::Set(DU(), triangles.vertices[k][all.first + lane]); }
 };
 
-/// Up to sixteen triangles in registers.
+/// Up to sixteen triangles in registers, one in each lane.
 struct Lanes {
   Vector3 corner[3], from_middle[3];
   Vector3 low, high;
@@ -189,7 +192,7 @@ struct Lanes {
     return hn::RebindMask(
         D(), hn::Or(hn::Or(hn::Eq(vertex[0], wanted), hn::Eq(vertex[1], wanted)), hn::Eq(vertex[2], wanted)));
   }
-  /// Lanes that touch the probe's box and share no vertex with it around which all triangles lie side by side.
+  /// Lanes whose boxes touch the probe's box, and which share no spread vertex with the probe.
   HWY_INLINE M MayMeet(const Probe& probe) const {
     const DU d;
     const auto overlaps = [&](V from, V to, int axis) HWY_ATTR {
@@ -211,13 +214,13 @@ struct Lanes {
       const auto is = [&](int v) HWY_ATTR { return hn::Eq(vertex[k], probe.Vertex(v)); };
       const M shared = hn::RebindMask(d, hn::Or(hn::Or(is(0), is(1)), is(2)));
       const V value = Dot(from_middle[k], probe.Splat3(probe.all.normal));
-      // The comparison is negated so that NaN counts as both.
+      // The comparisons are negated so that NaN counts as both above and below.
       above = hn::Or(above, hn::Not(hn::Or(shared, hn::Lt(value, hn::Set(d, least)))));
       below = hn::Or(below, hn::Not(hn::Or(shared, hn::Gt(value, hn::Set(d, most)))));
     }
     return hn::And(above, below);
   }
-  /// Lanes for whose planes the probe may have corners on both sides; none that share two vertices with it.
+  /// Lanes whose planes the probe may straddle, without lanes that share two vertices with the probe.
   HWY_INLINE M IsStraddled(const Probe& probe, const M (&has)[3]) const {
     const D d;
     LaneSides sides{hn::FirstN(d, 0), hn::FirstN(d, 0)};
@@ -225,9 +228,8 @@ struct Lanes {
     const M two = hn::Or(hn::Or(hn::And(has[0], has[1]), hn::And(has[1], has[2])), hn::And(has[2], has[0]));
     return hn::AndNot(two, sides.Both());
   }
-  /// Lanes in `asked` that certainly meet the line common to both planes wholly before the probe or wholly behind it.
-  /// Each of the two edges of one triangle that cross the other's plane then has the same orientation to each of the
-  /// other's.
+  /// Lanes in `asked` that certainly do not overlap the probe along the common line of both planes. Each triangle has
+  /// two edges that cross the other's plane. In these lanes, all four pairs of such edges have the same orientation.
   HWY_INLINE std::uint64_t MeetsLineApart(const Probe& probe, std::uint64_t asked) const {
     const Vector3 p[3] = {probe.Corner(0), probe.Corner(1), probe.Corner(2)};
     const Cut own(corner, {p[0], probe.Splat3(probe.all.normal), probe.Splat3(probe.all.size)}), other(p, plane);
@@ -240,8 +242,8 @@ struct Lanes {
     const M below = hn::And(hn::And(a.is_below, b.is_below), hn::And(c.is_below, d.is_below));
     return frontmost::HWY_NAMESPACE::BitsOf(D(), hn::Or(above, below)) & known;
   }
-  /// Lanes that share a vertex with the probe and certainly lie on the other side of it along the planes' common line,
-  /// as most neighbours do.
+  /// Lanes that share a vertex with the probe, but along the planes' common line certainly lie on the opposite side of
+  /// this vertex, as most neighbours do.
   HWY_INLINE M LiesApart(const Probe& probe, const M (&has)[3]) const {
     const D d;
     const Vector3 p[3] = {probe.Corner(0), probe.Corner(1), probe.Corner(2)};
@@ -262,9 +264,9 @@ struct Lanes {
   }
 };
 
-/// For each probe: the range of heights over its plane in which rounding leaves the side of a point in a box open.
-/// Heights are relative to the middle of the box. The error of the farthest point is used for all, so that it costs
-/// nothing per point.
+/// A range of heights over the plane of each probe. If a point of the box has a height in this range, rounding leaves
+/// open on which side of the plane the point lies. Points are taken relative to the middle of the box. The error bound
+/// of the farthest point is used for all points, so that it costs nothing per point.
 struct Thresholds {
   HWY_ALIGN float least[kSpaceLanes], most[kSpaceLanes];
 
@@ -321,7 +323,7 @@ std::uint32_t CrossingGroups(const SpaceTriangles& triangles, std::size_t first,
   std::uint32_t found = 0;
   for (std::size_t i = 0; i < kSpaceLanes; i += hn::Lanes(d)) {
     const Lanes lanes(triangles, first + i, middle);
-    // No branch per probe: whether any lane is left is unpredictable.
+    // There is no branch per probe, because it cannot be predicted whether any lane is left.
     std::uint16_t left[kSpaceLanes];
     std::uint32_t near = 0, some_left = 0;
     frontmost::HWY_NAMESPACE::ForEachBit(touching, [&](std::size_t p) HWY_ATTR {

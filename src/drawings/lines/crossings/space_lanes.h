@@ -18,7 +18,7 @@ inline constexpr std::size_t kSpaceLanes = 16;
   return (count + kSpaceLanes - 1) / kSpaceLanes * kSpaceLanes;
 }
 
-/// Padded to whole groups of sixteen.
+/// Boxes, padded to whole groups of sixteen.
 struct SpaceBoxes {
   Buffer<float> low[3], high[3];
 
@@ -27,7 +27,7 @@ struct SpaceBoxes {
       low[axis] = Buffer<float>(padded_to_lanes(count));
       high[axis] = Buffer<float>(padded_to_lanes(count));
     }
-    // A padding box touches nothing; an empty box would still touch an infinite one.
+    // A padding box of NaN touches nothing; an empty box would still touch an infinite box.
     constexpr float none = std::numeric_limits<float>::quiet_NaN();
     for (std::size_t i = count; i < low[0].size(); ++i) set(i, {glm::vec3(none), glm::vec3(none)});
   }
@@ -46,10 +46,10 @@ struct SpaceBoxes {
 /// Flag in a vertex number: the triangles of this vertex are not known to lie side by side around it.
 inline constexpr std::uint32_t kNotSpread = 0x80000000u;
 
-/// Padded by copies of the last triangle.
+/// Triangles, padded by copies of the last one.
 struct SpaceTriangles {
   std::size_t count = 0;
-  Buffer<float> corners[9];           ///< at any scale
+  Buffer<float> corners[9];           ///< coordinates at a common scale
   Buffer<std::uint32_t> vertices[3];  ///< vertex numbers with kNotSpread
   Buffer<std::uint32_t> numbers;
 
@@ -59,18 +59,18 @@ struct SpaceTriangles {
   }
 };
 
-/// Added to the size of a normal, in place of what products of floats lose by underflow.
+/// Added to the size of a normal, because products of floats may lose that much by underflow.
 inline constexpr float kLeastSize = 1e-32f;
-/// Sixteen triangles, from `first` on, with which others are compared.
+/// Sixteen triangles, from number `first` on, with which other triangles are compared.
 struct SpaceProbes {
   std::size_t first;
-  alignas(64) std::uint32_t spread[3][kSpaceLanes];             ///< the vertices; no_index for those with kNotSpread
+  alignas(64) std::uint32_t spread[3][kSpaceLanes];  ///< the vertices; no_index in place of vertices with kNotSpread
   alignas(64) float low[3][kSpaceLanes], high[3][kSpaceLanes];  ///< the boxes
-  alignas(64) float normal[3][kSpaceLanes];  ///< normal of any length, each component to 2^-22 of `size`
+  alignas(64) float normal[3][kSpaceLanes];  ///< normal of any length; a component's error is at most 2^-22 of `size`
   alignas(64) float size[3][kSpaceLanes];    ///< at least the sum of absolute values of the terms of `normal`
 };
 
-/// For each probe, bit i stands for triangle i of sixteen.
+/// One mask for each probe, in which bit i stands for triangle i of sixteen.
 using SpaceMasks = std::array<std::uint16_t, kSpaceLanes>;
 
 /// The functions of one instruction set. Each works on sixteen items from `first` on, a multiple of 16.
@@ -78,9 +78,10 @@ struct SpaceKernels {
   /// Bit i: box first + i has a point in common with `box`.
   std::uint32_t (*touching)(const SpaceBoxes& boxes, std::size_t first, const Box& box);
   void (*set_probes)(const SpaceTriangles& triangles, std::size_t first, SpaceProbes& probes);
-  /// Finds triangles that may cross a probe: their boxes touch, they share no vertex unless it has kNotSpread, and
-  /// rounding leaves open that each has corners on both sides of the other's plane and that they overlap along the
-  /// planes' common line. `box` encloses the sixteen triangles. Sets `masks` and returns which probes have any.
+  /// Finds triangles that may cross a probe. Their boxes touch, and they share no vertex, except vertices with
+  /// kNotSpread. Rounding leaves open that each has corners on both sides of the other's plane, and that both overlap
+  /// along the planes' common line. `box` encloses the sixteen triangles. Sets the masks of probes that may be crossed,
+  /// and returns these probes as bits.
   std::uint32_t (*crossing)(const SpaceTriangles& triangles, std::size_t first, const Box& box,
                             const SpaceProbes& probes, SpaceMasks& masks);
 };

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// An edge visits the cells that it passes, and compares with the nearest occluders first, eight at a time. A cell is
-// left as soon as the part of the edge in it is hidden: further occluders could only hide it again.
+// The search for the hidden parts of an edge visits the cells that the edge passes. In each cell, it compares the edge
+// with the nearest occluders first, eight at a time. It leaves a cell as soon as the edge's part in that cell is
+// hidden, because further occluders could only hide this part again.
 //
 //   edge ----> cells that it passes ----> boxes that overlap it ----> triangles that hide it ----> intervals
 //              (OccluderGrid)             (kernels, 16 at once)       (kernels, 8 at once)         (HiddenIntervals)
 //
 // A triangle hides the edge within four planes. Each plane is a linear function along the edge, so its signs at both
-// ends decide. A vertex of the triangle is in the planes through it by its number, not by arithmetic. The value at a
-// root may be rounded; a sign never is.
+// ends decide. A vertex of the triangle is recognized by its number, so no arithmetic decides that it lies in the
+// planes through it. The position of a root may be rounded, but a sign never is.
 #include "lines/hiding/hidden_parts.h"
 
 #include <algorithm>
@@ -19,8 +20,9 @@ namespace {
 
 Signed times(const Signed& value, int sign) { return {value.value * sign, value.sign * sign}; }
 
-/// Where the triangle is not between the eye and the near plane. With its normal n, a point A of it and the eye E, the
-/// line of sight to X meets the triangle's plane at the distance of X times n.(A - E) / n.(X - E).
+/// Where the line of sight to the edge meets the triangle's plane beyond the near plane. If n is the triangle's normal,
+/// A a point of the triangle, and E the eye, then the line of sight to a point X meets the plane at the distance of X
+/// times n.(A - E) / n.(X - E).
 Interval beyond_near(const Occluder& occluder, const SightedEdge& edge, const Sight& sight, const glm::dvec3& n) {
   const glm::dvec3 a(occluder.corners[0]);
   const auto beyond = [&](const glm::dvec3& x, double distance) {
@@ -44,8 +46,8 @@ struct OccluderCorners {
   }
 };
 
-/// The part of `hidden` within the planes through the eye. `along(third)` says whether an edge counts that lies within
-/// one of these planes from end to end, with the corner `third` opposite.
+/// The part of `hidden` within the three planes through the eye and a side of the occluder. If the whole edge lies in
+/// one of these planes, along(third) says whether it counts; `third` is the corner opposite that side.
 template <class Along>
 Interval in_shadow(const Occluder& occluder, const SightedEdge& edge, const Sight& sight, Interval hidden,
                    const Along& along) {
@@ -81,7 +83,7 @@ Interval where_positive(const Signed& at_0, const Signed& at_1, bool is_strict) 
     return {0, 1};
   }
   if (at_0.sign <= 0 && at_1.sign <= 0) return {1, 0};
-  // The values may be wrong by rounding; their signs are not.
+  // Rounding may make the values wrong, but not their signs.
   const double a = std::abs(at_0.value), b = std::abs(at_1.value);
   const double root = a + b > 0 ? a / (a + b) : 0.5;
   if (at_0.sign < 0) return {root, 1};
@@ -113,7 +115,7 @@ Interval covered_by(const Occluder& occluder, const SightedEdge& edge, const Sig
 namespace {
 
 constexpr std::size_t kMostAtOnce = 64, kBlock = 16;
-/// In cells: less than the tolerance of sides, and more than the rounding error of a place.
+/// A margin, in units of cells, below the tolerance of sides and above the rounding error of a place.
 constexpr double kEndPad = 5e-6;
 
 /// A float that is not greater than the value, in spite of rounding.
@@ -148,7 +150,7 @@ Interval within_view(const EdgeInEye& edge, const Projection& p) {
   return shown;
 }
 
-/// The point at t in pixels. Precondition: t is within the view.
+/// The edge's point at t, in pixels. Precondition: the point is within the view.
 glm::dvec2 on_screen(const EdgeInEye& edge, double t, const EdgeOccluders& o) {
   // Interpolated from the nearer end, so that both ends are exact.
   glm::dvec3 p = t <= 0.5 ? edge.from + (edge.to - edge.from) * t : edge.to + (edge.from - edge.to) * (1 - t);
@@ -167,7 +169,7 @@ struct EdgeQuestion {
   const Interval span;
   const Asked asked;
   const glm::dvec2 begin, end;  ///< ends of the span, in cells
-  const float farthest;         ///< occluders that are no nearer do not matter
+  const float farthest;         ///< greatest distance of the edge, beyond which no occluder matters
 
   EdgeQuestion(const EdgeOccluders& occlusion, const EdgeInEye& its_edge, const Interval& its_span, Asked what)
       : o(occlusion),
@@ -181,7 +183,7 @@ struct EdgeQuestion {
   [[nodiscard]] bool hides() const { return asked == Asked::what_hides; }
 };
 
-/// An interval that contains the part of the edge in a cell, with some room.
+/// An interval that contains the part of the edge in a cell, with a margin.
 Interval part_in(const PassedCell& cell, const EdgeQuestion& question) {
   const Interval& span = question.span;
   const glm::dvec2 along = question.end - question.begin;
@@ -226,7 +228,7 @@ PartInCell seen_in(const PassedCell& cell, const Interval& part, const EdgeQuest
           {glm::vec2(a - corner), glm::vec2(b - corner), from_nearness, to_nearness}};
 }
 
-/// Compares the occluders of the batch with the edge. \returns true when more is hidden than before.
+/// Compares the occluders of the batch with the edge. \returns whether more may be hidden than before.
 bool hold_against_batch(const EdgeQuestion& question, EdgeSearch& search) {
   const SightedEdge& edge = question.edge.edge;
   HiddenBatch found;
@@ -244,7 +246,8 @@ bool hold_against_batch(const EdgeQuestion& question, EdgeSearch& search) {
   return (found.hides | found.open) != 0;
 }
 
-/// Adds the entries whose bits are set, counted from `first`, to the batch, and compares each batch that is full.
+/// Adds entry first + i to the batch for each bit i that is set, and compares the batch with the edge whenever it is
+/// full.
 /// \returns false when nothing is left to hide in this cell.
 bool ask_entries(std::uint64_t bits, std::size_t first, const PassedCell& cell, const EdgeQuestion& question,
                  EdgeSearch& search) {
@@ -260,8 +263,9 @@ bool ask_entries(std::uint64_t bits, std::size_t first, const PassedCell& cell, 
   return true;
 }
 
-/// For cells of many entries: asks the nearest first, then those just before the edge. In a stack of triangles, those
-/// between hide less and less; they are skipped once nothing in the cell is open.
+/// For cells of many entries: compares the edge with the nearest entries first, then with those just before the edge,
+/// then towards the nearest. In a stack of triangles, the entries in between hide less and less, and are skipped once
+/// nothing in the cell is open.
 void ask_many(const OccluderGrid::Visit& cell, const EdgeQuestion& question, EdgeSearch& search) {
   const OccluderGrid& grid = question.o.grid;
   Interval open = search.hidden.open_part(part_in(cell, question));
@@ -341,7 +345,7 @@ void append_parts(const EdgeQuestion& question, EdgeSearch& search, std::uint32_
   }
 }
 
-/// Appends a visible part, cut where the cover beside it begins and ends.
+/// Appends the pieces of a visible part, cut where triangles begin and end to cover its outer side.
 void append_outline(DrawnPart part, const EdgeQuestion& question, HiddenIntervals& covered,
                     std::vector<DrawnPart>& pieces) {
   const DrawnPart whole = part;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The grid is first made as fine as the number of triangles suggests. If large triangles take too many cells, it is
-// made coarser until they fit. Cells list their triangles, the nearest first, but none behind one that covers the whole
-// cell.
+// made coarser until they fit. Each cell lists its triangles, the nearest first, but no triangle behind another that
+// covers the whole cell.
 //
 //    small: all cells of its box      large: row by row, from its left side to its right
 //    |##|##|  |                       |  |  |##|  |  |
 //    |##|##|  |                       |  |##|##|##|  |      each cell with the least distance of the triangle
 //    +--+--+--+                       |##|##|##|##|##|      within it
 //
-// Places are rounded outwards to floats, and comparisons of places in cells have a pad far above the rounding error.
+// Places are rounded outwards to floats, and comparisons of places have a margin far above the rounding error.
 #include "lines/hiding/occluder_grid.h"
 
 #include <array>
@@ -30,33 +30,36 @@
 namespace frontmost::lines_detail {
 namespace {
 
-/// In cells. Rounding could matter farther away.
+/// The largest coordinate, in units of cells, at which rounding cannot matter.
 constexpr double kFarthest = 1e5;
-/// Limits of length by width beyond which rounding could matter: for planes, and for which side is within.
+/// The largest ratios of length to width at which rounding cannot matter: for a triangle's plane, and for its sides.
 constexpr double kThinnest = 1e4, kThinnestSide = 1e9;
-/// Relative to the values; far more than the rounding error of a place in the picture.
+/// Margins relative to the values, far above the rounding error of a place in the picture.
 constexpr double kDepthSlack = 1e-9, kSideSlack = 1e-5, kFloatSlack = 1e-6;
 
 /// Triangles per cell. Sixteen boxes are tested at once, so many small cells cost more than few large ones. From 4 to
 /// 32, the time for the million-triangle terrain falls from 1.1 to 0.8 s in all; 64 gains nothing more.
 constexpr double kTrianglesPerCell = 32;
 constexpr double kMostCells = 1 << 22;
-/// The mean number of cells that a triangle may take, and the most of all; both bound memory.
+/// The most entries per triangle in the mean, and the most entries of all triangles; both limits bound memory.
 constexpr double kEntriesPerTriangle = 16, kMostEntries = 4e9;
 constexpr std::size_t kCornersPerPart = 4096, kSeenPerPart = 1024;
 /// How far ahead triangles at random addresses are prefetched.
 constexpr std::size_t kFetchedAhead = 16;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Moved outwards by the greatest rounding error of a corner, also one far outside of the picture.
+/// `value` moved in `direction` (1 or -1) by the greatest rounding error of a corner, even of one far outside of the
+/// picture.
 double widened(double value, double direction) { return value + direction * 1e-9 * (1 + std::abs(value)); }
 
 }  // namespace
 
-/// Bounds that hold in spite of rounding, for a triangle that lies wholly beyond the near plane.
+/// Bounds on a triangle's distance and sides that hold in spite of rounding. The triangle lies wholly beyond the near
+/// plane.
 class CellDepth {
  public:
-  /// Places have x and y in cells, and the planar distance as z. In perspective, its inverse is linear on the screen.
+  /// Places have x and y in units of cells, and the planar distance as z. In perspective, the inverse of z is linear on
+  /// the screen.
   CellDepth(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, bool is_parallel)
       : low_(std::min({a.z, b.z, c.z})), high_(std::max({a.z, b.z, c.z})), is_parallel_(is_parallel) {
     const glm::dvec3 corners[3] = {a, b, c};
@@ -82,14 +85,14 @@ class CellDepth {
     linear_.by_x = (along_b * (c.y - a.y) - along_c * (b.y - a.y)) / turn;
     linear_.by_y = (along_c * (b.x - a.x) - along_b * (c.x - a.x)) / turn;
     linear_.at_0 = at_a - linear_.by_x * a.x - linear_.by_y * a.y;
-    // An error in a place turns the plane, more for smaller triangles, and the plane may be evaluated far from the
-    // triangle.
+    // A rounding error of a corner tilts the plane, the more the smaller the triangle is, and the plane may be
+    // evaluated far from the triangle.
     linear_.slack = kDepthSlack * (1 + thin) *
                     (std::max(std::abs(value(low_)), std::abs(value(high_))) +
                      (std::abs(linear_.by_x) + std::abs(linear_.by_y)) * (most * 1e-3 + 0.1 / reach));
   }
 
-  /// Bounds of the triangle's distance within a square.
+  /// A lower bound on the triangle's distance within a square; farthest(): an upper bound.
   [[nodiscard]] double nearest(const Square& square) const {
     if (!has_plane_) return low_;
     const double value = linear_.at(square, is_parallel_ ? -1 : 1);
@@ -107,7 +110,7 @@ class CellDepth {
     int first, last;  ///< none if first > last
   };
 
-  /// The cells of row y, from `all.first` to `all.last`, that the triangle covers whole.
+  /// The cells of row y, from `all.first` to `all.last`, that the triangle covers wholly.
   [[nodiscard]] Columns covered(int y, Columns all) const {
     if (!has_sides_) return {1, 0};
     for (const Linear& side : sides_) {
@@ -124,7 +127,8 @@ class CellDepth {
     return all;
   }
 
-  /// The function a * x + b * y + c, in cells from a square's corner: negative values are certainly outside of a side.
+  /// The function a * x + b * y + c of a point in units of cells, relative to a square's corner. Where it is negative,
+  /// the point is certainly outside of a side.
   struct Side {
     float a = 0, b = 0, c = 1;
   };
@@ -137,7 +141,7 @@ class CellDepth {
             float((side.at_0 + side.by_x * corner.x + side.by_y * corner.y) / size + 2 * kSideSlack)};
   }
 
-  /// A lower bound, in the same form, of the plane's nearness() in a square no larger than a cell.
+  /// An upper bound on the plane's nearness() within a cell, in the same form; `corner` is the cell's corner.
   [[nodiscard]] Side plane(const glm::dvec2& corner) const {
     if (!has_plane_) return {0, 0, std::numeric_limits<float>::infinity()};
     const double sign = is_parallel_ ? -1 : 1;
@@ -158,13 +162,13 @@ class CellDepth {
     }
   };
 
-  Linear linear_, sides_[3];  ///< the sides are positive inside
-  double low_, high_;         ///< range of the distances of all vertices
+  Linear linear_, sides_[3];  ///< the functions of the sides are positive inside
+  double low_, high_;         ///< least and greatest distance of a vertex
   bool is_parallel_;
   bool has_sides_ = false, has_plane_ = false;  ///< false if the triangle is seen almost edge-on or reaches too far
 };
 
-/// A float below the value by up to 2^-22 of it, in every rounding mode.
+/// A float that is at most `value`, and smaller by at most 2^-22 of its size, in every rounding mode.
 inline float rounded_down(double value) { return float(value - std::abs(value) * 2e-7); }
 inline float rounded_up(double value) { return -rounded_down(-value); }
 
@@ -178,14 +182,14 @@ struct Footprint {
 /// The columns and rows of cells that a box touches.
 struct CellRange {
   int first_column, last_column, first_row, last_row;
-  /// Whether the triangle's outline may leave out some of these cells.
+  /// Whether some of these cells may lie outside of the triangle.
   [[nodiscard]] bool is_large() const { return last_row - first_row >= 2 && last_column > first_column; }
 };
 
 class GridPlan {
  public:
-  /// Keeps references to its arguments. Takes fewer cells where triangles are large: a thousand large triangles before
-  /// a million cells would give a thousand million entries. O(triangles).
+  /// Keeps references to its arguments. Makes fewer cells if triangles are large, because a thousand large triangles
+  /// over a million cells would need a thousand million entries. O(triangles).
   GridPlan(const SeenMesh& its_seen, const View& view, bool all, const Execution& its_execution)
       : seen(its_seen), sight(view), keeps_all(all), execution(its_execution), places_(seen.mesh.positions.size()) {
     const auto triangles = double(seen.mesh.triangles.size());
@@ -219,7 +223,8 @@ class GridPlan {
   [[nodiscard]] bool is_near(const Footprint& footprint) const {
     return double(footprint.nearest) <= sight.near() + 1e-6 * std::abs(sight.near());
   }
-  /// Calls visit(cell, nearest) for every cell that the footprint's triangle may touch, with its least distance there.
+  /// Calls visit(cell, nearest) for every cell that the footprint's triangle may touch, with the triangle's least
+  /// distance in that cell.
   template <class Visitor>
   void visit_cells(std::size_t number, const Visitor& visit) const {
     const CellRange& all = ranges[number];
@@ -230,7 +235,7 @@ class GridPlan {
   }
 
  private:
-  /// The part of a triangle between the near and far planes, as a polygon in cells.
+  /// The part of a triangle beyond the near plane, as a polygon in units of cells.
   struct Outline {
     std::array<glm::dvec2, 5> corners;
     int count = 0;
@@ -241,7 +246,7 @@ class GridPlan {
     double left, right;
   };
 
-  /// Sets the resolution, the places of vertices in cells, and the footprints.
+  /// Sets the resolution to about `cells` cells, and computes the places of vertices and the footprints.
   void set_cells(const View& view, double cells) {
     const double size = std::sqrt(double(view.width) * view.height / cells);
     grid.columns = std::max(1, int(std::ceil(view.width / size)));
@@ -257,8 +262,8 @@ class GridPlan {
     find_footprints();
   }
 
-  /// Footprints of triangles that are seen, in the order of first cells, so that neighbours on the screen are
-  /// neighbours in memory. Then their ranges, occluders and numbers of entries.
+  /// Finds the footprints of the triangles that are seen, and sorts them by their first cells, so that neighbours on
+  /// the screen are neighbours in memory. Also finds their ranges and occluders, and counts their entries.
   void find_footprints() {
     const std::size_t count = seen.mesh.triangles.size(), cells = grid.count();
     Buffer<Footprint> all(count);
@@ -370,7 +375,7 @@ class GridPlan {
     return {{at[v.x], at[v.y], at[v.z]}, {v.x, v.y, v.z}, turn, footprint.triangle, is_near(footprint)};
   }
 
-  /// An upper bound on the number of cells.
+  /// An upper bound on the number of cells that the footprint takes.
   [[nodiscard]] double entries_of(const Footprint& footprint, const CellRange& range) const {
     const double columns = range.last_column - range.first_column + 1, rows = range.last_row - range.first_row + 1;
     if (!range.is_large()) return columns * rows;
@@ -381,7 +386,7 @@ class GridPlan {
     return std::min(columns * rows, area + 2 * (columns + rows));
   }
 
-  /// The extent of the outline between the lower and upper side of a row.
+  /// The horizontal extent of the outline within a row of cells.
   [[nodiscard]] static Span within_row(const Outline& outline, int row) {
     Span span{infinite, -infinite};
     const double top = row - kCellPad, bottom = row + 1 + kCellPad;
@@ -421,7 +426,7 @@ class GridPlan {
 namespace {
 
 constexpr std::size_t kCellsPerPart = 32, kLargePerPart = 64;
-/// The kernels read whole vectors beyond the last entry.
+/// The kernels may read whole vectors of values beyond the last entry.
 constexpr std::size_t kPadding = 64;
 
 /// An integer that sorts like the float.
@@ -445,8 +450,8 @@ void lower(std::atomic<float>& least, float value) {
   }
 }
 
-/// By cell: an upper bound on the distance of the nearest triangle that covers the cell whole and so hides all beyond
-/// it.
+/// For each cell, an upper bound on the distance of the nearest triangle that covers the whole cell. That triangle
+/// hides everything beyond it in the cell.
 std::vector<std::atomic<float>> backs_of(const GridPlan& plan) {
   std::vector<std::atomic<float>> backs(plan.grid.count());
   for (std::atomic<float>& back : backs) back.store(std::numeric_limits<float>::infinity(), std::memory_order_relaxed);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Occluders by the cells of the picture that they may cover, the nearest first.
+// Lists occluders by the cells of the picture that they may cover, the nearest first.
 //
-// A grid of square cells lies over the picture, with about 32 triangles to the cell. Each cell lists the triangles that
+// A grid of square cells lies over the picture, with about 32 triangles per cell. Each cell lists the triangles that
 // may cover some of it. A triangle behind another that covers the whole cell hides nothing more there and is left out.
 #pragma once
 
@@ -14,20 +14,20 @@
 
 namespace frontmost::lines_detail {
 
-/// Linear on the screen; larger values are nearer.
+/// A function of the distance that is linear on the screen; larger values are nearer.
 [[nodiscard]] inline double nearness(double distance, bool is_parallel) {
   return is_parallel ? -distance : 1 / distance;
 }
 
-/// In cells; more than the rounding error of any place in the picture.
+/// A margin, in units of cells, above the rounding error of any place in the picture.
 inline constexpr double kCellPad = 1e-6;
 
 class GridPlan;
 
 class OccluderGrid {
  public:
-  /// Takes the triangles that are not seen edge-on. Unless `keeps_all`, cells omit triangles that lie wholly behind a
-  /// triangle that covers the cell whole. O(triangles), with at most about 20 cells per triangle.
+  /// Takes the triangles that are not seen edge-on. Unless `keeps_all`, each cell omits triangles that lie wholly
+  /// behind a triangle that covers the whole cell. O(triangles), with at most about 20 cells per triangle.
   OccluderGrid(const SeenMesh& seen, const View& view, bool keeps_all, const Execution& execution);
 
   /// A cell that a segment passes. Its occluders are the entries from `first` to `last`.
@@ -35,7 +35,8 @@ class OccluderGrid {
     std::size_t first, last;
   };
 
-  /// Calls visit(Visit) for every cell that the segment passes, until it returns false. Both ends are in cells.
+  /// Calls visit(Visit) for every cell that the segment passes, until `visit` returns false. `from` and `to` are in
+  /// units of cells.
   template <class Visitor>
   void visit_cells(const glm::dvec2& from, const glm::dvec2& to, const Visitor& visit) const {
     cells_.visit_along(from, to, kCellPad, [&](const PassedCell& passed) {
@@ -48,10 +49,10 @@ class OccluderGrid {
     return {low_x_.data() + entry, low_y_.data() + entry, high_x_.data() + entry, high_y_.data() + entry,
             nearest_.data() + entry};
   }
-  /// Whether the cell stores the sides of its triangles. Without sides, an edge among many parallel slanting ones would
-  /// be compared with all whose boxes it meets.
+  /// Whether the cell stores the sides of its triangles, as cells with many entries do. Without sides, an edge among
+  /// many parallel slanting triangles would be compared with all triangles whose boxes it meets.
   [[nodiscard]] bool has_sides(const Visit& visit) const { return has_sides(visit.cell); }
-  /// The sides of the entries from the cell's `offset`-th on. Precondition: has_sides().
+  /// The sides of the cell's entries from index `offset` on. Precondition: has_sides().
   [[nodiscard]] ScreenSides sides(std::uint32_t cell, std::size_t offset) const {
     const std::size_t first = first_side_[cell] + offset;
     ScreenSides sides;

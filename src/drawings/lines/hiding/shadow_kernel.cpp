@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The arithmetic of hidden_by() and of the bounds of exact_vector.h, operation by operation, so that every lane has the
-// same bits as these functions.
+// Repeats the arithmetic of hidden_by() and of the bounds of exact_vector.h, operation by operation, so that every lane
+// has the same bits as these functions.
 //
-// Boxes and sides are floats in cells, sixteen at a time; they only exclude occluders. The others are compared with the
-// edge in doubles, eight triangles at a time, with bounds on the errors of all four functions. Each hides nothing,
-// hides an interval for certain, or is left open.
+// Boxes and sides are compared in floats, in units of cells, sixteen at a time. This only excludes occluders. The
+// remaining ones are compared with the edge in doubles, eight at a time, with bounds on the errors of all four
+// functions. Each of them hides nothing, hides an interval for certain, or is left open.
 
 #include "lines/hiding/occluder.h"
 
@@ -30,12 +30,12 @@ using Vector3 = Lanes3<V>;
 
 using LaneNormals = BoundedNormals<V>;
 
-/// Values, with masks of their certain signs.
+/// Values of functions, with masks that tell whose signs are certain.
 struct Values {
   V value;
   M is_positive, is_negative, is_zero;
 
-  /// n.v times `sign`; zero where `is_on`. Each coordinate of v may be wrong by `slack`.
+  /// Dot products of n and v, times `sign`; zero in the lanes of `is_on`. Each coordinate of v may be wrong by `slack`.
   HWY_INLINE Values(const LaneNormals& n, const Vector3& v, V sign, M is_on, double slack) {
     const D d;
     value = hn::Mul(Dot(n.value, v), sign);
@@ -48,7 +48,7 @@ struct Values {
   }
 };
 
-/// The part of the edge that is left by all functions so far.
+/// The part of the edge that remains after the functions so far.
 struct Rest {
   V begin, end;
   M is_gone, is_open;
@@ -75,13 +75,13 @@ struct Rest {
 
 struct CornerLanes {
   Vector3 place;
-  M is_from, is_to;  // the edge's ends
+  M is_from, is_to;  // whether the corner is an end of the edge
 };
 
 template <bool needs_depth>
 HWY_INLINE void Ask(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden) {
   const D d;
-  // Ends that are no vertices may still lie in planes by their vertices' numbers: hidden_by() decides that.
+  // A constructed end may also lie in a plane by the numbers of its edge's vertices; hidden_by() decides that.
   const bool has_vertices = edge.slack == 0;
   const V from_vertex = hn::Set(d, has_vertices ? double(edge.from_on[0]) : -1.0);
   const V to_vertex = hn::Set(d, has_vertices ? double(edge.to_on[0]) : -1.0);
@@ -106,7 +106,7 @@ HWY_INLINE void Ask(const OccluderBatch& batch, const SightedEdge& edge, const S
           Values(face, from_0, against, any(corner[0].is_from, corner[1].is_from, corner[2].is_from), edge.slack),
           Values(face, to_0, against, any(corner[0].is_to, corner[1].is_to, corner[2].is_to), edge.slack));
     }
-    // A turn is the negative product with the plane's normal.
+    // A turn has the opposite sign of the product with the plane's normal.
     const auto keep_within = [&](const CornerLanes& p, const CornerLanes& q, V sign) HWY_ATTR {
       if (rest.IsAllGone()) return;
       const LaneNormals side(sight.is_parallel() ? axis : Minus(p.place, axis), Minus(q.place, p.place));

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edges are found at their lower vertex. A kernel finds the vertices that have no features; these are skipped.
+// Each edge is found at its lower vertex. A kernel finds the edges that may be features; the others are skipped.
 //
 //    triangles at the edge     what is drawn
 //    one                       boundary, unless a gap lies beside it
 //    two                       silhouette where only one faces the eye; border; crease by their angle
 //    more                      each pair of sides of one surface is judged like two; without pairs, surfaces meet
 //
-// Parts that touch have the same triangles where they do. Three or more groups of copies form pairs only if one group
-// is as large as all others together: it is the part that the others share, like the wall between two rooms.
+// Objects that touch have equal triangles where they touch. Three or more groups of copies at an edge form pairs only
+// if one group is as large as all others together. That group is the surface which the others share, like the wall
+// between two rooms.
 #include "lines/mesh/feature_edges.h"
 
 #include <algorithm>
@@ -31,7 +32,7 @@ constexpr std::size_t kMostInLeaf = 8, kMostBeside = 64;
 constexpr double kShare = 1.0 / 16;  // the widest gap, as a share of an edge's length
 constexpr double kAcross = 0.5;      // least cosine of the angle between the directions into both triangles
 constexpr std::size_t kVerticesPerPart = 1024;
-constexpr double kWidestGap = 1.0 / 65536;  // of the scene's diagonal: a two hundredth of a millimetre on paper of A4
+constexpr double kWidestGap = 1.0 / 65536;  // share of the scene's diagonal: 1/200 mm on A4 paper
 
 class Classifier {
  public:
@@ -44,14 +45,14 @@ class Classifier {
         has_borders_(options.borders && !is_one_surface(surfaces.scene())) {}
 
   [[nodiscard]] const WeldedMesh& mesh() const { return mesh_; }
-  /// The least cosine of the angle by which a continuing surface turns.
+  /// A surface continues across an edge only if the cosine of its turn at the edge is greater than this.
   [[nodiscard]] double cosine() const { return cosine_; }
-  /// An edge of two triangles that are wound alike and face the same way is no feature if the cosine of their
-  /// SeenTriangle normals is higher.
+  /// An edge of two triangles that are wound alike and face the same way is no feature if the cosine between their
+  /// SeenTriangle normals is greater than this.
   [[nodiscard]] float plain_cosine() const {
     if (has_borders_) return std::numeric_limits<float>::infinity();
     if (!options_.creases) return -std::numeric_limits<float>::infinity();
-    // Zero normals mean nothing is known; a limit below 0 would make them look plain.
+    // A zero normal means that the normal is unknown. With a limit below 0, its edges would count as plain.
     return std::max(float(cosine_), 0.0f) + kNormalRounding;
   }
 
@@ -75,7 +76,7 @@ class Classifier {
     return [this](std::uint32_t triangle) { return surface_of(triangle); };
   }
 
-  /// The side of the edge on which no triangle lies, as seen; 0 where triangles are on both sides.
+  /// The side of the edge, as seen from the eye, on which no triangle lies: 1 or -1; 0 if triangles lie on both sides.
   [[nodiscard]] std::int8_t outer_side(std::span<const Side> sides) const {
     int inner = 0;
     for (const Side& side : sides) {
@@ -87,7 +88,7 @@ class Classifier {
   }
 
  private:
-  /// On which side of the plane through the eye and the edge the triangle lies: 1 or -1. Its winding does not matter.
+  /// The side of the plane through the eye and the edge on which the triangle lies: 1 or -1, whatever its winding.
   [[nodiscard]] int side_of(const Side& side) const { return seen_.facing[side.triangle] * (side.is_forward ? 1 : -1); }
 
   static bool is_one_surface(const Scene& scene) {
@@ -112,15 +113,15 @@ class Classifier {
   const SeenMesh& seen_;
   const Surfaces& surfaces_;
   const LineOptions& options_;
-  /// An upper bound on the rounding error of a product of two normals.
+  /// An upper bound on the rounding error of the dot product of two normals.
   static constexpr float kNormalRounding = 2e-6f;
   const double cosine_;
   const bool has_borders_;
 };
 
-/// A side of one triangle alone.
+/// A side that belongs to only one triangle.
 struct OpenSide {
-  /// `from` is a point, the others unit vectors; `ahead` points into the triangle.
+  /// `from` is a point, and the others are unit vectors; `ahead` points into the triangle.
   glm::dvec3 from, along, normal, ahead;
   double length;
   std::uint32_t edge, triangle;
@@ -200,7 +201,7 @@ class SideTree {
   std::vector<Box> boxes_;
 };
 
-/// Whether stretches cover a length, up to holes of `slack`.
+/// Whether the stretches cover the range from 0 to `length`, except for holes of at most `slack`.
 bool cover(std::vector<std::pair<double, double>>& stretches, double length, double slack) {
   std::sort(stretches.begin(), stretches.end());
   double reached = 0;
@@ -218,7 +219,8 @@ class Gaps {
 
   [[nodiscard]] const std::vector<OpenSide>& sides() const { return tree_.sides(); }
 
-  /// Whether the side is a gap. Adds its vertices, with those beyond the gap, to `continued`.
+  /// Whether `side` lies at a gap. If so, adds to `continued` the pairs of its vertices and the vertices across the
+  /// gap.
   [[nodiscard]] bool is_one(const OpenSide& side, VertexPairs& continued) const {
     const double widest = std::min(widest_, kShare * side.length);
     Box box = side.box;
@@ -243,13 +245,15 @@ class Gaps {
   }
 
  private:
-  /// The stretch of `side` beside which `other` lies, in lengths from its beginning; empty if there is none.
+  /// The stretch of `side` beside which `other` lies, as distances from the beginning of `side`; empty if there is
+  /// none.
   static std::pair<double, double> stretch_beside(const OpenSide& side, const OpenSide& other, double widest) {
     const double slope = glm::dot(other.along, side.along);
     if (slope == 0) return {0, 0};
     const glm::dvec3 start = other.from - side.from;
     const double s = glm::dot(start, side.along), e = s + slope * other.length;
-    // A little beyond the ends: triangles that meet the side only at a corner may reach into its own triangle.
+    // The stretch may reach a little beyond the ends of `side`, because triangles that meet the side only at a corner
+    // may reach into the side's own triangle.
     const double begin = std::max(-widest, std::min(s, e)), end = std::min(side.length + widest, std::max(s, e));
     const auto is_near = [&](double at) {
       const glm::dvec3 place = start + other.along * ((at - s) / slope);
@@ -272,12 +276,13 @@ class Gaps {
   SideTree tree_;
 };
 
-/// Removes from `edges` the boundaries across which their surface continues. All along such a boundary lie others of
-/// the same object and material, within `widest` and a sixteenth of its length. Their triangles are on the other side,
-/// face the same way and are turned by no more than the angle. (Exporters tessellate each face by itself, so rims share
-/// no vertices.) Where more than a third of all sides are open there is no surface, and all boundaries stay.
-/// \returns pairs of a gap's vertices and those across it, the lower first, ascending. O(boundaries log boundaries); a
-/// boundary with more than 64 others beside it stays.
+/// Removes from `edges` the boundaries across which their surface continues. Such a boundary has other boundaries of
+/// the same object and material along its whole length, at most `widest` and a sixteenth of its length away. The
+/// triangles of these other boundaries lie across the gap, face the same way, and differ in direction by at most the
+/// classifier's angle. (Exporters tessellate each face by itself, so rims share no vertices.) If more than a third of
+/// all sides are open, the triangles form no surface, and all boundaries stay.
+/// \returns pairs of vertices on opposite sides of a gap, the lower vertex first, ascending. O(boundaries log
+/// boundaries); a boundary with more than 64 others beside it stays.
 VertexPairs leave_out_gaps(const SeenMesh& seen, const Classifier& classifier, double widest, std::size_t triangles,
                            std::vector<FeatureEdge>& edges) {
   std::vector<OpenSide> sides;
@@ -298,7 +303,7 @@ VertexPairs leave_out_gaps(const SeenMesh& seen, const Classifier& classifier, d
   return continued;
 }
 
-/// Appends the edge to Corner::last() of corner j of a paired star, if it is a feature.
+/// Appends the edge from `vertex` to Corner::last() of corner j, if that edge is a feature. The star is paired.
 void add_feature(std::uint32_t vertex, std::span<const Corner> corners, std::size_t j, const Classifier& classifier,
                  std::vector<FeatureEdge>& features) {
   const WeldedMesh& mesh = classifier.mesh();
@@ -322,7 +327,7 @@ void add_features(std::uint32_t vertex, std::span<const Corner> corners, std::ui
             [](const FeatureEdge& a, const FeatureEdge& b) { return a.to < b.to; });
 }
 
-/// The sides of the edges from a vertex to higher ones, sorted by edge, then by opposite vertex.
+/// Sets `sides` to the sides of the edges from `vertex` to higher vertices, sorted by edge, then by opposite vertex.
 void find_sides(const WeldedMesh& mesh, std::uint32_t vertex, std::span<const Corner> corners,
                 std::vector<Side>& sides) {
   sides.clear();
@@ -342,7 +347,7 @@ struct OwnedSide {
 /// Sides with the same opposite vertex.
 using SidesOfCopy = std::span<const OwnedSide>;
 
-/// Groups of copies. Precondition: `sides` are sorted by opposite vertex.
+/// Splits sides into groups of copies. Precondition: `sides` are sorted by opposite vertex.
 std::vector<SidesOfCopy> copies_of(std::span<const OwnedSide> sides) {
   std::vector<SidesOfCopy> all;
   for (auto begin = sides.begin(); begin != sides.end();) {
@@ -354,7 +359,7 @@ std::vector<SidesOfCopy> copies_of(std::span<const OwnedSide> sides) {
   return all;
 }
 
-/// One side of each group: of the same object and material if possible, else the first ones.
+/// A pair with one side from each group: two sides of the same object and material if possible, else the first sides.
 SidePair pair_of(const SidesOfCopy& a, const SidesOfCopy& b) {
   for (const OwnedSide& one : a)
     for (const OwnedSide& other : b)
@@ -362,7 +367,8 @@ SidePair pair_of(const SidesOfCopy& a, const SidesOfCopy& b) {
   return {a[0].side, b[0].side};
 }
 
-/// Appends pairs that hold all sides. \returns false, and appends none, where that is impossible.
+/// Pairs the groups of copies and appends these pairs. \returns false, and appends none, if not every group can be
+/// paired.
 bool pair_up(std::span<const OwnedSide> sides, std::vector<SidePair>& pairs) {
   const std::vector<SidesOfCopy> copies = copies_of(sides);
   if (copies.size() < 2) return false;
@@ -382,7 +388,7 @@ struct Drawn {
   std::uint32_t left, right;
 };
 
-/// An edge with several pairs is drawn once, with the kind that comes first in EdgeKind.
+/// How an edge with these pairs is drawn, if at all: once, with the kind that comes first in EdgeKind.
 std::optional<Drawn> first_of(std::span<const SidePair> pairs, const Classifier& classifier) {
   std::optional<Drawn> first;
   for (const SidePair& pair : pairs)
@@ -391,7 +397,8 @@ std::optional<Drawn> first_of(std::span<const SidePair> pairs, const Classifier&
   return first;
 }
 
-/// `sides` are those of one edge, copies included; `distinct` has each opposite vertex once.
+/// How an edge is drawn, if at all. `sides` are all sides of the edge, copies included; `distinct` has one side for
+/// each opposite vertex.
 std::optional<Drawn> drawn_of(std::span<const Side> sides, std::span<const Side> distinct,
                               const Classifier& classifier) {
   if (distinct.size() == 2) {
@@ -405,7 +412,7 @@ std::optional<Drawn> drawn_of(std::span<const Side> sides, std::span<const Side>
   return Drawn{*kind, distinct[0].triangle, distinct.size() > 1 ? distinct[1].triangle : no_index};
 }
 
-/// `sides` come from find_sides().
+/// Appends the features and twins that are found among `sides`, which come from find_sides().
 void add_features(std::span<const Side> sides, std::uint32_t v, const Classifier& classifier, Features& features) {
   std::vector<Side> distinct;
   for (auto begin = sides.begin(); begin != sides.end();) {

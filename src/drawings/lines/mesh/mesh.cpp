@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vertices of all instances are numbered by their places, and triangles by these numbers. All lists are counted in
-// parts before they are written, so no list grows and no thread waits.
+// Each place gets one number, which all vertices of all instances at that place share; triangles refer to these
+// numbers. Threads count the items of each list in parts before they write them, so no list grows and no thread waits.
 //
-//    fillers that share sides      A-M-B, A-N-M ...      one line (a seam) each, found by uniting fillers
+//    fillers that share sides      A-M-B, A-N-M ...      lie on one line (a seam); found by uniting fillers
 //    corners of the seam           A N M B               sorted along any axis on which two of them differ
 //    a triangle with the side A-B  becomes A-N-C, N-M-C, M-B-C
 //
-// Whether a triangle has no area is an exact sign, and the order along a line is the order of one coordinate.
+// An exact sign tells whether a triangle has no area. The order of corners along a line is the order of one coordinate.
 #include "lines/mesh/mesh.h"
 
 #include <algorithm>
@@ -26,8 +26,9 @@ namespace {
 
 constexpr std::size_t kWeldedPerPart = 8192;
 
-/// Calls visit(instance, first, last) for the pieces of the range from `begin` to `end` within each instance. The range
-/// counts over all instances; `firsts` are the instances' first numbers, followed by the count of all.
+/// Splits the range from `begin` to `end`, which counts over all instances, into one piece for each instance, and calls
+/// visit(instance, first, last) for each piece. `firsts` are the first numbers of the instances, followed by the count
+/// of all.
 template <class Visitor>
 void visit_instances(const std::vector<std::size_t>& firsts, std::size_t begin, std::size_t end, const Visitor& visit) {
   auto i = std::size_t(std::upper_bound(firsts.begin(), firsts.end(), begin) - firsts.begin()) - 1;
@@ -46,7 +47,7 @@ std::vector<std::size_t> firsts_of(const Scene& scene, const Size& size) {
   return firsts;
 }
 
-/// The number of kept items before each part, and at the end the number of all.
+/// The number of kept items before each part, followed by the number of all kept items.
 template <class IsKept>
 std::vector<std::size_t> counted(std::size_t count, const IsKept& is_kept, const Execution& execution) {
   std::vector<std::size_t> before((count + kWeldedPerPart - 1) / kWeldedPerPart + 1, 0);
@@ -74,7 +75,7 @@ Buffer<glm::vec3> places_of(const Scene& scene, const Execution& execution) {
   return places;
 }
 
-/// By vertex of all instances, the number of its place; fills `positions`.
+/// The number of each vertex's place, for the vertices of all instances. Fills `positions`.
 Buffer<std::uint32_t> number_places(const Scene& scene, Positions& positions, const Execution& execution) {
   const Buffer<glm::vec3> places = places_of(scene, execution);
   const Buffer<std::uint32_t> first = first_at_place({places.data(), places.size()}, execution);
@@ -98,7 +99,7 @@ Buffer<std::uint32_t> number_places(const Scene& scene, Positions& positions, co
   return numbers;
 }
 
-/// By primitive, its three place numbers; the first is no_index if the primitive is left out.
+/// Three place numbers for each primitive; the first is no_index if the primitive is left out.
 Buffer<glm::uvec3> corners_of(const Surfaces& surfaces, const Buffer<std::uint32_t>& numbers,
                               const Execution& execution) {
   const Scene& scene = surfaces.scene();
@@ -124,8 +125,8 @@ Buffer<glm::uvec3> corners_of(const Surfaces& surfaces, const Buffer<std::uint32
 }
 
 constexpr std::size_t kSeamsPerPoll = 1 << 18;
-/// The most triangles that are added: kMostAdded for each, and kAlwaysAdded. Every seam on a plane or a surface stays
-/// far below. But sides that overlap along a line could add as many as the square of their number.
+/// At most kMostAdded triangles are added for each triangle of the mesh, and kAlwaysAdded more. Usual seams stay far
+/// below this limit, but n sides that overlap on one line could add n^2 triangles.
 constexpr std::size_t kMostAdded = 4, kAlwaysAdded = 1 << 16;
 
 bool is_straight(const Positions& at, const glm::uvec3& t) {
@@ -149,7 +150,7 @@ std::vector<std::uint32_t> fillers_of(const WeldedMesh& mesh, const Buffer<std::
   return fillers;
 }
 
-/// The lines of fillers, and the fillers' sides on them.
+/// The seams of a mesh: the lines on which fillers lie, with the sides of these fillers.
 class Seams {
  public:
   Seams(const WeldedMesh& mesh, const std::vector<std::uint32_t>& fillers, const Execution& execution)
@@ -162,7 +163,7 @@ class Seams {
         is_corner_[a] = true;
       }
     }
-    // The order of equal sides does not matter: their fillers are on one line.
+    // The order of equal sides does not matter, because their fillers are on one line.
     sort_in_parts(sides_, std::less<>(), execution);
     const std::vector<std::uint32_t> seam_of = number_lines(fillers.size());
     for (Side& side : sides_) side.seam = seam_of[side.seam];
@@ -179,9 +180,9 @@ class Seams {
     return found != sides_.end() && !(side < *found) && is_open_[found->seam] ? found->seam : no_index;
   }
   struct Range {
-    std::size_t first, last;  ///< last is one beyond
+    std::size_t first, last;  ///< `last` is one past the end
   };
-  /// The places of the seam's corners strictly between two of its corners.
+  /// The indices, as for corner(), of the seam's corners that lie strictly between its corners `a` and `b`.
   [[nodiscard]] Range between(std::uint32_t seam, std::uint32_t a, std::uint32_t b) const {
     const std::size_t i = place_of(seam, a), j = place_of(seam, b);
     return {std::min(i, j) + 1, std::max(i, j)};
@@ -197,7 +198,7 @@ class Seams {
     friend bool operator<(const Side& a, const Side& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; }
   };
 
-  /// By filler, the number of its line. Fillers with a common side are on one line, since they share two points.
+  /// The number of each filler's line. Fillers with a common side are on one line, because they share two points.
   [[nodiscard]] std::vector<std::uint32_t> number_lines(std::size_t fillers) {
     DisjointSets<> lines(fillers);
     for (std::size_t s = 1; s < sides_.size(); ++s) {
@@ -229,7 +230,7 @@ class Seams {
       members.emplace_back(side.seam, side.low);
       members.emplace_back(side.seam, side.high);
       const glm::dvec3 along = glm::abs(positions_[side.high] - positions_[side.low]);
-      // Any axis works on which two points of the line differ: then all of them do.
+      // Any axis works on which two points of the line differ, because all its points then differ on that axis.
       axes_[side.seam] = along.x > 0 ? 0 : along.y > 0 ? 1 : 2;
     }
     const auto is_earlier = [&](const auto& a, const auto& b) {
@@ -254,7 +255,7 @@ class Seams {
   std::vector<bool> is_corner_;         ///< by vertex
 };
 
-/// A triangle, and the seam of the side from corner k to the next; no_index where the side is on no seam.
+/// A triangle. `seams[k]` is the seam of the side from corner k to the next corner, or no_index if there is none.
 struct Seamed {
   glm::uvec3 corners, seams;
 };
@@ -263,8 +264,8 @@ Seamed seamed(const Seams& seams, const glm::uvec3& t) {
   return {t, {seams.of(t.x, t.y), seams.of(t.y, t.z), seams.of(t.z, t.x)}};
 }
 
-/// Gives up seams for which there is no room.
-/// \returns how many triangles the others add.
+/// Leaves seams open if closing them would add too many triangles.
+/// \returns how many triangles the other seams add.
 std::size_t leave_crowded(Seams& seams, const WeldedMesh& mesh, const Execution& execution) {
   std::vector<std::size_t> added(seams.count(), 0);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -288,8 +289,8 @@ std::size_t leave_crowded(Seams& seams, const WeldedMesh& mesh, const Execution&
   return sum;
 }
 
-/// Calls add(corners) for the pieces of a triangle. It is halved repeatedly, at the middle corner of the side with the
-/// lowest vertices. So the same triangle in another order of its corners gives the same pieces.
+/// Calls add(corners) for the pieces of a triangle. The triangle is halved repeatedly, each time at the middle seam
+/// corner of the side with the lowest vertices. So the pieces do not depend on the order of the triangle's corners.
 template <class Add>
 void split(const Seams& seams, const Seamed& triangle, const Add& add) {
   int side = -1;

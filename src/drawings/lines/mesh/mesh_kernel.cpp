@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The properties of triangles in a view, and the stars of vertices.
+// Computes the properties of triangles in a view, and the stars of vertices.
 //
 //    bits of a triangle   turns left along x, y, z | turns right along x, y, z | climbs, by corner and axis | facing
 //
@@ -7,9 +7,10 @@
 // computed in doubles, without branches, for as many triangles as there are lanes. Facings that rounding leaves open
 // are computed again, exactly, one by one.
 //
-//    corners of a vertex     next:  b c d a        Corner i runs from `next` to `last` around the vertex. Its partner
-//                            last:  c d a b        is the corner whose `next` is its `last`: the triangle beyond
-//                                                  that edge. In a closed star every corner has one partner.
+//    corners of a vertex     next:  b c d a        Corner i spans the angle from `next` to `last` at the vertex. Its
+//                            last:  c d a b        partner is the corner whose `next` is the `last` of corner i: it
+//                                                  belongs to the triangle across that edge. In a closed star every
+//                                                  corner has one partner.
 
 #include "base/parallel.h"
 #include "lines/mesh/mesh.h"
@@ -49,7 +50,7 @@ HWY_INLINE void Load(const WeldedMesh& mesh, std::size_t begin, std::size_t end,
   for (int k = 0; k < 3; ++k) corners[k] = {load(3 * k), load(3 * k + 1), load(3 * k + 2)};
 }
 
-/// SeenTriangle::bits, appended one by one.
+/// SeenTriangle::bits of one triangle per lane, set one bit after another.
 struct Bits {
   hn::Vec<DU> all;
   int next = 0;
@@ -61,9 +62,10 @@ struct Bits {
   HWY_INLINE void Append(M mask) { Set(mask, next++); }
 };
 
-/// The climbs. Along each axis, points are ordered from below to above by the next axis' coordinate, then by the third.
+/// Appends the bits of SeenTriangle::climbs(). Seen along an axis, the point with the lower coordinate on the next axis
+/// is below the other point; if both are equal, the third axis decides.
 HWY_INLINE void AppendClimbs(const Vector3 (&p)[3], Bits& bits) {
-  M is_below[3][3];  // by corner, by axis: whether it comes before the next corner
+  M is_below[3][3];  // by corner and axis: whether the corner is below the next corner
   for (int k = 0; k < 3; ++k) {
     const Vector3 &a = p[k], &b = p[k == 2 ? 0 : k + 1];
     const M x = hn::Lt(a.x, b.x), y = hn::Lt(a.y, b.y), z = hn::Lt(a.z, b.z);
@@ -72,13 +74,13 @@ HWY_INLINE void AppendClimbs(const Vector3 (&p)[3], Bits& bits) {
     is_below[k][1] = hn::Or(z, hn::And(same_z, x));
     is_below[k][2] = hn::Or(x, hn::And(same_x, y));
   }
-  // The bit is set where the next corner is below this one and the last above it.
+  // The bit is set if the next corner is below this corner and the last corner is above.
   for (int k = 0; k < 3; ++k)
     for (int axis = 0; axis < 3; ++axis)
       bits.Append(hn::Not(hn::Or(is_below[k][axis], is_below[k == 0 ? 2 : k - 1][axis])));
 }
 
-/// All of a SeenTriangle's bits.
+/// SeenTriangle::bits of one triangle per lane.
 HWY_INLINE hn::Vec<DU> BitsOfTriangles(const Vector3 (&p)[3], const BoundedNormals<V>& normal, const Sight& sight) {
   const D d;
   Bits bits{hn::Zero(DU())};
@@ -108,7 +110,7 @@ void See(const WeldedMesh& mesh, const Sight& sight, std::size_t begin, std::siz
     Vector3 p[3];
     Load(mesh, i, end, p);
     const BoundedNormals<V> normal(Minus(p[1], p[0]), Minus(p[2], p[0]));
-    // The range keeps the product of two such squares finite.
+    // The product of two squares in this range is finite.
     const V square = Dot(normal.value, normal.value);
     const M is_usual = hn::And(hn::Gt(square, hn::Set(d, 1e-100)), hn::Lt(square, hn::Set(d, 1e100)));
     const V scale = hn::IfThenElseZero(is_usual, hn::Div(hn::Set(d, 1.0), hn::Sqrt(square)));
@@ -126,7 +128,7 @@ using DStar = hn::CappedTag<std::uint32_t, Star::most>;
 struct StarCorners {
   std::size_t count;
   HWY_ALIGN std::uint32_t next[Star::most], last[Star::most];
-  HWY_ALIGN std::uint32_t partner[Star::most];  ///< the corner beyond the edge to `last`
+  HWY_ALIGN std::uint32_t partner[Star::most];  ///< index of the corner in the triangle across the edge to `last`
   const SeenTriangle* triangle[Star::most];
 
   HWY_INLINE StarCorners(const SeenMesh& seen, std::span<const Corner> corners) : count(corners.size()) {
@@ -136,7 +138,7 @@ struct StarCorners {
       triangle[i] = &seen.triangles[corners[i].triangle()];
     }
   }
-  /// Sets the partners. \returns whether all are paired.
+  /// Sets the partners. \returns whether all corners are paired.
   HWY_INLINE bool Pair() {
     const DStar d;
     std::uint64_t once = 0, again = 0;
@@ -156,7 +158,7 @@ struct StarCorners {
       again |= twice << b;
     }
     const std::uint64_t all = (std::uint64_t(1) << count) - 1;
-    // If some corner is nobody's partner, another corner has two.
+    // If some corner is nobody's partner, two corners share a partner.
     std::uint64_t partners = 0, pillows = 0;
     for (std::size_t j = 0; j < count; ++j) {
       partners |= std::uint64_t(1) << partner[j];
@@ -215,7 +217,7 @@ namespace {
 
 constexpr std::size_t kTrianglesPerPart = 4096;
 
-/// The exact side of a triangle's plane on which the eye is.
+/// The side of a triangle's plane on which the eye is, decided exactly.
 int side_of_eye(const WeldedMesh& mesh, std::size_t triangle, const Sight& sight) {
   const glm::uvec3& t = mesh.triangles[triangle];
   const glm::dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];

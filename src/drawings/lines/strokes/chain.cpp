@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Segments are joined to chains. Then corners are removed from the chains, and runs of chords become arcs.
 //
-// Corners are removed with a cone from the last corner that stayed. The cone holds the directions that pass every point
-// since then at less than the tolerance. An arc runs through its first, its middle and its last corner; the length of a
-// run is doubled while it fits, and then halved.
+// A cone decides which corners are removed. Its tip is the last corner that stays, and it contains the directions of
+// the lines that pass every later point within the tolerance. An arc runs through the first, the middle and the last
+// corner of its run. The step by which a run grows is doubled while the run fits an arc, and then halved again and
+// again.
 //
 //            . - '       p4 lies outside of the cone: p3 becomes
 //    p0 <====.  p2  p3   a corner, and a new cone begins there
@@ -32,7 +33,7 @@ struct SegmentEnd {
   }
 };
 
-/// By end: the only other end that it meets, or none.
+/// For each end, the only other end that it meets, or none.
 std::vector<std::uint32_t> partners(const std::vector<LineSegment>& segments) {
   std::vector<SegmentEnd> ends;
   ends.reserve(2 * segments.size());
@@ -79,7 +80,7 @@ void begin_at_corner(std::vector<glm::dvec2>& points) {
   std::rotate(points.begin(), points.begin() + std::ptrdiff_t(begin), points.end());
 }
 
-/// The directions from `tip` that pass all points so far at less than the tolerance.
+/// The directions of the lines from `tip` that pass all points so far within the tolerance.
 class Cone {
  public:
   explicit Cone(const glm::dvec2& tip) : tip_(tip) {}
@@ -95,7 +96,7 @@ class Cone {
     const glm::dvec2 side = glm::dvec2(-d.y, d.x) * (tolerance / length);
     if (is_open_ || cross(right_, d - side) > 0) right_ = d - side;
     if (is_open_ || cross(d + side, left_) > 0) left_ = d + side;
-    farthest_ = length * length;  // a line that turns back keeps its corner
+    farthest_ = length * length;  // so that a line that turns back keeps its corner
     is_open_ = false;
   }
 
@@ -106,10 +107,11 @@ class Cone {
 };
 
 constexpr std::size_t fewest_joins = 4;
-constexpr double widest_join = 20.01 * std::numbers::pi / 180;  // of the circle; 18 to the whole
+constexpr double widest_join = 20.01 * std::numbers::pi / 180;  // angle of an arc; 18 such joins make a whole circle
 constexpr double least_turn = 10 * std::numbers::pi / 180;      // a smaller arc is drawn as a line
-/// A chord that deviates by more than the tolerance needs two chords at least half as long, among the three before it
-/// and the three after it. Looking at the next ones alone fails where corners of other things stand on the circle.
+/// A chord that deviates from the arc by more than the tolerance is evenly stepped if, among the three chords before it
+/// and the three after it, two are at least half as long. Its two neighbours alone do not suffice, because corners of
+/// other lines may divide them.
 constexpr std::size_t reach = 3;
 constexpr int fewest_alike = 2;
 constexpr double alike = 0.5;
@@ -140,8 +142,8 @@ class ChordRun {
   ChordRun(const std::vector<glm::dvec2>& points, std::size_t first, std::size_t chords)
       : points_(points), first_(first), chords_(chords) {}
 
-  /// Whether every chord lies within `tolerance` of the arc or is evenly stepped. The circle runs through all corners
-  /// within the tolerance.
+  /// Whether every chord lies within `tolerance` of the arc or is evenly stepped. Precondition: all corners lie within
+  /// the tolerance of the circle.
   [[nodiscard]] bool is_like(const Circle& circle, double tolerance) const {
     for (std::size_t i = 0; i < chords_; ++i) {
       const double to_middle = glm::distance((corner(i) + corner(i + 1)) / 2.0, circle.centre);
@@ -213,7 +215,8 @@ class ArcFinder {
     return Fit{*circle, *turn};
   }
 
-  /// The angle around the circle from corner to corner. None if a corner is off the circle or far from the next.
+  /// The angle around the circle from corner `first` to corner `last`. None if a corner is off the circle, is far from
+  /// the next corner, or turns back.
   [[nodiscard]] std::optional<double> turn_along(const Circle& circle, std::size_t first, std::size_t last) const {
     double turn = 0;
     for (std::size_t i = first; i < last; ++i) {
@@ -239,7 +242,8 @@ class ArcFinder {
     return fits;
   }
 
-  /// An arc beyond a half circle is split in two: formats differ in how they take longer ones.
+  /// Adds the arc of a run. An arc of more than a half circle is split in two, because formats differ in how they treat
+  /// longer arcs.
   void add_arc(std::size_t first, std::size_t last, std::vector<glm::dvec2>& kept) {
     const Fit arc = *fit(first, last);
     if (std::abs(arc.turn) <= std::numbers::pi) {
@@ -321,7 +325,7 @@ void straighten(Chain& chain, double tolerance) {
   }
   if (!chain.is_closed) kept.push_back(points.back());
   points = std::move(kept);
-  // The chain runs along a line and back again.
+  // Such a chain runs along a line and back again.
   if (chain.is_closed && points.size() == 2) chain.is_closed = false;
 }
 

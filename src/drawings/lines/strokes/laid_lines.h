@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // An index of the lines that are drawn so far, and the rule by which lines count as lying on each other.
 //
-//     a --------------------------      Of two lines that run side by side, nearer to each other than `apart` and at
-//            b -----------------------  nearly one angle, the later one is drawn only where the earlier one is not. The
-//            |<-- overlap -->|          overlap is the stretch of a line on which another lies.
+//     a --------------------------      Two lines lie on each other if they run side by side, nearer to each other than
+//            b -----------------------  `apart` and in nearly the same direction. The later line is then drawn only
+//            |<-- overlap -->|          beyond the overlap, the stretch that lies on the earlier line.
 //
 // Short lines are stored in the cells of a grid that they pass. Long lines would pass too many cells and are stored by
 // the infinite lines on which they lie.
@@ -40,24 +40,25 @@ struct Stretch {
 
 class Nearness {
  public:
-  /// In pixels: shorter stretches are neither kept nor removed. Places of one point differ by the rounding of floats,
-  /// 1e-7 of some thousand pixels.
+  /// In pixels. A shorter overlap removes nothing, and a shorter remainder is not drawn: computed places of one point
+  /// differ by the rounding of floats, 1e-7 of some thousand pixels.
   static constexpr double shortest = 8e-3;
-  /// Greatest slope between a long line and a line on it. Tiny pieces point anywhere, but their lists would be too
-  /// long.
+  /// Greatest slope between a long line and a line that lies on it. Tiny pieces may point in any direction, but a
+  /// greater slope would make the lists of candidates too long.
   static constexpr double most_slope = 1.0 / 128;
-  /// Greatest slope between short lines: they part by at most a quarter of their overlap, to either side.
+  /// Greatest slope between short lines that lie on each other: at both ends of their overlap, their distance is at
+  /// most a quarter of the overlap's length.
   static constexpr double most_short_slope = 0.5;
 
   explicit Nearness(double apart) : apart_(apart) {}
 
   [[nodiscard]] double apart() const { return apart_; }
 
-  /// The allowed difference in direction from a long line. It moves the end by several times `apart`, because the part
-  /// on the long line may be short.
+  /// Greatest slope between a long line and a line of that length that lies on it. The slope may move the end of the
+  /// line by several times `apart`, because only a short part may lie on the long line.
   [[nodiscard]] double slope_within(double length) const { return std::min(8 * apart_ / length, most_slope); }
 
-  /// The greatest distance from a line of that length of lines that lie on it.
+  /// The greatest distance between a line of that length and a line that lies on it.
   [[nodiscard]] double reach_of(double length) const { return std::min(apart_, length / 4); }
 
   /// The stretch of `line` on which `other` lies, in pixels; empty if there is none.
@@ -72,7 +73,7 @@ class Nearness {
     if (!(end - begin > shortest)) return nothing;
     const double a_off = cross(line.along, a), slope = (cross(line.along, b) - a_off) / (b_at - a_at);
     const auto off = [&](double at) { return std::abs(a_off + slope * (at - a_at)); };
-    // Short lines must be closer together, or all lines from one point would lie on each other.
+    // Short lines must be closer to each other, because otherwise all lines from one point would lie on each other.
     const double most = reach_of(end - begin);
     return off(begin) <= most && off(end) <= most ? Stretch{begin, end} : nothing;
   }
@@ -81,7 +82,7 @@ class Nearness {
   double apart_;
 };
 
-/// A line, with the limits for other lines that may lie on it.
+/// A line, with limits within which other lines may lie on it.
 struct SoughtLine {
   SoughtLine(const Line& line, const Nearness& nearness)
       : middle((line.from + line.to) / 2.0),
@@ -92,11 +93,11 @@ struct SoughtLine {
 
   glm::dvec2 middle, along;
   double half;   ///< half of the length
-  double reach;  ///< the greatest distance of such lines
-  double turn;   ///< the greatest tangent of the angle to such lines
+  double reach;  ///< the greatest distance of a line that lies on this line
+  double turn;   ///< the greatest slope between this line and a line that lies on it
 };
 
-/// A short form of a line in 20 bytes, which suffices to exclude that it lies on another.
+/// A short form of a line, 20 bytes long. It suffices to exclude that the line lies on another line.
 struct BriefLine {
   BriefLine(const Line& line, std::uint32_t its_number)
       : middle((line.from + line.to) / 2.0), half((line.to - line.from) / 2.0), number(its_number) {}
@@ -108,7 +109,7 @@ struct BriefLine {
   [[nodiscard]] bool may_lie_on(const SoughtLine& line) const {
     const glm::dvec2 other(half), apart = glm::dvec2(middle) - line.middle;
     const double across = std::abs(cross(line.along, other)), along = std::abs(glm::dot(line.along, other));
-    // More than the rounding error of floats.
+    // The slack is more than the rounding error of floats.
     const double slack = 1e-6 * (1 + std::abs(double(middle.x)) + std::abs(double(middle.y)) + along + across);
     const bool is_beside = std::abs(cross(line.along, apart)) > line.reach + across + slack;
     const bool is_beyond = std::abs(glm::dot(line.along, apart)) > line.half + along + slack;
@@ -135,13 +136,14 @@ void visit_likely(std::span<const BriefLine> lines, const SoughtLine& sought, co
 
 /// Long segments, indexed by the infinite line on which they lie.
 ///
-/// A long line passes many cells of a grid, and in them many lines that it only crosses. A line on top of it meets two
-/// opposite sides of the drawing, prolonged, at nearly the same heights. These two heights are a point in a dual plane,
-/// in which lines that cross or run in parallel lie apart.
+/// A grid does not suit long lines: they pass many cells, and in these cells many lines that they only cross. Instead,
+/// each line is prolonged until it meets two opposite sides of the drawing. The heights at which it meets them are the
+/// coordinates of a point in a dual plane. Lines that lie on each other have neighbouring points there; lines that
+/// cross or run in parallel have points far apart.
 ///
-///     drawing          dual plane     The plane is a table of buckets. Lines that may lie on a line are near its
-///    |            _b    |   . b       point. A line that turns about its middle moves there along a straight way.
-///   a|  ___-----  |     |
+///     drawing          dual plane     The plane is stored as a table of buckets. Lines that may lie on a line have
+///    |            _b    |   . b       points near its point. If a line turns about its middle, its point moves along
+///   a|  ___-----  |     |            a straight line.
 ///    |--          |     +------ a
 class LongLines {
  public:
@@ -154,13 +156,14 @@ class LongLines {
   void add(std::uint32_t number, const Line& segment) {
     const BriefLine brief(segment, number);
     const glm::dvec2 d = glm::abs(segment.to - segment.from);
-    // Near the diagonal, a line on top of the segment may be of the other kind.
+    // Near the diagonal, a line on top of the segment may be in the other table.
     if (d.y <= 1.05 * d.x) flat_[key(heights(segment, 0))].push_back(brief);
     if (d.x <= 1.05 * d.y) steep_[key(heights(segment, 1))].push_back(brief);
   }
 
-  /// Calls visit(numbers) for segments that may lie on this one: their lines turn from its line by at most the angle
-  /// that Nearness allows at its length, and pass near its middle. \returns how many were tested.
+  /// Calls visit(numbers) for segments that may lie on `segment`. Their lines pass near the middle of `segment`, and
+  /// differ in direction by at most the slope that Nearness allows for its length. \returns how many segments were
+  /// tested.
   template <class Visit>
   std::size_t for_each(const Line& segment, const SoughtLine& sought, const Visit& visit) const {
     const double slope = near_.slope_within(segment.length), off = near_.apart();
@@ -169,8 +172,8 @@ class LongLines {
     const Table& table = axis == 0 ? flat_ : steep_;
     std::size_t looked_at = 0;
     if (table.empty()) return looked_at;
-    // A line that turns about the middle moves by up to `spread` at the farther side, and by a share of it at the
-    // nearer one.
+    // A line that turns about the middle moves by up to `spread` at the farther side of the drawing, and by `share`
+    // times as much at the nearer side.
     const glm::dvec2 at = heights(segment, axis);
     const double middle = ((segment.from[axis] + segment.to[axis]) / 2 - low_[axis]) / extent_;
     const int far = middle < 0.5 ? 1 : 0;
@@ -192,7 +195,7 @@ class LongLines {
  private:
   using Table = std::unordered_map<std::uint64_t, std::vector<BriefLine>>;
 
-  /// The heights at which the segment's line meets both ends of the axis.
+  /// The heights at which the segment's line meets the two sides of the drawing across `axis`.
   [[nodiscard]] glm::dvec2 heights(const LineSegment& s, int axis) const {
     const double slope = (s.to[1 - axis] - s.from[1 - axis]) / (s.to[axis] - s.from[axis]);
     const double first = s.from[1 - axis] + slope * (low_[axis] - s.from[axis]);
@@ -212,7 +215,7 @@ class LongLines {
 
 class LaidLines {
  public:
-  /// For pieces of `lines`. Precondition: not empty.
+  /// Makes an empty index for pieces of `lines`. Precondition: there are lines.
   LaidLines(const std::vector<Line>& lines, const Nearness& nearness) : LaidLines(Extent(lines), nearness) {}
 
   void add(std::uint32_t number, const Line& line) {
@@ -223,13 +226,13 @@ class LaidLines {
     });
   }
 
-  /// Calls visit(numbers) for candidates among the added lines, possibly repeatedly. These contain all short lines with
-  /// a stretch by Nearness::overlap(), and of long ones those that LongLines::for_each() finds. \returns how many were
-  /// tested.
+  /// Calls visit(numbers) for added lines that may lie on `line`; a line may be visited repeatedly. All short lines
+  /// with a stretch by Nearness::overlap() are visited, and the long lines that LongLines::for_each() finds. \returns
+  /// how many lines were tested.
   ///
-  /// Cost: a few tests per line in drawings. Where thousands of lines are in one cell, as the details of a model that
-  /// is seen very small, each is tested against each: 20 thousand take up to 1.4 s, four times as many sixteen times as
-  /// long.
+  /// Cost: a few tests per line in usual drawings. But thousands of lines in one cell, such as the details of a model
+  /// that is seen very small, are tested each against each: 20 thousand lines take up to 1.4 s, and four times as many
+  /// take sixteen times as long.
   template <class Visit>
   std::size_t for_each(const Line& line, const Visit& visit) const {
     const SoughtLine sought(line, near_);
@@ -251,7 +254,7 @@ class LaidLines {
   };
   LaidLines(const Extent& extent, const Nearness& nearness);
 
-  /// Lines that count as lying on `line` are nearer than this distance, which includes a margin.
+  /// All lines that count as lying on `line` are within this distance, which includes a margin.
   [[nodiscard]] double reach_of(const Line& line) const { return near_.reach_of(line.length + Nearness::shortest); }
 
   const Nearness near_;

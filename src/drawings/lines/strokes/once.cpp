@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coincident lines are drawn once: segments are added by rank, each without the stretches that earlier ones cover.
+// Coincident lines are drawn once: segments are added by rank, each without the stretches that earlier segments cover.
 //
 //    there already       ======      =====
 //    the new line    ----------------------------
@@ -17,8 +17,8 @@
 namespace frontmost::lines_detail {
 namespace {
 
-/// A grid for `count` short lines of that mean length, about one to a cell. The least cell size matters for a drawing
-/// of one point, which would have ten million cells a side.
+/// A grid for `count` short lines of mean length `length`, with about one line in each cell. Cells have a least size,
+/// because otherwise the grid of a drawing that is a single point would have ten million cells along each side.
 SquareGrid grid_over(const glm::dvec2& low, const glm::dvec2& high, double count, double length, double near) {
   const double side = std::max({high.x - low.x, high.y - low.y, 1e-6});
   const double cell = std::max({length, side / std::sqrt(count), side / 4096, 8 * near});
@@ -28,7 +28,7 @@ SquareGrid grid_over(const glm::dvec2& low, const glm::dvec2& high, double count
 
 class OverlapRemover {
  public:
-  /// For pieces of `lines`. Precondition: not empty.
+  /// Accepts pieces of `lines`. Precondition: there are lines.
   OverlapRemover(const std::vector<Line>& lines, double apart) : near_(apart), index_(lines, near_) {}
 
   /// Appends the uncovered stretches of `line` to `fresh`.
@@ -45,7 +45,7 @@ class OverlapRemover {
     double at = 0;
     for (const Stretch& c : covered_) {
       if (c.begin - at > least) {
-        // The line's own ends are kept to the bit, so that its neighbours find them.
+        // The line's own ends are kept to the bit, so that neighbouring lines still meet them.
         const glm::dvec2 from = at == 0 ? line.from : line.from + line.along * at;
         const glm::dvec2 to = c.begin == line.length ? line.to : line.from + line.along * c.begin;
         add(Line({from, to, line.rank, line.is_contour}), fresh);
@@ -81,7 +81,7 @@ class OverlapRemover {
   std::vector<Line> laid_;
   std::vector<std::uint32_t> asked_;  ///< by line: the last query that found it
   std::uint32_t asking_ = 0;
-  std::vector<Stretch> covered_;  ///< stretches of the current line
+  std::vector<Stretch> covered_;  ///< covered stretches of the current line
 };
 
 }  // namespace

@@ -3,9 +3,8 @@
 //
 //    ends left in a box    lowest     The search finds the end nearest to the pen; of equals, the one with the lowest
 //    [ 3 7 9 | 4 5 ]         3        number. A box is entered only if it may hold a nearer end, or one as near with a
-//      /         .                    lower number. Both ends of a chain leave the tree when it is drawn, and the
-//    [3 7 9]   [4 5]                  lowest numbers are updated on the way up. So crowds of ends cost no more than
-//    others.
+//      /         .                    lower number. When a chain is drawn, both of its ends leave the tree, and the
+//    [3 7 9]   [4 5]                  lowest numbers above them are updated. So crowded ends cost no more than others.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,7 +18,7 @@ namespace {
 
 constexpr std::uint32_t no_end = no_index;
 
-/// Number 2 i is the beginning of chain i, 2 i + 1 its end.
+/// The position of an end: number 2 i is the beginning of chain i, 2 i + 1 its end.
 glm::dvec2 place(const std::vector<Chain>& chains, std::uint32_t number) {
   const Chain& chain = chains[number / 2];
   return number % 2 == 0 || chain.is_closed ? chain.points.front() : chain.points.back();
@@ -136,7 +135,7 @@ void reverse(Chain& chain) {
   for (double& bulge : chain.bulges) bulge = -bulge;
 }
 
-/// Appends `chain`, or continues the last one with it where both are open and touch.
+/// Appends `chain`, or joins it to the last chain if both are open and touch.
 void draw(Chain&& chain, double touching, std::size_t first, std::vector<Chain>& drawn) {
   if (drawn.size() > first && !drawn.back().is_closed && !chain.is_closed &&
       glm::distance(drawn.back().points.back(), chain.points.front()) <= touching) {

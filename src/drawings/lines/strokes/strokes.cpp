@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rank is a number for everything that the parts of a stroke have in common: whether they are hidden, whether they
-// are an outline, their kind and their instance, as far as the options ask for it. Sorting by rank sorts by drawing
-// order.
+// A rank is a number for the properties that all parts of a stroke have in common: whether they are hidden, whether
+// they are an outline, their kind, and their instance. Properties that the options ignore do not count. Sorting by rank
+// sorts by drawing order.
 //
-//        a ________________ b          Short chain c ends in the air and is left out. Short chain d holds a line that
-//              |    d/                 would end in the air otherwise, so d stays. The lines that pass near the ends of
-//             c     /________ e        short chains show, once for all, which ends touch something.
+//        a ________________ b          Short chain c ends in the air and is left out. Without short chain d, line e
+//              |    d/                 would end in the air, so d stays. Before any chain is left out, a grid of the
+//             c     /________ e        short chains' ends tells which lines these ends touch.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -26,7 +26,7 @@ using namespace lines_detail;
 
 struct ShortChainRule {
   double shortest;  ///< pixels: chains below this length are short
-  double touching;  ///< pixels: nearer ends and lines touch
+  double touching;  ///< pixels: ends and lines at most this far apart touch
   std::function<bool(std::uint32_t rank)> is_hidden;
 };
 
@@ -55,10 +55,10 @@ SquareGrid grid_over(const std::vector<glm::dvec2>& places, double least) {
   return {low, cell, int((high.x - low.x) / cell) + 1, int((high.y - low.y) / cell) + 1};
 }
 
-/// A chain on which an end of a short chain lies. The first end of chain i is number 2 i, its last 2 i + 1.
+/// An end of a short chain that lies on another chain. The first end of chain i is number 2 i, its last end 2 i + 1.
 struct Touch {
   std::size_t end, chain;
-  bool is_at_end;  ///< it also is an end of that chain
+  bool is_at_end;  ///< the end meets an end of that chain
 
   friend bool operator<(const Touch& a, const Touch& b) {
     return std::tie(a.end, a.chain, b.is_at_end) < std::tie(b.end, b.chain, a.is_at_end);
@@ -138,14 +138,14 @@ class ShortChains {
   }
 
   void add_touch(std::size_t end, std::size_t chain) {
-    // Hidden chains hold no visible ones.
+    // An end of a visible chain does not count as touching a hidden chain.
     if (end / 2 == chain || (rule_.is_hidden(chains_[chain].rank) && !rule_.is_hidden(chains_[end / 2].rank))) return;
     const auto is_near = [&](std::size_t other) { return glm::distance(place(end), place(other)) <= rule_.touching; };
     touches_.push_back({end, chain, !chains_[chain].is_closed && (is_near(2 * chain) || is_near(2 * chain + 1))});
   }
 
-  /// Whether the short chain may be left out: one of its ends is in the air, or it is not of a contour and only
-  /// connects lines that continue without it.
+  /// Whether the short chain may be left out: one of its ends is in the air, or it is no contour and lies between lines
+  /// that continue without it.
   [[nodiscard]] bool is_loose(std::size_t number) const {
     if (chains_[number].is_closed) return !chains_[number].is_contour;
     bool is_link = true;
@@ -172,14 +172,15 @@ class ShortChains {
 };
 
 /// Leaves out short chains with an end that touches nothing, and short chains between lines that continue without them,
-/// unless they are contours. Short chains that hold others together stay. Hidden chains hold no visible ones.
-/// Near-linear, unless most short chains lie within a thousandth of the drawing. Precondition: no arcs.
+/// unless they are contours. A short chain stays if other lines would end in the air without it. A hidden chain does
+/// not keep a visible one. Near-linear, unless most short chains lie within a thousandth of the drawing. Precondition:
+/// no arcs.
 std::vector<Chain> without_short_ones(std::vector<Chain> chains, const ShortChainRule& rule,
                                       const Execution& execution) {
   return ShortChains(chains, rule, execution).kept();
 }
 
-/// The parts of a drawing, as the options of strokes see them.
+/// Reads the parts of a drawing according to the options of strokes.
 class PartReader {
  public:
   PartReader(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options)
@@ -191,8 +192,8 @@ class PartReader {
     return options_.with_hidden && (options_.grazing_angle == 0 || !is_grazing(drawing_.edges[part.edge]));
   }
 
-  /// The common properties of a stroke's parts. Lower keys are drawn above higher ones: outlines come first, hidden
-  /// lines last.
+  /// A number for the properties that all parts of a stroke have in common. Lines of lower keys are drawn above lines
+  /// of higher keys: outlines have the lowest keys, hidden lines the highest.
   [[nodiscard]] std::uint64_t key(const DrawnPart& part) const {
     const DrawnEdge& edge = drawing_.edges[part.edge];
     std::uint64_t key = part.hidden_by != 0;
@@ -212,7 +213,7 @@ class PartReader {
     return id == no_primitive ? no_index : surfaces_.source(id).instance;
   }
 
-  /// True regardless of the triangles' winding.
+  /// Whether surfaces intersect at an angle below the grazing angle, whatever the winding of their triangles.
   [[nodiscard]] bool is_grazing(const DrawnEdge& edge) const {
     if (edge.kind != EdgeKind::intersection) return false;
     const glm::dvec3 a = normal(edge.left), b = normal(edge.right);
@@ -294,8 +295,8 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
   report_progress(execution, "strokes", 0);
   const Ranked parts = ranked(surfaces, drawing, options);
   std::vector<Chain> chains = chained(draw_once(parts.segments, options.apart, execution));
-  // A chain that stays close to its beginning is seen as a point. It is left over where two tessellations of one circle
-  // pass through each other.
+  // A chain that stays close to its beginning is seen as a point. Such chains are left over where two tessellations of
+  // one circle pass through each other.
   std::erase_if(chains, [&](const Chain& chain) {
     return std::all_of(chain.points.begin(), chain.points.end(),
                        [&](const glm::dvec2& p) { return glm::distance(chain.points.front(), p) < options.apart; });

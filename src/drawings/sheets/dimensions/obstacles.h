@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines and texts on a page, to find free places for more text.
+// Stores the lines and texts on a page, to tell which places are free for more text.
 //
 //    +----+----+----+----+      Cells are about as large as a number. A box is free if it lies on the page and touches
 //    |  __|____|___ |    |      neither a line of its cells nor a text. A leader may cross lines, each at a cost, but
@@ -24,7 +24,7 @@ struct PageSegment {
   glm::dvec2 from, to;
 };
 
-/// Lines and texts of a page, by the cells of a grid.
+/// The lines of a page, by the cells of a grid, and its texts.
 class Obstacles {
  public:
   explicit Obstacles(const PageBox& area) : area_(area) {
@@ -35,7 +35,7 @@ class Obstacles {
   }
 
   void add(const PageSegment& segment) {
-    // In steps, so that a long segment does not fill the box around it.
+    // A segment is added in steps, so that a long one does not fill all cells of the box around it.
     const double length = glm::distance(segment.from, segment.to);
     const int steps = int(std::clamp(std::ceil(length / cell_side), 1.0, 1.0 * most_cells));
     for (int i = 0; i < steps; ++i) {
@@ -137,7 +137,7 @@ class Obstacles {
            cross(v, a.from - b.from) * cross(v, a.to - b.from) < 0;
   }
 
-  /// Visits the cells that a box touches. Cells at the border also hold everything beyond it.
+  /// Visits the cells that a box touches. Cells at the border also contain everything beyond the border.
   template <class Visit>
   void visit_cells(const PageBox& box, const Visit& visit) const {
     const auto cell = [&](const glm::dvec2& at) {
