@@ -20,8 +20,8 @@ float over(const glm::vec4& pixel, const glm::vec4& background, int k) {
 
 float srgb_of(float linear) { return float(srgb_of_linear(double(linear > 0 ? (linear < 1 ? linear : 1.0f) : 0.0f))); }
 
-/// Colours are not premultiplied while they are converted, because the curve is not linear. So a pixel is first divided
-/// by its alpha and multiplied afterwards; a clear pixel stays clear.
+/// The sRGB curve is not linear, so a pixel is divided by its alpha before it is converted, and multiplied by it
+/// afterwards. A clear pixel stays clear.
 glm::vec4 linear_of_premultiplied(const glm::vec4& color) {
   if (!(color.a > 0)) return glm::vec4(0);
   return {linear_of_shown(glm::vec3(color) / color.a) * color.a, color.a};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// From set-up triangles to fragments, a whole vector at a time. The fragments of a vector may be of several triangles.
-// So each triangle value of a formula is assembled lane by lane, and then the formula is evaluated once:
+// Interpolates from set-up triangles to fragments, a whole vector at a time. The fragments of a vector may lie on
+// several triangles. So each value of a triangle is first assembled lane by lane, and then the formula is evaluated
+// once:
 //
 //   triangles      A A A B B C C C
 //   corner.x       a a a b b c c c
@@ -91,7 +92,7 @@ class VectorTriangles {
   const TriangleSetup* triangles_[kMaxLanes];
 };
 
-/// barycentric() of geometry.h for vectors.
+/// What barycentric() of geometry.h returns, for a vector of fragments.
 struct Weights {
   VF3 weight;
   VF divisor;
@@ -141,7 +142,7 @@ HWY_INLINE VF3 Chosen(MF mask, const VF3& yes, const VF3& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-/// The unit normal interpolated from the corner normals; the plane's where these cancel out.
+/// The unit normal interpolated from the corner normals, or that of the plane where the corner normals cancel out.
 HWY_INLINE VF3 SmoothNormal(const VF3Corners& normals, const VF3& plane, const VF3& weight) {
   const VF3 n = Between(normals, weight);
   // An interpolation of unit vectors is never longer than 1.
@@ -203,14 +204,14 @@ HWY_INLINE Coordinate CoordinateAt(const VectorTriangles& of, CoordinateKind kin
   return {value, change(&Affine::step_x), change(&Affine::step_y)};
 }
 
-/// The first fragment, and the requested set of texture coordinates.
+/// The vector of fragments that begins at `i`, and the requested set of texture coordinates.
 struct TexcoordPlace {
   int i;
   std::uint32_t set;
   const PixelSteps* steps;
 };
 
-/// Converts changes per unit of the screen to changes per step.
+/// Returns the change of a coordinate along a step, from its changes per unit of the screen.
 HWY_INLINE VF AlongStep(const Coordinate& c, const Lane2& step, int i) {
   const DF d;
   return hn::Add(hn::Mul(c.dx, hn::LoadU(d, &step.x[i])), hn::Mul(c.dy, hn::LoadU(d, &step.y[i])));

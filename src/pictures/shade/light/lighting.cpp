@@ -17,7 +17,7 @@ glm::dvec3 ahead_of(const View& view, const glm::dvec3& up, bool turns_with_came
   // The direction in which NamedView::front looks.
   const glm::dvec3 front = std::abs(up.z) > 0.5 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, -1);
   if (!turns_with_camera) return front;
-  // Where the view is straight up or down, the picture's top is ahead, or behind.
+  // If the camera looks straight down, the top of the picture is ahead; if it looks straight up, the top is behind.
   const glm::dvec3 forward = levelled(view.forward());
   constexpr double least = 1e-3;
   if (glm::dot(forward, forward) > least) return unit(forward);
@@ -166,7 +166,8 @@ bool may_reach(const Lamp& lamp, const BatchBounds& bounds) {
   const glm::vec3 nearest = glm::clamp(lamp.position, bounds.low, bounds.high) - lamp.position;
   if (lamp.range > 0 && glm::dot(nearest, nearest) > lamp.range * lamp.range * spare) return false;
   if (lamp.cone_scale == 0) return true;
-  // Tests a sphere around the box against a cone of at most a half-space, by the distance of its centre from the cone.
+  // Tests a sphere around the box against the cone, by the distance of the sphere's centre from the cone. A cone is at
+  // most a half-space.
   const glm::vec3 centre = 0.5f * (bounds.low + bounds.high) - lamp.position;
   const float radius = 0.5f * glm::length(bounds.high - bounds.low), size = glm::length(centre);
   const float along = glm::dot(centre, lamp.axis);
@@ -208,7 +209,7 @@ void lay_layers_over(FragmentBatch& batch) {
 }
 
 void let_through(FragmentBatch& batch, Mirroring mirroring) {
-  // Least opacity where light is mirrored: dividing by it stays finite, and it is invisible.
+  // The least opacity where light is mirrored. It is invisible, and the division by it stays finite.
   constexpr float least = 0x1p-20f;
   const LayerLanes& layers = batch.layers;
   for (int i = 0; i < batch.coverage.count; ++i) {

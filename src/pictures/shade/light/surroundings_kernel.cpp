@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mirrored light comes from two maps of the environment, for the roughnesses next to the surface's own, or from one if
-// a map has exactly that roughness. Maps are read fragment by fragment; all else is plain loops over lanes.
+// Mirrored light comes from two maps of the environment, whose roughnesses are next to the surface's own. One map is
+// enough if it has exactly that roughness. Maps are read fragment by fragment; all else is plain loops over lanes.
 
 #include "shade/light/lighting.h"
 
@@ -111,7 +111,8 @@ inline float matt_light(const IrradiancePolynomial& p, const Monomials& m, int c
   return at_least(p.constant[channel] + linear + (squares + products), 0.0f);
 }
 
-/// The share mirrored of light that is 1 everywhere by a surface that mirrors everything, and Schlick's part of it.
+/// For light that is 1 everywhere and a surface that mirrors everything: the mirrored share, and that share weighted by
+/// Schlick's (1 - V.H)^5.
 struct MirroredTerms {
   float part, grazing;
 };

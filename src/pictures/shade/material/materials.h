@@ -13,8 +13,8 @@
 
 namespace frontmost::shading {
 
-/// One use of a normal texture, for the fragments of one batch: normals are turned along the directions in which
-/// texture coordinates grow on the triangle.
+/// Applies a normal texture to the fragments of one batch: turns normals in the directions in which texture coordinates
+/// grow on the triangle.
 class NormalMap {
  public:
   /// Borrows `slot` and `setups`. `scale` multiplies the bumps.
@@ -45,10 +45,11 @@ struct LayerRow {
       thickness;
   bool has_dielectric = false, has_coat = false, has_sheen = false, has_transmission = false;
   float straight = 0.04f;   ///< reflectance at normal incidence, by the index of refraction
-  glm::vec3 absorption{0};  ///< log2 of the absorption, by channel and world unit of length
+  glm::vec3 absorption{0};  ///< log2 of the light left after one world unit of length, by channel
 };
 
-/// Null if the material has no layers. Textures are not set yet. Precondition: limit_numbers() was called.
+/// Returns the layers of a material, or null if it has none. Textures are not set yet. Precondition: limit_numbers()
+/// was called.
 [[nodiscard]] std::unique_ptr<LayerRow> layers_of(const Material& material);
 
 /// The factor by which an instance scales lengths; 0 if it is flattened.
@@ -72,7 +73,7 @@ class LayerRun {
 
   /// Called before textures are looked up and normals turned.
   void fill_factors(int begin, int end);
-  /// `sample(slot, use)` calls use(i, value) for the fragments of a part of the run.
+  /// Looks up textures: sample(slot, use) calls use(i, value) for the fragments of a part of the run.
   template <class Sample>
   void look_up(const Sample& sample);
   /// Called when all other material data is known.
@@ -105,8 +106,8 @@ class MaterialTable {
   /// Borrows `scene`. No textures are prepared yet.
   explicit MaterialTable(const Scene& scene);
 
-  /// Makes the missing mip levels of textures of materials that `is_needed`, which has one entry per material. Existing
-  /// levels keep their addresses. O(texels), in parallel.
+  /// Makes the missing mip levels of the textures of all needed materials. `is_needed` has one entry per material.
+  /// Existing levels keep their addresses. O(texels), in parallel.
   void make_ready(const std::vector<bool>& is_needed, const Execution& execution);
   /// Whether any material has a texture.
   [[nodiscard]] bool has_textures() const { return has_textures_; }
@@ -117,7 +118,7 @@ class MaterialTable {
   /// Whether make_ready() has nothing left to do.
   [[nodiscard]] bool is_ready() const { return unready_ == 0; }
 
-  /// The triangle's material, or a default one, which is white for meshes with colours: grey would dim these.
+  /// The triangle's material, or the default one. The default is white for meshes with colours, which grey would dim.
   [[nodiscard]] const MaterialRow& row_of(const TriangleSetup& triangle) const {
     if (triangle.material < rows_.size()) return rows_[triangle.material];
     return triangle.has_color ? white_ : default_;
