@@ -132,20 +132,21 @@ void begin_light(FragmentBatch& batch);
 void add_direct_light(const DirectLight& light, FragmentBatch& batch, Isa isa);
 /// Adds the environment's light, reflected by the same model, with the split sum and multiple scattering.
 void add_surroundings(const Surroundings& around, FragmentBatch& batch, Isa isa);
-/// Combines the layers. The light kept from below uses Fresnel terms of the view direction, for light from all
-/// directions.
+/// Combines the light of the layers with that of the surface below. The share that a layer keeps from below is its
+/// Fresnel term for the view direction, whatever the direction of the light.
 void lay_layers_over(FragmentBatch& batch);
 /// Calls lay_layers_over(), and maps the light to 0 to 1. Unlit materials give their base colour.
 void finish_light(const Lighting& lighting, FragmentBatch& batch, Isa isa);
 
-/// Whether the light that glass mirrors is subtracted from the light that it transmits; by_view is for lit pictures.
+/// Whether let_through() subtracts the light that glass mirrors from the light that glass transmits. by_view is for lit
+/// pictures.
 enum class Mirroring : std::uint8_t { none, by_view };
 /// Sets batch.alphas and the material's alpha of see-through fragments to their opacity, and divides their light by it.
 /// So reflections on glass keep their brightness, however little the glass hides. Precondition:
 /// layers.has_transmission.
 void let_through(FragmentBatch& batch, Mirroring mirroring);
-/// For blending that clips light at white: reflections brighter than that hide what is behind instead.
-/// Precondition: let_through() was called.
+/// Scales light above white down to white, and raises the opacity by the same factor, for blending that clips light at
+/// white. So bright reflections hide what is behind them. Precondition: let_through() was called.
 void hide_by_highlights(FragmentBatch& batch);
 
 }  // namespace frontmost::shading

@@ -71,16 +71,17 @@ class LayerRun {
         batch_(batch),
         coat_normal_(row.coat_normal, factors.clearcoat.normal_scale, input.setups) {}
 
-  /// Called before textures are looked up and normals turned.
+  /// Sets the lanes of the layers to the material's factors. Must come before textures are looked up and normals
+  /// turned.
   void fill_factors(int begin, int end);
   /// Looks up textures: sample(slot, use) calls use(i, value) for the fragments of a part of the run.
   template <class Sample>
   void look_up(const Sample& sample);
-  /// Called when all other material data is known.
+  /// Computes the lanes that need all other material data, which must be known.
   void settle(int begin, int end);
 
  private:
-  /// Makes room for the material's layers; earlier fragments of the batch have none.
+  /// Begins lanes that no earlier material of the batch needed: gives all fragments values without effect.
   void begin_layers();
   [[nodiscard]] glm::vec3 filter_at(int i) const;
   [[nodiscard]] bool is_way_out(int i) const;

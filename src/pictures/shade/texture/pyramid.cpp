@@ -10,7 +10,7 @@
 namespace frontmost::shading {
 namespace {
 
-/// The light of each byte.
+/// Returns the linear light of each byte.
 const float* table_of(Encoding encoding) {
   static const auto tables = [] {
     std::array<std::array<float, 256>, 2> values{};
@@ -25,8 +25,8 @@ const float* table_of(Encoding encoding) {
 
 std::uint8_t linear_byte(float value) { return std::uint8_t(std::min(value, 1.0f) * 255.0f + 0.5f); }
 
-/// The texels of the finer level that form one of the coarser level along one axis: two, or three if the size is odd,
-/// so that every texel has the same weight.
+/// The texels of the finer level that form a texel of the coarser level, along one axis. There are two, or three if the
+/// finer size is odd. Over all coarser texels, every finer one has the same weight.
 struct FinerTexels {
   int first, count;
   float weight[3];
@@ -68,9 +68,10 @@ struct Halving {
   [[nodiscard]] const glm::u8vec4& at(int x, int y) const {
     return texels[std::size_t(y) * std::size_t(width) + std::size_t(x)];
   }
-  // For texels [begin, end) of a row; four texels of the finer level form each.
+  // The functions below are for texels [begin, end) of a row, each of which is formed by four texels of the finer
+  // level.
 
-  /// True for most textures.
+  /// Whether all of the finer texels are opaque. This is so in most textures.
   [[nodiscard]] bool is_opaque(int begin, int end, int y) const {
     const glm::u8vec4 *upper = &at(0, 2 * y), *lower = &at(0, 2 * y + 1);
     std::uint8_t all = 0xFF;
