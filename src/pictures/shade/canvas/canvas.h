@@ -70,8 +70,8 @@ class BitmapCanvas final : public TileCanvas {
   Isa isa_;
 };
 
-/// Composites every tile over the environment, and passes it to another canvas, which is borrowed. The environment gets
-/// the exposure and tone mapping of the surfaces.
+/// Composites every tile over the environment, and passes the tile to another canvas, which is borrowed. The
+/// environment gets the exposure and tone mapping of the surfaces.
 class EnvironmentCanvas final : public TileCanvas {
  public:
   EnvironmentCanvas(TileCanvas& canvas, const View& view, const Lighting& lighting, Isa isa)

@@ -168,8 +168,7 @@ glm::vec3 equirectangular_color(const Image& picture, const glm::vec3& towards) 
 }
 
 OctahedralMap draw_map(const Image& equirectangular, const Execution& execution) {
-  constexpr int most_width = 2048, least_size = 64, per_side = 3;  // places sampled along a side of a texel; they lie
-                                                                   // closer than pixels
+  constexpr int most_width = 2048, least_size = 64, per_side = 3;  // samples along a texel side, closer than pixels
   const EquirectangularMap source(equirectangular, most_width, execution);
   int size = least_size;
   while (size < source.width() / 4) size *= 2;

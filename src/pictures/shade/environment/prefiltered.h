@@ -82,8 +82,7 @@ class OctahedralMap {
 /// The light reflected by a white diffuse surface is a polynomial of its normal: mean + 2 first . n + 15/8 n . second
 /// n. These are spherical harmonics up to order 2, in a form that is easy to rotate.
 struct IrradianceMoments {
-  /// Moments of one colour channel: the means, over all directions d, of the light, of light * d, and of light * (d d^T
-  /// - 1/3).
+  /// Means over all directions d, for one colour channel: of the light, of light * d, and of light * (d d^T - 1/3).
   struct Moments {
     double mean = 0;
     glm::dvec3 first{0};

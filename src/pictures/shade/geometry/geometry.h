@@ -187,10 +187,8 @@ class TriangleStore {
     glm::mat3 normal_matrix;  ///< turns normals to world space; their length changes
     bool is_mirrored;
 
-    [[nodiscard]] bool holds(PrimitiveId id) const {
-      return id - first < count;
-    }  // the difference wraps around for
-       // ids below `first`
+    /// The difference wraps around for ids below `first`.
+    [[nodiscard]] bool holds(PrimitiveId id) const { return id - first < count; }
   };
 
   /// Borrows the surfaces and their scene. O(instances).

@@ -17,8 +17,8 @@ namespace frontmost::shading {
 /// from 0 to 1. Bilinear look-ups are correct to 0.001; at N.V below 0.02 and roughness below 0.1, to 0.011.
 struct MirroredParts {
   static constexpr int size = 32, channels = 4;  ///< four channels, so that colours and parts are read alike
-  /// The channels are the share for a surface that mirrors everything, the same share weighted by Schlick's (1 -
-  /// V.H)^5, and two unused zeros.
+  /// The channels are the share for a surface that mirrors everything, that share weighted by (1 - V.H)^5 of Schlick's
+  /// approximation, and two unused zeros.
   std::array<float, std::size_t(channels* size* size)> values;
 };
 

@@ -51,7 +51,7 @@ class RayShadows {
     std::string error;
   };
 
-  /// Borrows all but the limit. The index is of the casters. `knows_ids` says that its ids are those of the shaded
+  /// Borrows all but the limit. The index is that of the casters. `knows_ids` says that its ids are those of the shaded
   /// surfaces; otherwise triangles are identified by their corners, which is slower. `samples` are positions in a
   /// pixel, in 1/256 pixel. `view` is that of the picture, or a pinhole if the picture is a scan.
   RayShadows(const RayIndex& index, bool knows_ids, std::span<const glm::ivec2> samples, const View& view,

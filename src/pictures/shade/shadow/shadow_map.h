@@ -2,7 +2,7 @@
 // The views of lights. Surfaces that are visible in the view of a light are lit by it, others are in its shadow.
 //
 //   key light   along its direction, at the visible points; it moves with the camera
-//   sun         the same, but its window is larger and on a fixed grid: it stays while the camera moves a little
+//   sun         likewise, but with a larger window on a fixed grid: it stays while the camera moves a little
 //   spot        from the lamp along its cone; the same for every camera
 #pragma once
 
