@@ -47,7 +47,7 @@ inline void append_bytes(std::string& bytes, double value) {
   append_bytes(bytes, std::uint32_t(word >> 32));
 }
 
-/// One number of a column.
+/// Appends one number of a column.
 inline void append_bytes(std::string& bytes, const TableColumn& column, std::size_t row) {
   if (const auto* small = std::get_if<std::vector<std::uint8_t>>(&column.values))
     bytes += char((*small)[row]);

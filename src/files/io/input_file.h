@@ -13,7 +13,7 @@
 
 namespace frontmost {
 
-/// Greatest size of a file, and of a stream (standard input, pipes), which must be held in memory.
+/// Greatest size of a file, and of a stream (standard input or a pipe), which cannot be mapped and fills memory.
 inline constexpr std::uint64_t max_file_bytes = std::uint64_t(1) << 40;
 inline constexpr std::uint64_t max_stream_bytes = std::uint64_t(1) << 34;
 /// Greatest number of bytes that are read from a device, for example a terminal: /dev/zero never ends.
@@ -64,8 +64,8 @@ class ByteStream {
   ByteStream(const ByteStream&) = delete;
   ByteStream& operator=(const ByteStream&) = delete;
 
-  /// Fills `to` with the next `count` bytes. \returns how many there were; fewer only at the end.
-  /// \throws Error file_unreadable.
+  /// Fills `to` with the next `count` bytes. \returns the number of bytes read, which is less than `count` only at the
+  /// end. \throws Error file_unreadable.
   std::size_t read(std::byte* to, std::size_t count);
 
   /// The size of an ordinary file; empty for a pipe or a terminal.

@@ -102,7 +102,8 @@ struct RadianceRow {
   std::size_t number = 0;  ///< row of the file, for messages
 };
 
-/// A byte above 128 says how often the next byte is repeated; any other says how many plain bytes follow.
+/// Reads a row of packed components. A byte above 128 says how often the next byte is repeated; any other byte says how
+/// many plain bytes follow.
 void read_packed(RadianceBytes& bytes, RadianceRow& row, const std::string& name) {
   for (std::vector<std::uint8_t>& component : row.components)
     for (std::size_t x = 0; x < component.size();) {
@@ -161,7 +162,7 @@ void read_row(RadianceBytes& bytes, RadianceRow& row, const std::string& name) {
 Image load_radiance(std::span<const std::byte> bytes, const std::string& name) {
   RadianceBytes rest(bytes, name);
   const RadianceSize size = read_radiance_header(rest, name);
-  // A row of one colour takes one pixel and one run.
+  // A file is densest if its rows have one colour each: such a row takes one pixel and one run.
   const double densest = double(std::max<std::size_t>(size.width, 2)) / 8;
   check_image_size(name, size.width, size.height, rest.rest().size(), densest, "Radiance");
   Image image{int(size.width), int(size.height), {}};

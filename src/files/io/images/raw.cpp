@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// NPY and PFM: a short header, and raw numbers row by row, the channels of a pixel side by side.
+// NPY and PFM files have a short header, and then raw numbers row by row, with the channels of a pixel side by side.
 //
 // NumPy arrays have a Python dictionary with type, order and shape. Portable float maps have "PF" (three channels) or
 // "Pf" (one), width and height, and a scale whose sign gives the byte order, each on a line of its own. The bottom row
@@ -103,7 +103,7 @@ Image read_raw(std::span<const std::byte> bytes, const RawLayout& layout, const 
 
 constexpr std::string_view magic = "\x93NUMPY"sv;
 constexpr std::size_t prefix_size = 10;  // magic, version, length of the dictionary
-// Alignment of the numbers that NumPy itself uses since version 1.14, so that files can be mapped.
+// The numbers are aligned as NumPy aligns them since version 1.14, so that files can be mapped.
 constexpr std::size_t alignment = 64;
 
 [[noreturn]] void fail_npy(const std::string& name, const std::string& reason) {
@@ -267,7 +267,7 @@ Image load_pfm(std::span<const std::byte> bytes, const std::string& name) {
   const std::string_view scale = header.word();
   // A scale of 0 is refused: its sign cannot give the byte order, because 0 and -0 are one number.
   if (scale.find_first_of("123456789") == std::string_view::npos) fail_pfm(name, "the scale is not a number");
-  layout.big_endian = scale[0] != '-';  // the scale's size has no agreed meaning and is ignored
+  layout.big_endian = scale[0] != '-';  // the scale's magnitude has no agreed meaning and is ignored
   layout.bottom_row_first = true;
   return read_raw(header.rest(), layout, name, "PFM");
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models out: chooses the format by suffix, and writes PLY, binary STL and GLB. A GLB is a glTF document of objects
-// that refer to meshes, one primitive for each material of a mesh, and materials with layers and textures. It is JSON
-// that names pieces of one buffer.
+// Writes models: chooses the format by suffix, PLY, binary STL or GLB. A GLB is a glTF document of objects that refer
+// to meshes. A mesh has one primitive for each of its materials, and materials have layers and textures. The document
+// is JSON that names pieces of one buffer.
 //
 //   Mesh       positions 0 1 2 3      normals 0 1 with indices of their own: a corner is (position, normal, ...)
 //   glTF       vertices (0, 0) (1, 0) (1, 1) ...: each pair that a corner has, once
@@ -65,7 +65,7 @@ std::string ply_header(const Scene& scene, const Table& of_triangles) {
   return text + "end_header\n";
 }
 
-/// All objects as one mesh, with further properties of its faces.
+/// Writes all objects as one mesh, with further properties of its faces.
 void write_ply(const Scene& scene, const Table& of_triangles, OutputFile& file) {
   FileBytes sink(file);
   sink.bytes() = ply_header(scene, of_triangles);
@@ -98,7 +98,7 @@ void write_ply(const Scene& scene, const Table& of_triangles, OutputFile& file) 
   sink.finish();
 }
 
-/// Triangles and their normals, nothing else.
+/// Writes triangles and their normals, and nothing else.
 void write_stl(const Scene& scene, OutputFile& file) {
   FileBytes sink(file);
   sink.bytes() = "Frontmost";  // anything but "solid", which begins the text form of STL
@@ -163,8 +163,8 @@ class GlbDocument {
     accessor["bufferView"] = add_view(bytes, target);
     return append("accessors", std::move(accessor));
   }
-  /// The number in the document of the scene's texture or material `number` (no_index: the default material). The first
-  /// request adds it to the document.
+  /// Returns the number that the scene's texture or material `number` has in the document; no_index is the default
+  /// material. The first request adds the texture or material to the document.
   std::size_t texture(std::uint32_t number) {
     const auto [place, is_new] = textures_.emplace(number, textures_.size());
     if (is_new) {
@@ -197,8 +197,8 @@ class GlbDocument {
   std::set<std::string> extensions_;
 };
 
-/// Writes a material, with each use of a texture in the object that it belongs to. Values that equal glTF's defaults
-/// and layers that are absent are left out.
+/// Writes a material. Each use of a texture is written in the JSON object that it belongs to. Values that equal glTF's
+/// defaults and layers that are absent are left out.
 class MaterialWriter {
  public:
   explicit MaterialWriter(GlbDocument& document) : document_(document) {}
@@ -245,7 +245,7 @@ class MaterialWriter {
         {"offset", {use.offset.x, use.offset.y}}, {"rotation", use.rotation}, {"scale", {use.scale.x, use.scale.y}}};
     return json;
   }
-  /// The strength is written separately if it is above 1.
+  /// Writes the emitted light. Its strength is written separately if it is above 1.
   void write_emission(Json& json, const Material& material) {
     const float most = std::max({material.emissive.x, material.emissive.y, material.emissive.z});
     set(json, "emissiveTexture", material.emissive_texture);
@@ -411,7 +411,7 @@ Json part_json(GlbDocument& document, const Mesh& mesh, std::uint32_t material,
   return part;
 }
 
-/// Null if nothing of the mesh can be written.
+/// Returns a mesh, or null if none of its triangles can be written.
 Json mesh_json(GlbDocument& document, const Mesh& mesh) {
   std::map<std::uint32_t, std::vector<std::uint32_t>> triangles;  // by material
   const auto is_finite_at = [&](std::uint32_t vertex) { return is_finite(mesh.positions[vertex]); };

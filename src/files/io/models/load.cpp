@@ -36,7 +36,7 @@ bool starts_with_word(std::string_view text, std::string_view word) {
 }
 
 bool looks_like_off(std::string_view text) {
-  // [ST][C][N][4][n]OFF, the prefixes in any order and the first count perhaps without a blank before it.
+  // The first word is [ST][C][N][4][n]OFF, its prefixes in any order. The first count may follow without a blank.
   text.remove_prefix(std::min(text.find_first_not_of("STCN4n"), text.size()));
   constexpr std::string_view followers = " \t\r\n#0123456789";
   return text.starts_with("OFF") && (text.size() == 3 || followers.find(text[3]) != std::string_view::npos);

@@ -3,13 +3,13 @@
 // copied, nothing is cut, and no list of faces is kept while each polygon so far was one triangle.
 //
 // Polygons are cut by ear clipping with exact predicates. Each cut takes a triangle of the polygon's winding, so signed
-// areas add up: triangles that all turn left cover a polygon that does not cross itself exactly once. So a fan whose
-// triangles all turn left needs no further test; it serves all convex polygons. Cutting takes O(n log n), unless ears
+// areas add up: if a polygon does not cross itself, triangles that all turn left cover it exactly once. So a fan whose
+// triangles all turn left needs no further test. It serves all convex polygons. Cutting takes O(n log n), unless ears
 // are far apart: the search for an ear takes O(n) tests at worst.
 //
-// If an outline touches itself, rounding makes edges cross slightly that should coincide, unless they share both
-// corners. Then there may be no ear left, and a triangle turns the other way. In that case all triangulations are
-// tried, which takes O(n^3), and the one with the least area of such triangles is chosen.
+// If an outline touches itself, edges that should coincide cross slightly by rounding, unless they share both corners.
+// Then there may be no ear left, and a triangle turns the other way. In that case all triangulations are tried, which
+// takes O(n^3), and the one with the least area of such triangles is chosen.
 #include "io/models/mesh_building.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ namespace {
 struct BlockableEar {
   const std::array<glm::vec2, 3>& corners;
 
-  /// The sides of ab, bc and ca on which a point lies; +1 is the inner side.
+  /// For each of the edges ab, bc and ca, the side on which a point lies; +1 is the inner side.
   [[nodiscard]] std::array<int, 3> sides(const glm::vec2& p) const {
     const auto& [a, b, c] = corners;
     return {orientation(a, b, p), orientation(b, c, p), orientation(c, a, p)};
@@ -93,9 +93,9 @@ class CornerTree {
   }
 
   /// Whether a marked corner blocks the ear a, b, c with its tip at b. A corner blocks if one of its edges leads into
-  /// the ear. If `by_touching`, two more corners block: one on an edge of the ear, and one at b whose edges follow
-  /// those of the ear, as it may belong to a bridge that turns there. Adds to `work` the number of boxes and corners
-  /// tested.
+  /// the ear. If `by_touching`, two more kinds of corners block: those on an edge of the ear, and those at b whose
+  /// edges follow those of the ear, because they may belong to a bridge that turns there. Adds to `work` the number of
+  /// boxes and corners tested.
   [[nodiscard]] bool blocks(const std::array<glm::vec2, 3>& ear, bool by_touching, std::uint64_t& work) const {
     const auto& [a, b, c] = ear;
     const glm::vec2 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
@@ -358,7 +358,8 @@ class Triangulator::Cutter {
   std::vector<Cut> cuts_;  ///< at begin * count + end
   std::vector<glm::uvec3> triangles_;
   std::uint64_t work_ = 0, allowed_work_ = 1 << 25;  ///< counted in boxes and corners tested against ears
-  bool is_flat_ = true;                              ///< whether the polygon has a direction to be seen from
+  bool is_flat_ = true;                              ///< whether the polygon has an area, and so a direction to be seen
+                                                     ///< from
 };
 
 Triangulator::Triangulator() : cutter_(std::make_unique<Cutter>()) {}

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG out: an image's channels as colours, directions, a depth map or an id map; bitmaps; textures of model files.
+// Writes PNG files: the channels of an image as colours, directions, a depth map or an id map; bitmaps; and textures of
+// model files.
 //
 // Rows are filtered and compressed in parallel. Each strip of rows is compressed by itself and ends on a byte, so that
 // strips join to the one zlib stream that PNG requires.
@@ -42,7 +43,8 @@ struct PngContents {
 
 using ByteVector = std::vector<std::uint8_t>;
 
-/// Filtered bytes of a strip: enough to make the cost of starting it small, few enough to keep all threads busy.
+/// Number of filtered bytes in a strip: enough to make the cost of its start small, few enough to keep all threads
+/// busy.
 constexpr std::size_t strip_bytes = std::size_t(1) << 18;
 
 enum class Filter : std::uint8_t { sub = 1, up = 2 };
@@ -94,8 +96,8 @@ struct Workspace {
       : raw(rows * (row_size + 1)), row(row_size), above(row_size), deflater(raw.size()) {}
 };
 
-// Rows have `size` bytes, and a pixel has `pixel` bytes. Rows are pointers instead of spans, whose ends would be
-// reloaded after each written byte.
+// Rows have `size` bytes, and a pixel has `pixel` bytes. Rows are passed as pointers, because the end of a span would
+// be reloaded after each written byte.
 
 void filter_sub(const std::uint8_t* row, std::size_t pixel, std::size_t size, std::uint8_t* out) {
   std::copy_n(row, pixel, out);
@@ -106,8 +108,9 @@ void filter_up(const std::uint8_t* row, const std::uint8_t* above, std::size_t s
   for (std::size_t i = 0; i < size; ++i) out[i] = std::uint8_t(row[i] - above[i]);
 }
 
-/// Rows of a strip after filtering: Up, except for the first row, which must not depend on another strip. Paeth's
-/// filter, even without branches, makes saving 10 to 50 % slower, and pictures 7 % smaller to 4 % larger.
+/// Returns the filtered rows of a strip. The filter is Up, except for the first row, which must not depend on another
+/// strip. Paeth's filter, even without branches, makes saving 10 to 50 % slower, and pictures 7 % smaller to 4 %
+/// larger.
 std::span<const std::uint8_t> filtered_rows(const PngContents& contents, int first, int end, Workspace& space) {
   const std::size_t pixel = contents.pixel_bytes();
   const std::size_t size = std::size_t(contents.width) * pixel;
@@ -212,7 +215,7 @@ PngContents deep_colors(const ColorPlanes& planes) {
   return contents;
 }
 
-/// Directions: zero is exactly the middle value, and 1 is the greatest value.
+/// Stores directions. Zero becomes exactly the middle value, and 1 the greatest value.
 PngContents directions(const Image& image, int bits) {
   PngContents contents;
   contents.bits = bits;
@@ -307,7 +310,7 @@ PngContents id_map(const Image& image, const std::string& name) {
   return contents;
 }
 
-/// Luminance from 0 to 1, for masks.
+/// Stores luminance from 0 to 1 as grey, for masks.
 PngContents grey_picture(const Image& image) {
   PngContents contents;
   contents.color = Color::grey;

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double quarter_turn = 0.5 * std::numbers::pi;
 
-/// A camera looks along its node's -z, with y up. Cameras have no scale, so the axes are made orthonormal again.
+/// Returns the pose of a camera, which looks along its node's -z with y up. Cameras have no scale, so the axes are made
+/// orthonormal again. Empty if the node has no such axes.
 std::optional<glm::dmat4> rigid(const glm::dmat4& world) {
   const glm::dvec3 back(world[2]), up(world[1]);
   // The viewing direction is kept exactly and up is adjusted, because a sheared parent leaves them at an angle.
@@ -107,8 +108,8 @@ std::optional<Light> read_light(const JsonValue& json, std::vector<std::string>&
 /// Whether the light's kind uses a direction.
 bool has_direction(const Light& light) { return light.kind != Light::Kind::point; }
 
-/// A rigid transform at the node's place whose -z is the node's direction of -z, whatever its scale or shear. Empty if
-/// the node has no such direction.
+/// Returns a rigid transform at the node's place. Its -z is the node's direction of -z, whatever the node's scale or
+/// shear. Empty if the light needs a direction and the node has none.
 std::optional<glm::dmat4> placement(const Light& light, const glm::dmat4& world) {
   const double length = glm::length(glm::dvec3(world[2]));
   if (!has_direction(light) || !(length > 0 && std::isfinite(length))) {

@@ -3,7 +3,7 @@
 //
 //   buffer      bytes of the file, of a URI or of the GLB's second chunk
 //   view        a part of a buffer
-//   accessor    elements in a view: offset + (count - 1) * stride + size of an element must not exceed its length
+//   accessor    elements in a view: offset + (count - 1) * stride + size of an element must be within the view's length
 //
 // All numbers come from the file and may be anything. So the checks use differences and quotients of checked numbers
 // instead of sums and products, which could overflow. Later reads need no check.
@@ -23,7 +23,7 @@ namespace {
 constexpr const char* no_contents = "its buffer has no contents in this file";
 constexpr std::uint32_t component_codes[] = {5120, 5121, 5122, 5123, 5125, 5126};
 
-/// Empty for codes that glTF does not define.
+/// Returns the component type, or nothing for codes that glTF does not define.
 std::optional<Component> component_of(const JsonValue& json) {
   const std::uint64_t code = json.to_unsigned();
   for (const std::uint32_t known : component_codes)
@@ -45,10 +45,10 @@ const Shape* shape_of(const JsonValue& json) {
   return nullptr;
 }
 
-/// Layout of the components of one element. Columns of matrices start at multiples of four, and so do packed matrices;
-/// the last column has no padding behind it.
+/// Layout of the components of one element. Columns of matrices start at multiples of four bytes, and so do packed
+/// matrices; the last column has no padding behind it.
 struct RowLayout {
-  std::size_t column, column_stride;  ///< bytes of a column, and from one to the next
+  std::size_t column, column_stride;  ///< bytes of a column, and bytes from one column to the next
   int columns;
 
   RowLayout(const Shape& shape, Component component)
@@ -75,7 +75,7 @@ void check_bytes(const JsonValue& json, std::uint64_t offset, std::uint64_t size
               " are not within the buffer, which has " + std::to_string(buffer.length));
 }
 
-/// A copy of elements: address and stride of the components, and the target.
+/// A copy of elements: the address and stride of the source, the number of components, and the target.
 template <class Out>
 struct Copy {
   const std::byte* from;
@@ -138,7 +138,7 @@ void convert(const Accessor& accessor, const Copy<Out>& elements) {
   }
 }
 
-/// The first replacement whose element is not before `element`.
+/// Returns the number of the first replacement whose element is not before `element`.
 std::size_t lower_bound(const Sparse& sparse, std::size_t element) {
   std::size_t low = 0, high = sparse.count;
   while (low < high) {

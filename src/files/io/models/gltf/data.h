@@ -5,7 +5,7 @@
 //   GLB   | "glTF" | 2 | length |   | size | "JSON" | text ... |   | size | "BIN" | bytes ... |   | others
 //           12 bytes                  8 bytes                        8 bytes; may be missing         passed over
 //
-// Arrays may be compressed. Each decoder is an optional part of a build; io/absent.cpp stands for one that is left out.
+// Arrays may be compressed. Each decoder is an optional part of a build; io/absent.cpp replaces it if it is left out.
 //
 //   bufferViews[3]             --EXT_meshopt_compression----> bytes of the view
 //   meshes[0].primitives[0]    --KHR_draco_mesh_compression-> corners and attributes, as further accessors
@@ -63,9 +63,9 @@ struct Accessor {
   int rows = 0;  ///< components in a column; less than `components` for matrices
   bool normalized = false;
   Bytes bytes;                    ///< from the first element on; empty: all elements are zero
-  std::size_t stride = 0;         ///< from one element to the next
+  std::size_t stride = 0;         ///< bytes from one element to the next
   std::size_t size = 0;           ///< bytes of an element, from its first component to the end of its last
-  std::size_t column_stride = 0;  ///< from one column of an element to the next
+  std::size_t column_stride = 0;  ///< bytes from one column of an element to the next
   std::optional<Sparse> sparse;
   const char* unreadable = nullptr;  ///< the reason if its elements cannot be read, else null
 };
@@ -127,7 +127,7 @@ void read_integers(const Accessor& accessor, ElementRange range, int width, std:
 /// \throws Error file_malformed, unsupported.
 [[nodiscard]] std::vector<std::byte> decode_meshopt(const JsonValue& json, Bytes compressed, std::uint64_t length);
 
-/// Accessors of a primitive's decoded arrays.
+/// The numbers of the accessors of a primitive's decoded arrays.
 struct DecodedPrimitive {
   std::uint32_t indices = no_index;
   std::map<std::string, std::uint32_t> attributes;

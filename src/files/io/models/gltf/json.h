@@ -64,7 +64,7 @@ class JsonValue {
   /// Reads an array of exactly out.size() numbers.
   void to_numbers(std::span<double> out) const;
 
-  // Members with a default value if absent.
+  // The functions below read a member, and return a default value if it is absent.
   [[nodiscard]] bool bool_or(const char* key, bool absent) const { return read_or(key, absent, &JsonValue::to_bool); }
   [[nodiscard]] double number_or(const char* key, double absent) const {
     return read_or(key, absent, &JsonValue::to_number);
@@ -86,7 +86,7 @@ class JsonValue {
     for (int k = 0; k < Vector::length(); ++k) out[k] = typename Vector::value_type(numbers[k]);
   }
 
-  // Members that are arrays; an absent one counts as empty.
+  // The functions below read a member that is an array. An absent array counts as empty.
   [[nodiscard]] std::size_t count(const char* key) const;
   /// Calls read(JsonValue) with each element.
   template <class Read>

@@ -17,9 +17,9 @@ namespace {
 /// A run of a mesh's vertices that come from one vertex set.
 struct VertexRun {
   const VertexSet* vertices = nullptr;
-  ElementRange range;     ///< range of the accessors' elements; empty: no triangle uses them
+  ElementRange range;     ///< range of the accessors' elements; empty if no triangle uses the run
   std::size_t first = 0;  ///< first vertex in the mesh
-  std::string place;      ///< place of the first primitive that uses them
+  std::string place;      ///< place of the first primitive that uses the run
 };
 
 /// The values of a set of texture coordinates. Creates the set if absent.
@@ -29,7 +29,7 @@ std::vector<glm::vec2>& texcoords_of(Mesh& mesh, std::size_t set) {
   return mesh.further_texcoords[set - 1].values;
 }
 
-/// values[i] += weight * displacement i.
+/// Adds `weight` times the displacements of a morph target to the values of a run.
 template <class V>
 void add(const Data& data, const VertexRun& block, std::uint32_t accessor, double weight, std::vector<V>& values) {
   // A target may displace what the mesh lacks, for example normals; such displacements are ignored.
@@ -136,7 +136,8 @@ class MeshBuilder {
     std::size_t triangle = 0;
     for (const Run& run : runs_) {
       const VertexRun& block = blocks_[run.block];
-      // The shift wraps around if the mesh's vertices start before the accessor's; the sum is right nevertheless.
+      // The shift wraps around if the run starts earlier in the mesh than in the accessor; the sum is right
+      // nevertheless.
       const auto shift = std::uint32_t(block.first - block.range.first);
       for (const std::size_t end = triangle + run.triangle_count; triangle < end; ++triangle)
         mesh_.triangles[triangle] += shift;
@@ -176,8 +177,8 @@ class MeshBuilder {
       std::iota(out, out + range.count, std::uint32_t(range.first));
   }
 
-  /// Takes corners in the order that the format defines for each mode, which keeps the winding of a strip's odd
-  /// triangles.
+  /// Makes triangles with the corners in the order that the format defines for each mode. This order keeps the winding
+  /// of a strip's odd triangles.
   void read_strip_or_fan(const Primitive& primitive, std::size_t corner_count, std::span<glm::uvec3> triangles) const {
     if (triangles.empty()) return;
     budget_.charge(corner_count, sizeof(std::uint32_t), primitive.place, source_);
@@ -251,7 +252,8 @@ class MeshBuilder {
     budget_.charge(total, size, plan_.place, source_);
     if (total >= no_index) source_.fail_limit(plan_.place, "too many vertices");
     mesh_.positions.resize(total);
-    // Values for primitives that lack what another one has: a missing normal, texture coordinates 0, white.
+    // Default values for primitives without an attribute that another primitive has: no normal, texture coordinates 0,
+    // white.
     if (normals) mesh_.normals.values.resize(total, glm::vec3(0));
     for (std::uint32_t set = 0; set < max_texcoord_sets; ++set)
       if (sets >> set & 1) texcoords_of(mesh_, set).resize(total, glm::vec2(0));

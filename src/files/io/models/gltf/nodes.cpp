@@ -25,7 +25,7 @@ struct Counts {
 };
 
 glm::dmat4 read_transform(const JsonValue& json) {
-  // The format forbids nodes with both; exporters that write both mean the matrix.
+  // The format forbids nodes with a matrix and other transforms. Exporters that write both mean the matrix.
   glm::dmat4 matrix;
   if (json.read_numbers("matrix", {&matrix[0][0], 16})) {
     constexpr double tolerance = 1e-6;  // exporters that use floats
@@ -51,7 +51,8 @@ std::uint32_t copy_attribute(const JsonValue& attributes, const char* key, int c
   const std::uint32_t id = data.readable_accessor(*json);
   const Accessor& accessor = data.accessor(id);
   if (accessor.components != components) json->fail("the accessor's type does not fit");
-  // The test is for an earlier attribute, not for its elements, because later code uses one count for all attributes.
+  // The test is whether an attribute came before, not whether it had elements, because later code uses one count for
+  // all.
   const bool is_first = copies.translation == no_index && copies.rotation == no_index && copies.scale == no_index;
   if (!is_first && copies.count != accessor.count) json->fail("has another number of elements than earlier attributes");
   copies.count = accessor.count;
@@ -88,7 +89,7 @@ Node read_node(const JsonValue& json, const Counts& counts, const Data& data) {
   return node;
 }
 
-/// Gives each node its parent. With at most one parent each, the graph is a forest with unique world transforms.
+/// Gives each node its parent. No node may have two, so that the graph is a forest with unique world transforms.
 void find_parents(std::vector<Node>& nodes, const ModelSource& source) {
   for (std::size_t i = 0; i < nodes.size(); ++i)
     for (const std::uint32_t child : nodes[i].children) {
@@ -99,8 +100,8 @@ void find_parents(std::vector<Node>& nodes, const ModelSource& source) {
     }
 }
 
-/// The nodes from `starts` downwards, in order, each before its children. The stack is explicit, since trees may be a
-/// million levels deep.
+/// Returns the nodes from `starts` downwards, in order, each before its children. The stack is explicit, because trees
+/// may be a million levels deep.
 std::vector<std::uint32_t> walk(const std::vector<Node>& nodes, std::vector<std::uint32_t> starts) {
   std::vector<std::uint32_t> order, stack(starts.rbegin(), starts.rend());
   std::vector<bool> seen(nodes.size());
@@ -264,7 +265,7 @@ class PosedMeshes {
       source_.fail(node.place + ".weights", std::to_string(node.weights.size()) + " weights for " +
                                                 std::to_string(plan.target_count) + " morph targets");
     VertexPose pose{node.weights.empty() ? plan.weights : node.weights};
-    // Each node stores and compares weights, even those that come from its mesh.
+    // Weights are charged, because each node stores and compares them, even if they come from its mesh.
     budget_.charge(pose.weights.size(), sizeof(double), node.place, source_);
     if (skinned) pose.joints = skins_[node.skin].joints, pose.origin = skins_[node.skin].origin;
     // The skin's number stands for its joints in the key, because comparing matrices would cost more than posing.

@@ -97,7 +97,7 @@ class Planner {
       plan.primitives.push_back(*std::move(primitive));
     }
     plan.target_count = target_count.value_or(0);
-    // A mesh of only points and lines has no plan in which targets are counted.
+    // In a mesh of only points and lines, no morph targets were counted.
     if (!plan.weights.empty() && !plan.primitives.empty() && plan.weights.size() != plan.target_count)
       json_.fail(std::to_string(plan.weights.size()) + " weights for " + std::to_string(plan.target_count) +
                  " morph targets");
