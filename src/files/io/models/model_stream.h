@@ -30,10 +30,10 @@ class ModelStream {
  public:
   virtual ~ModelStream() = default;
 
-  /// The scene without triangles: at most one mesh, without vertices, and its instance; materials, textures, up axis,
-  /// and warnings. Warnings are complete after the last fetch().
+  /// The scene without triangles. It has at most one mesh, which is empty, with its instance, and materials, textures,
+  /// up axis and warnings. Warnings are complete after the last fetch().
   [[nodiscard]] const Scene& scene() const { return scene_; }
-  /// The source, for its name: warnings in scene() lack the model's name, as readers write them.
+  /// The source, which has the model's name. Warnings in scene() lack this name, as readers write them.
   [[nodiscard]] const ModelSource& source() const { return source_; }
   /// Sets the members of the scene that load() adds to a reader's scene.
   void introduce(std::string name, Axis up, SceneSource source) {
@@ -75,9 +75,9 @@ struct StreamStart {
   std::shared_ptr<OpenedFiles> opened;
   bool has_ended = false;  ///< whether `start` is the whole file
 
-  /// The size of the file; empty for a pipe that goes on.
+  /// The size of the file, or nothing for a pipe that has not ended.
   [[nodiscard]] std::optional<std::uint64_t> size() const;
-  /// The size of the file; for a pipe that goes on, a number greater than any file's size.
+  /// The size of the file, or a number greater than any file's size for a pipe that has not ended.
   [[nodiscard]] std::uint64_t greatest_size() const { return size().value_or(std::uint64_t(1) << 62); }
   /// Reads on until `start` has `size` bytes or the file ends.
   void extend(std::size_t size);

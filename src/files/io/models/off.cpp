@@ -3,10 +3,10 @@
 // in any order, as other programs write them.
 //
 //   COFF
-//   4 2 0                        vertices, faces, edges (nobody needs the last)
+//   4 2 0                        vertices, faces, edges (which are not used)
 //   0 0 0   1 0 0 1              a vertex; behind it with N a normal, with C a colour, with ST u v
 //   ...
-//   3 0 1 2   0.5 0.5 0.5        a face: how many corners, which, and perhaps a colour of its own
+//   3 0 1 2   0.5 0.5 0.5        a face: the number of corners, the corners, and perhaps a colour of its own
 //
 // Colours range from 0 to 1 or from 0 to 255; only the greatest value of all tells which. Counts are checked against
 // the file's length before memory is allocated.
@@ -156,7 +156,7 @@ class OffReader {
           "vertices: the numbers after the coordinates are not read; C, N or ST before OFF would say what they are");
   }
 
-  /// Reads the remaining numbers of the line, at most six. \returns how many there are.
+  /// Reads the remaining numbers of the line, at most six. \returns their number.
   int rest_of_row(float (&values)[6]) {
     int count = 0;
     while (count < 6 && !text_.at_line_end() && text_.number(values[count])) ++count;

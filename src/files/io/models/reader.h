@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers, one a format, and their context beside a model's bytes: name, neighbouring files, execution. Also
-// conversions of texts of the file to names in a scene and to parts of messages.
+// The readers, one per format, and what they need beside a model's bytes: its name, the files next to it, the
+// execution. Texts of a file are turned into names in a scene and parts of messages here.
 //
 // A model is untrusted: it may name any file, and hold any bytes as a name. So files beside it are opened here only,
 // within the model's folder. Texts pass through name_of(), printable() and in_quotes(), which shorten them and remove
@@ -72,7 +72,7 @@ class ModelSource {
   /// file_unreadable if it is missing, no ordinary file, or outside the model's folder (by name or through links) and
   /// the allowed folders; limit_exceeded. what() starts with the model's name and `reference`.
   [[nodiscard]] InputFile open(const std::string& reference, std::uint64_t max_bytes) const;
-  /// The real path of that file, without links. \throws Error as open() does.
+  /// Returns the real path of such a file, without links. \throws Error as open() does.
   [[nodiscard]] std::filesystem::path path_of(const std::string& reference) const;
 
   /// Tells that `part` of the model's bytes was read for the last time, which keeps memory in use low.
@@ -139,10 +139,10 @@ inline constexpr std::size_t longest_name = 1024;
 /// A word of a file for messages: in quotes, and not longer than a line.
 [[nodiscard]] std::string in_quotes(std::string_view word);
 
-// Each reader turns bytes into a scene that frontmost::validate() accepts, keeps order and number
-// of the file's triangles (degenerate ones too), and keeps the file's units. load() validates, and adds the scene's
-// name and up axis. Bad bytes cause an Error "name: place: reason". Tolerable faults go to Scene::warnings as "place:
-// reason"; load() prepends the file's name.
+// Each reader turns bytes into a scene that frontmost::validate() accepts, keeps order and number of the file's
+// triangles (degenerate ones too), and keeps the file's units. load() validates, and adds the scene's name and up axis.
+// Bad bytes cause an Error "name: place: reason". Tolerable faults go to Scene::warnings as "place: reason"; load()
+// prepends the file's name.
 
 [[nodiscard]] Scene read_stl(Bytes bytes, const ModelSource& source);
 [[nodiscard]] Scene read_ply(Bytes bytes, const ModelSource& source);
@@ -161,11 +161,12 @@ inline constexpr std::size_t longest_name = 1024;
 /// The warning about a model without triangles, whole or streamed.
 inline constexpr const char* no_triangles_warning = "the file holds no triangles";
 
-/// The format of a file's suffix; empty if no reader has it.
+/// Returns the format that a file's suffix stands for, or nothing if there is no reader for it.
 [[nodiscard]] std::optional<ModelFormat> format_of_suffix(const std::string& path);
-/// The up axis of files in a format, unless the user says otherwise. Precondition: no scene file, which may state it.
+/// The up axis of files in a format, unless the user says otherwise. Precondition: not a scene file, which may state
+/// its own.
 [[nodiscard]] Axis default_up(ModelFormat format);
-/// The format that the contents look like; empty if no reader has it.
+/// Returns the format that the contents look like, or nothing if there is no reader for it.
 [[nodiscard]] std::optional<ModelFormat> format_of_content(Bytes bytes);
 
 enum class StlEncoding : std::uint8_t { binary, ascii, neither };
@@ -177,19 +178,19 @@ enum class StlEncoding : std::uint8_t { binary, ascii, neither };
 /// - neither: anything else. At least 84 bytes that are no text may be a broken binary file, but only the caller knows
 ///   whether the file's name says STL.
 [[nodiscard]] StlEncoding stl_encoding(Bytes start, std::uint64_t file_size);
-/// The encoding of a file that should be STL; binary for one that may be a broken binary file. \throws Error with the
+/// Returns the encoding of a file that should be STL: binary if it may be a broken binary file. \throws Error with the
 /// reason if it is neither.
 [[nodiscard]] StlEncoding known_stl_encoding(Bytes start, std::uint64_t file_size, const ModelSource& source);
 
 // Formats that are not read, and programs that convert them.
 
-/// Advice for a file in a format that is known but not read, with the command line that converts it. The suffix of
-/// `path` decides; empty for other suffixes.
+/// Returns advice for a file in a format that is known by its suffix but not read: the command line that converts the
+/// file. Empty for other suffixes.
 [[nodiscard]] std::optional<std::string> conversion_by_suffix(const std::string& path);
-/// Advice by the first bytes, for input without a suffix such as standard input.
+/// Returns such advice by the first bytes, for input without a suffix such as standard input.
 [[nodiscard]] std::optional<std::string> conversion_by_content(Bytes bytes);
-/// Advice for the glTF file `path`, by extensions that it requires or uses. Empty if no program is known for any of
-/// them.
+/// Returns such advice for the glTF file `path`, by extensions that it requires or uses. Empty if no program is known
+/// for any of them.
 [[nodiscard]] std::optional<std::string> conversion_of_extensions(const std::vector<std::string>& names,
                                                                   const std::string& path);
 

@@ -35,8 +35,8 @@ inline constexpr double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1
 
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Whether rounding a correctly rounded double to float is correct. False if the double is half way between two floats,
-/// because digits that it lost would decide, and where floats get sparser (subnormal) or end.
+/// Whether a correctly rounded double can be rounded to the correct float. False if the double is half way between two
+/// floats, because the digits that it lost would decide. False also where floats get sparser (subnormal) or end.
 inline bool rounds_once(double magnitude) {
   std::uint64_t bits;
   std::memcpy(&bits, &magnitude, sizeof bits);
@@ -45,7 +45,7 @@ inline bool rounds_once(double magnitude) {
 }
 
 /// Reads [+-]digits[.digits] with at most 15 digits. \returns the first character after the number; null if there is no
-/// number, or if it is longer or goes on.
+/// number, or if it has more digits or goes on, for example with an exponent.
 inline const char* parse_short(const char* at, const char* end, double& value) {
   const char* p = at;
   const bool negative = p != end && *p == '-';
@@ -119,8 +119,8 @@ inline const char* parse_integer(const char* at, const char* end, std::int64_t& 
   return p;
 }
 
-/// Lines end with \n, \r\n or \r. If `comments` says so, a word that starts with '#' ends its line. A backslash at the
-/// end of a line joins it with the next one.
+/// Reads a text word by word. Lines end with \n, \r\n or \r. If `comments` says so, a word that starts with '#' ends
+/// its line. A backslash at the end of a line joins it with the next one.
 class TextScanner {
  public:
   enum class Comments : bool { none, hash };

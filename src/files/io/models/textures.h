@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures that a model names as files, for colours and for alpha. A file that cannot be read causes a warning, no
+// Textures that a model names as files, for colours and for alpha. A file that cannot be read causes a warning, not an
 // error. Also adapts materials whose texture cannot be used.
 #pragma once
 
@@ -35,7 +35,7 @@ class PixelBudget {
 /// The files of a texture. An empty name means that there is no such file.
 struct TextureParts {
   std::string color = {};
-  std::string alpha = {};  ///< if equal to `color`: the alpha of its own pixels
+  std::string alpha = {};  ///< if equal to `color`, the alpha of that file's own pixels
   Texture::Wrap wrap = Texture::Wrap::repeat;
 };
 
@@ -66,8 +66,8 @@ class TextureFiles {
   std::map<std::tuple<std::string, std::string, Texture::Wrap>, MadeTexture> known_;
 };
 
-// A factor is the greatest value of its texture, not a mean. If the texture says which parts glow or are metal, the
-// factor alone would make all parts so.
+// A factor is the greatest value of its texture, not a mean. If a texture says which parts glow or are metal, the
+// factor without the texture would make all parts so.
 
 /// Makes the material not glow. `who` names the material in the warning.
 void lose_emissive_texture(Material& material, const std::string& who, std::vector<std::string>& warnings);

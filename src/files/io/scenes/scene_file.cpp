@@ -2,7 +2,7 @@
 // Parses the text of scene files, and of files that assign categories to the objects of a scene. Names of categories
 // and materials become numbers here, so that only models are left to be found.
 //
-// Objects have a pose, by rows as in pose files of cameras, or the separate parts that glTF and data sets use:
+// The pose of an object is given by rows, as in pose files of cameras, or by the parts that glTF and data sets use:
 //
 //   "pose": 16 or 12 numbers, or rows of four, or the name of a file that holds them
 //   "translation": 3 numbers    "rotation": 4 (a quaternion x, y, z, w) or 9 (a matrix by rows)    "scale": 1 or 3
@@ -202,7 +202,8 @@ glm::dmat4 read_matrix(const JsonValue& object, const JsonValue& value) {
   object.require("pose_convention").fail("must be model-to-world or world-to-model");
 }
 
-/// A rotation by nine numbers, orthonormal within the rounding errors of data sets.
+/// Returns the rotation that nine numbers give by rows. They must be orthonormal within the rounding errors of data
+/// sets.
 glm::dmat4 rotation_by_rows(const JsonValue& place, const std::vector<double>& numbers) {
   constexpr double tolerance = 1e-4;
   glm::dmat3 rotation;
@@ -307,7 +308,7 @@ class CategoryNames {
 
  private:
   std::vector<Category>& categories_;
-  std::map<std::string, std::uint32_t> numbers_;  ///< in the list
+  std::map<std::string, std::uint32_t> numbers_;  ///< index in `categories_`, by name
   bool is_listed_ = false;
 };
 

@@ -17,7 +17,7 @@ namespace frontmost {
 
 /// Replaces materials of a model by materials of SceneFile::materials.
 struct Replacement {
-  std::uint32_t of_all = no_index;             ///< no_index: only the materials in `named` are replaced
+  std::uint32_t of_all = no_index;             ///< replaces all materials; no_index: only those in `named` are replaced
   std::map<std::string, std::uint32_t> named;  ///< by the names of the model's materials
   // Compared without <=>, which std::map lacks in some standard libraries (WebAssembly).
   friend bool operator<(const Replacement& a, const Replacement& b) {
@@ -35,7 +35,7 @@ struct PlacedModel {
   std::optional<Axis> up;                 ///< up axis of the model, which is turned to that of the scene
   std::optional<double> metres_per_unit;  ///< unit of the model; overrides the model's file
   Replacement replacement;
-  bool has_parts = false;  ///< the model's objects stay separate
+  bool has_parts = false;  ///< whether the model's objects stay separate
 };
 
 struct SceneFile {

@@ -78,7 +78,7 @@ Attribute<glm::vec2> joined_texcoords(const std::vector<PartOfModel>& parts, std
       [](const glm::vec2& value, const PartOfModel&) { return value; });
 }
 
-/// One material a triangle, or a single one if all are the same.
+/// Returns one material per triangle, or a single one if all are the same.
 std::vector<std::uint32_t> joined_materials(const std::vector<PartOfModel>& parts) {
   std::vector<std::uint32_t> ids;
   for (const PartOfModel& part : parts)
@@ -103,7 +103,8 @@ std::vector<std::uint32_t> joined_faces(const std::vector<PartOfModel>& parts) {
   return ids;
 }
 
-/// The smallest rotation that takes one axis to another. A half turn is about x, or about y if both axes lie along x.
+/// Returns the smallest rotation that turns one axis to another. A half turn is about x, or about y if both axes lie
+/// along x.
 glm::dmat4 turn_between(Axis from, Axis to) {
   const glm::dvec3 a = direction(from), b = direction(to), c = glm::cross(a, b);
   if (a == b) return glm::dmat4(1.0);
@@ -113,7 +114,7 @@ glm::dmat4 turn_between(Axis from, Axis to) {
     for (int i = 0; i < 3; ++i) half[i][i] = about[i] == 0 ? -1 : 1;
     return half;
   }
-  // The rotation takes a to b and b to -a, and keeps c.
+  // The rotation turns a to b and b to -a, and keeps c.
   return glm::dmat4(glm::outerProduct(b, a) - glm::outerProduct(a, b) + glm::outerProduct(c, c));
 }
 
@@ -157,8 +158,8 @@ RigidPlace rigid_place(const glm::dmat4& placed) {
   return {glm::dmat4(glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0), placed[3]), length};
 }
 
-/// A camera of the model in the scene. Lengths (planes, the height of a parallel projection) are scaled by the
-/// transform's factor along the viewing direction.
+/// Returns a camera of the model, placed in the scene. Lengths (planes, the height of a parallel projection) are scaled
+/// by the transform's factor along the viewing direction.
 Camera transformed(Camera camera, const glm::dmat4& scene_from_model) {
   const RigidPlace place = rigid_place(scene_from_model * camera.world_from_eye);
   camera.world_from_eye = place.world_from_thing;
@@ -168,7 +169,7 @@ Camera transformed(Camera camera, const glm::dmat4& scene_from_model) {
   return camera;
 }
 
-/// A light of the model in the scene. An object that is scaled with the light is as bright as before.
+/// Returns a light of the model, placed in the scene. An object that is scaled with the light is as bright as before.
 Light transformed(Light light, const glm::dmat4& scene_from_model) {
   const RigidPlace place = rigid_place(scene_from_model * light.world_from_light);
   light.world_from_light = place.world_from_thing;
@@ -295,8 +296,8 @@ class SceneReader {
   }
 
  private:
-  /// Groups the objects by their model, as told by the path of its file. Models are in the order of their first
-  /// objects.
+  /// Groups the objects by their model, which is identified by the path of its file. Models are in the order of their
+  /// first objects.
   void find_models() {
     std::map<std::string, std::size_t> by_reference, by_path;
     for (std::size_t i = 0; i < file_.objects.size(); ++i) {

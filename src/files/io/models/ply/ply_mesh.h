@@ -287,7 +287,7 @@ inline glm::vec4 color(const FloatRow& row) {
   return linear_color(glm::vec4(three(row, Role::red), row[std::size_t(Role::alpha)]));
 }
 
-/// Reads a value into `row` if its role has a place there. \returns whether it has one.
+/// Reads a value into `row` if its role has a place there. \returns false if it has none.
 template <class Rows>
 bool read_float(Rows& rows, const Column& column, FloatRow& row) {
   if (column.property.is_list || std::size_t(column.role) >= float_roles) return false;
@@ -361,7 +361,7 @@ class VertexReader {
   bool has_normals_ = false, has_texcoords_ = false, has_colors_ = false;
 };
 
-/// Vertices are numbered as in the file.
+/// The vertices of a whole file, which have the same numbers in the mesh.
 struct AllVertices {
   [[nodiscard]] std::uint64_t count(const Mesh& mesh) const { return mesh.positions.size(); }
   std::uint32_t operator()(std::uint64_t index, Mesh&) { return std::uint32_t(index); }

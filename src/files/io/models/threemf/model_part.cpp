@@ -92,7 +92,7 @@ constexpr Rule rules[] = {
     {Tag::build, core, "item", Tag::item},
 };
 
-/// `core_space` is the prefix that this file's names of core tags have.
+/// Returns the meaning of a tag within `parent`. `core_space` is the prefix of core tags in this file.
 Tag tag_of(Tag parent, std::string_view name, std::string_view core_space) {
   for (const Rule& rule : rules) {
     if (rule.parent != parent || !name.ends_with(rule.name)) continue;
@@ -256,7 +256,7 @@ class ModelPartReader : public XmlPart {
     ModelPartReader& reader_;
   };
 
-  /// Warns about the first of each kind, because a file may hold millions.
+  /// Warns about the first fault of each kind, because a file may hold millions.
   void warn_once(const std::string& kind, const std::string& what) {
     if (warned_.insert(kind).second) part_.warnings.push_back(place() + ": " + what);
   }
@@ -306,7 +306,7 @@ class ModelPartReader : public XmlPart {
     group_->element = name.substr(name.rfind('|') + 1);
   }
 
-  /// Reads a colour. \returns white if the value is none.
+  /// Reads a colour. \returns white if the value is no colour.
   static glm::vec4 color(const TagReader& tags, std::string_view name) {
     const char* const value = tags.find(name);
     const std::optional<glm::vec4> color = value == nullptr ? std::nullopt : parse_color(value);

@@ -84,7 +84,7 @@ class Painter {
     return group_;
   }
 
-  /// Warns once a part, because a file may hold millions of such triangles.
+  /// Warns once per part, because a file may hold millions of such triangles.
   void warn(std::size_t triangle, const std::string& reason) {
     if (std::exchange(has_warned_, true)) return;
     scene_.warnings.push_back(printable(part_.name) + ": line " + std::to_string(object_.line) + ": triangle " +

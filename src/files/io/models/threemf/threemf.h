@@ -25,7 +25,7 @@ struct XML_ParserStruct;
 
 namespace frontmost::threemf {
 
-/// A part's name without its leading slash, for messages and for this class: "3D/3dmodel.model".
+/// A part's name without its leading slash, for messages and for Package: "3D/3dmodel.model".
 [[nodiscard]] std::string part_name(std::string_view reference);
 
 class Package {
@@ -44,7 +44,7 @@ class Package {
   struct Close {
     void operator()(zip* archive) const;
   };
-  /// Normalises the case of a part's name, because names differ only without regard to case.
+  /// Returns a part's name in lower case, because names that differ in case only are equal.
   [[nodiscard]] static std::string key_of(const std::string& part);
 
   const ModelSource& source_;
@@ -118,7 +118,7 @@ class XmlPart {
 /// \throws Error file_malformed if no part is a model.
 [[nodiscard]] std::string find_start_part(Package& package, const ModelSource& source);
 
-/// Colours or materials. Triangles refer to them by the group's number and an index in the group.
+/// A group of colours or materials. Triangles refer to them by the group's number and an index in the group.
 struct PropertyGroup {
   enum class Kind : std::uint8_t { materials, colors, unknown };
   Kind kind = Kind::unknown;
@@ -128,7 +128,7 @@ struct PropertyGroup {
   std::vector<glm::vec4> colors;  ///< linear, for groups of colours
 };
 
-/// Indices in a group: one for all corners, or one for each. no_index: none.
+/// Indices of a triangle's corners in a group: the same for all corners, or one for each. no_index means none.
 struct Property {
   std::uint32_t group = no_index;
   std::array<std::uint32_t, 3> corners{no_index, no_index, no_index};
@@ -147,7 +147,7 @@ struct Object {
   std::size_t line = 0;
   std::uint32_t mesh = no_index;              ///< number in the scene; none for objects of components
   Property property;                          ///< for triangles without one of their own
-  std::vector<Property> triangle_properties;  ///< one a triangle, or none
+  std::vector<Property> triangle_properties;  ///< one per triangle, or none at all
   std::vector<PlacedObject> components;
 };
 
