@@ -66,8 +66,7 @@ class BoundedDecoder : public Decoder {
  protected:
   bool DecodeAllAttributes() override {
     const draco::PointCloud& cloud = *this->point_cloud();
-    std::uint64_t size = bytes_of_value * (1 + std::uint64_t(this->num_attributes_decoders()));  // a mesh may have no
-                                                                                                 // such decoder
+    std::uint64_t size = bytes_of_value * (1 + std::uint64_t(this->num_attributes_decoders()));  // perhaps 0
     for (int i = 0; i < cloud.num_attributes(); ++i)
       size += bytes_of_value + 3 * std::uint64_t(cloud.attribute(i)->byte_stride());
     return memory_.take(cloud.num_points(), size) && Decoder::DecodeAllAttributes();
