@@ -20,11 +20,11 @@ namespace frontmost::cli {
 struct Command {
   std::string_view name;
   unsigned bit;               ///< bit in Option::commands; 0: no options
-  std::string_view argument;  ///< as usage lines show it; "..." at its end: several may be given; in [ ]: it may be
-                              ///< left out; after a blank a second one, an object of the model
+  std::string_view argument;  ///< as usage lines show it; with "..." at its end, several may be given; in [ ], it may
+                              ///< be left out; a second argument behind a blank is an object of the model
   std::string_view summary;
   std::string_view details;
-  std::string_view examples;  ///< one a line: command, two blanks or more, its effect
+  std::string_view examples;  ///< one per line: the command, two or more blanks, and its effect
   int (*run)(const Settings&);
 
   /// The argument's name without further signs.
@@ -35,7 +35,7 @@ struct Command {
 };
 
 [[nodiscard]] std::span<const Command> commands();
-/// Null if no command has that name.
+/// Returns the command of that name, or null if there is none.
 [[nodiscard]] const Command* find_command(std::string_view name);
 
 int run_render(const Settings& settings);
@@ -62,7 +62,7 @@ int run_batch_merge(const Settings& settings);
 [[nodiscard]] std::string help_overview();
 [[nodiscard]] std::string help_for(const Command& command);
 [[nodiscard]] std::string man_page();
-/// A script for bash, zsh or fish. \throws UsageError for other shells.
+/// Returns a script for bash, zsh or fish. \throws UsageError for other shells.
 [[nodiscard]] std::string completion_script(std::string_view shell);
 
 }  // namespace frontmost::cli

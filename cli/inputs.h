@@ -37,7 +37,7 @@ class InputFiles {
 /// UsageError if an output would replace one of them.
 void refuse_outputs_beside(const std::vector<std::filesystem::path>& used, const std::vector<std::string>& outputs);
 
-/// Execution with the requested threads and instruction set, which reports interruptions.
+/// Returns an Execution with the requested threads and instruction set, which reports interruptions.
 [[nodiscard]] Execution execution_for(const RunSettings& settings, const Progress& progress);
 /// Loads the model and prints the reader's warnings to standard error unless quiet: a few, then the number of others.
 /// \throws UsageError if one of `outputs` would replace a file that the model uses, such as a texture.

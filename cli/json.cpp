@@ -39,7 +39,8 @@ void append(const Json& json, std::size_t indent, std::string& text) {
   }
 }
 
-constexpr std::string_view list_indent = "    ";  // of an element: one level for the object, one for the list
+constexpr std::string_view list_indent = "    ";  // indentation of an element: one level for the object, and one for
+                                                  // the list
 
 /// dump() without the line break at its end.
 std::string text_of(const Json& json) {

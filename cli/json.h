@@ -32,7 +32,7 @@ template <int n, class T>
   return rows;
 }
 
-/// The value, or null if it is infinite, since JSON has no infinity (an infinite far plane).
+/// The value, or null if it is infinite (as a far plane may be), because JSON has no infinity.
 [[nodiscard]] inline Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 /// The least, median and greatest of several times. Precondition: not empty.

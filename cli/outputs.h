@@ -18,7 +18,7 @@ struct FileToWrite {
   std::string path;  ///< "-" is standard output
   ImageFormat format;
   std::vector<OutputKind> kinds;
-  std::optional<int> layer = std::nullopt;  ///< with --layers: its layer
+  std::optional<int> layer = std::nullopt;  ///< the layer of the file, with --layers
 };
 
 /// The format of a suffix; empty if it names no image format.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts text to values by std::from_chars: independent of the locale, with errors for trailing text and hexadecimal.
+// Converts text to values by std::from_chars, whatever the locale. Trailing text and hexadecimal numbers are errors.
 #include "cli/values.h"
 
 #include <fmt/format.h>
@@ -21,8 +21,8 @@ std::string_view without_plus(std::string_view text) {
   return text.size() > 1 && text[0] == '+' && text[1] != '-' ? text.substr(1) : text;
 }
 
-/// A number that from_chars() refuses because it rounds to infinity or to zero. Precondition: the whole text is a
-/// number.
+/// Returns a number that from_chars() refuses because it rounds to infinity or to zero. Precondition: the whole text is
+/// a number.
 double beyond_doubles(std::string_view text) { return std::strtod(std::string(text).c_str(), nullptr); }
 
 std::optional<double> to_double(std::string_view text) {

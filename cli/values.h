@@ -20,7 +20,8 @@ struct NumberLimits {
 };
 inline constexpr NumberLimits any_number{-1e30, 1e30};
 
-/// All functions throw UsageError with what is wrong and what would be right; the caller prepends the flag's name.
+/// All functions below throw UsageError, which says what is wrong and what would be right. The caller prepends the
+/// flag's name.
 [[nodiscard]] double parse_number(std::string_view text, const NumberLimits& range = any_number);
 [[nodiscard]] int parse_integer(std::string_view text, const NumberLimits& range);
 /// Exactly `count` numbers, or between `count` and `most`, separated by commas.
@@ -36,8 +37,8 @@ inline constexpr NumberLimits any_number{-1e30, 1e30};
 /// 16 numbers (or 12: the last row is 0 0 0 1), row by row, separated by commas, blanks, brackets and semicolons. Empty
 /// if the text holds no numbers.
 [[nodiscard]] std::optional<glm::dmat4> parse_matrix(std::string_view text);
-/// Parts of parse_matrix(): the first removes the next number from the text and returns it, empty at the end. The
-/// second makes the matrix.
+/// Parts of parse_matrix(). The first one removes the next number from the text and returns it, or returns an empty
+/// text at the end. The second one makes the matrix.
 [[nodiscard]] std::string_view take_matrix_word(std::string_view& text);
 [[nodiscard]] glm::dmat4 matrix_of(std::vector<double> values);
 /// Text for error messages: shortened() cuts long text; quoted() also adds quotes.

@@ -75,7 +75,7 @@ std::string transparency(const Comparisons& all) {
       grouped(seen_through), spots(all.view));
 }
 
-/// Empty for methods that make no mistakes.
+/// Returns a sentence about a method's mistakes, or nothing if it makes none by design.
 std::optional<std::string> mistakes(const Compared& compared, const Comparisons& all) {
   if (compared.wrong_by_design() == 0) return std::nullopt;
   return fmt::format("{}: wrong in {} of {} {}, by design.", compared.run.method->title,

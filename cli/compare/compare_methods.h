@@ -17,7 +17,7 @@
 
 namespace frontmost::cli {
 
-/// A step that took time, once or several times; milliseconds.
+/// A step of the work, and the milliseconds that it took each time.
 struct Stage {
   std::string name;
   std::vector<double> times;
@@ -62,7 +62,7 @@ struct ComparedMethod {
   bool is_naive = false;  ///< known to be wrong: shown, but not counted among those that agree
 };
 
-/// The others are compared with the first method.
+/// Returns the compared methods. All others are compared with the first one.
 [[nodiscard]] std::span<const ComparedMethod> compared_methods();
 
 /// The run of one method.

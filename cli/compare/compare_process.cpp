@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The child process runs a method and sends the result through a pipe: first how it ended, then numbers and planes as
-// they lie in memory.
+// The child process runs a method and sends the result through a pipe: first how the run ended, then numbers and planes
+// as they lie in memory.
 #include <fmt/format.h>
 #include <frontmost/files.h>
 #include <malloc.h>
@@ -137,7 +137,7 @@ MethodRun run_here(const ComparedMethod& method, const Settings& settings) {
   MethodRun run;
   const std::uint64_t before = start_counting_memory();
   for (int i = 0; i < settings.compare.most_runs(); ++i) {
-    run.answer = {};  // same state as before the first run
+    run.answer = {};  // so that each run begins in the same state
     const Stopwatch watch;
     run.answer = method.answer(*surfaces, view, execution, clock);
     if (i == 0) run.peak_bytes = std::max(status_bytes("VmHWM"), before) - before;

@@ -15,7 +15,7 @@ struct Compared {
   MethodRun run;
   Agreement agreement;
 
-  /// Differences that nothing explains: mistakes, unless the method is known to make some.
+  /// The number of differences that nothing explains; 0 for a method that is known to be wrong.
   [[nodiscard]] std::uint64_t unexplained() const { return run.method->is_naive ? 0 : wrong(); }
   [[nodiscard]] std::uint64_t wrong_by_design() const { return run.method->is_naive ? wrong() : 0; }
 

@@ -33,7 +33,7 @@ struct CylinderCount {
 };
 constexpr std::uint64_t most_for_cylinders = 200'000;  // triangles, which take a fifth of a second
 
-constexpr std::size_t lines_shown = 20;  // objects, materials, cameras, lights; JSON has all
+constexpr std::size_t lines_shown = 20;  // most lines for objects, materials, cameras or lights; JSON has all
 constexpr std::string_view axis_names[] = {"+x", "+y", "+z", "-x", "-y", "-z"};
 constexpr std::string_view alpha_names[] = {"opaque", "mask", "blend"};
 constexpr std::string_view light_names[] = {"sun", "point", "spot"};
@@ -186,8 +186,8 @@ std::string light_line(const LightReport& light, const glm::dvec3& origin) {
 
 /// A line about positions that floats may be too coarse for, or about the origin that prevents this.
 std::string rounding_line(const SceneReport& report) {
-  constexpr double coarse = 1e-6;  // of the diagonal: a thousandth of a pixel in a picture of the whole model
-  constexpr double wide = 1e-3;    // in any unit: from 16384 units on, details may be smaller
+  constexpr double coarse = 1e-6;  // part of the diagonal: a thousandth of a pixel in a picture of the whole model
+  constexpr double wide = 1e-3;    // in the model's unit: coordinates beyond 16384 are rounded by as much
   const bool is_away = report.origin != glm::dvec3(0);
   const double worth_telling = std::min(wide, coarse * double(report.bounds.diagonal()));
   if (!is_away && report.rounding <= worth_telling) return {};
@@ -247,7 +247,7 @@ std::optional<ModelUnit> unit_of_model(const SceneReport& report, std::optional<
   return likely.size() == 1 ? std::optional(ModelUnit{likely.front(), true}) : std::nullopt;
 }
 
-/// Empty for models with too many triangles.
+/// Counts the cylinders. Returns nothing for models with too many triangles.
 std::optional<CylinderCount> count_cylinders(const Scene& scene, const Execution& execution) {
   if (triangle_count(scene) > most_for_cylinders) return std::nullopt;
   constexpr double whole_turn = 2 * glm::pi<double>() - 0.01;

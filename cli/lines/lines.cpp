@@ -89,7 +89,8 @@ std::optional<PageFormat> format_of(const std::string& path, const DrawingSettin
   return page_format(path) ? page_format(path) : settings.format;
 }
 
-/// Writes all outputs. Plotters get the page as paths; programs that read DXF know line types.
+/// Writes all outputs. DXF files get `page`, because programs that read them know line types. Other files get
+/// `plotted`, which has real dashes for plotters.
 void write(const Page& page, const Page& plotted, const Settings& settings, const Execution& execution) {
   for (const std::string& path : settings.drawing.outputs) {
     stop_if_interrupted();

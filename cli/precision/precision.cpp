@@ -63,7 +63,7 @@ ViewSettings with_far(const Settings& settings) {
   return view;
 }
 
-/// The requested buffer, or those in common use.
+/// Returns the requested buffer, or the buffers in common use.
 std::vector<PrecisionResult> buffers_of(const Settings& settings, const Projection& projection) {
   const bool reversed = settings.view.depth.reversed;
   std::vector<PrecisionResult> results;

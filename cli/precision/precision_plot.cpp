@@ -124,7 +124,7 @@ std::string path_of(const PlotLine& line, const Axes& axes, bool stands_back) {
                      stands_back ? " opacity=\"0.45\"" : "");
 }
 
-/// Labels beside the ends of the lines, in the same order, far enough apart to be legible.
+/// Returns the labels beside the ends of the lines, in the same order, and far enough apart to be legible.
 std::string names_of(const std::vector<PlotLine>& lines, const Axes& axes) {
   struct Name {
     double y;

@@ -68,8 +68,8 @@ std::string reach_text(const PrecisionRun& run) {
 std::optional<double> near_for(const PrecisionRun& run, const DepthSetup& setup) {
   const glm::dvec2 wanted = *run.settings.precision.wanted;
   const double rounding = rounding_gap(setup, wanted.y, run.reach);
-  // Rounding also shifts the distance at which the format is evaluated, and grows with it. Both effects are below this
-  // share.
+  // Rounding also shifts the distance at which the format is evaluated, and grows with this distance. Both effects are
+  // below this share.
   constexpr double slack = 4e-6;
   const double left_over = wanted.x * (1 - slack) - rounding;
   if (left_over <= 0) return std::nullopt;
@@ -128,7 +128,7 @@ std::string_view kind_name(FightKind kind) {
   return "";
 }
 
-/// The visible area in pixels squared, of all pairs or of one kind.
+/// The visible area in square pixels, of all pairs or of one kind.
 double visible_area(const FightAreas& areas, std::optional<FightKind> kind) {
   double sum = 0;
   for (const FightingObjects& pair : areas.objects)

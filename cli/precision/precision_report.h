@@ -18,13 +18,13 @@ namespace frontmost::cli {
 struct PrecisionResult {
   DepthSetup setup;
   std::optional<DepthFights> fights;  ///< with a model
-  std::optional<FightAreas> areas;    ///< with a model, unless there are too many
+  std::optional<FightAreas> areas;    ///< with a model, unless there are too many pairs
   std::string too_many;               ///< why there are no areas
   /// Remedies; only with a model and a single buffer.
   std::vector<FightRemedy> remedies;
   std::vector<std::optional<OffsetRemedy>> offsets;  ///< for the first pairs of objects
 
-  /// The number of pairs of objects that are examined.
+  /// The greatest number of pairs of objects that are examined.
   static constexpr std::size_t pairs_shown = 10;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Batch files: JSON whose keys are names of options, so that the table of options describes both.
 //
-// The text is parsed twice: once to check limits, keeping nothing, and once to read. The library's parser with a
+// The text is parsed twice: once to check limits, without keeping values, and once to read. The library's parser with a
 // callback would go through all views again for each view.
 #include <fmt/format.h>
 #include <frontmost/files.h>
@@ -20,7 +20,8 @@ namespace {
 
 constexpr std::size_t most_views = 100'000;
 constexpr std::size_t most_values = 8'000'000;
-/// Limit of keys in one object. The number of options is smaller, and the search for repeated keys is linear.
+/// Limit of keys in one object. It exceeds the number of options, and is low because the search for repeated keys is
+/// linear.
 constexpr std::size_t most_keys = 256;
 /// Limit of nesting. Views, a view, its outputs, kinds of ids, a matrix and its rows need six levels. The JSON library
 /// copies and visits values by recursion, which very deep lists would crash.

@@ -51,7 +51,8 @@ bool is_outside(const WorldCorners& c, const Projection& p) {
          all(c, [&](const glm::dvec3& v) { return v.y > p.top * reach(v); });
 }
 
-/// With Culling::material, double-sided triangles count as one-sided. Double-sided ones only get here if they are tiny.
+/// Whether culling removes the triangle. With Culling::material, double-sided triangles count as one-sided; they only
+/// get here if they are tiny.
 bool is_culled(const WorldCorners& c, const View& view) {
   if (view.culling == Culling::none) return false;
   if (view.culling == Culling::both) return true;
@@ -94,7 +95,7 @@ struct Alike {
   [[nodiscard]] bool holds(float value) const { return value >= low && value <= high; }
 };
 
-/// `scale` converts an sRGB value from 0 to 1 to the channel's scale.
+/// Returns the ranges of the colour channels. `scale` converts an sRGB value from 0 to 1 to the channel's scale.
 template <class Scale>
 std::array<Alike, 3> alike_to(const glm::vec3& background, const Scale& scale) {
   std::array<Alike, 3> alike{};
@@ -106,7 +107,7 @@ std::array<Alike, 3> alike_to(const glm::vec3& background, const Scale& scale) {
   return alike;
 }
 
-/// `stands_out` is called for pixels that see something.
+/// Whether too few of the pixels that see something stand out. stands_out(i) says whether pixel i does.
 template <class StandsOut>
 bool too_few(std::span<const PrimitiveId> primitives, const StandsOut& stands_out) {
   std::size_t covered = 0, distinct = 0;

@@ -5,8 +5,8 @@
 //   {"view": 2, "name": "eye-2", "key": "81fa...", "files": [{"path": "eye-2.png", "bytes": 8123, "hash": "03bb..."}]}
 //   {"view": 18, ...
 //
-// A line is written when all files of its view are complete. So however a run ends, noted views are finished, and a
-// truncated line counts as none.
+// A line is written when all files of its view are complete. So the views in a manifest are finished, however the run
+// has ended. A truncated line counts as none.
 #pragma once
 
 #include <optional>
@@ -50,7 +50,7 @@ void write_manifest(const Manifest& manifest, const std::string& path);
 /// Appends a line to an existing manifest. \throws Error file_unwritable.
 void append_to_manifest(const FinishedView& view, const std::string& path);
 
-/// Empty if all files of the view are unchanged in `folder`; otherwise the name of one that is not.
+/// Returns nothing if all files of the view are unchanged in `folder`, otherwise the name of a changed file.
 [[nodiscard]] std::optional<std::string> changed_file(const FinishedView& view, const std::string& folder);
 
 }  // namespace frontmost::cli

@@ -99,7 +99,7 @@ void write(const FileToWrite& file, const OutputSource& source, ViewResult& resu
   }
 }
 
-/// Errors about different sizes or channels name the reference.
+/// Compares two pictures. Errors about different sizes or channels name the reference.
 Comparison compared(const Image& picture, const Image& reference, const Job& job, const Execution& execution) {
   try {
     return compare(picture, reference, job.output.reference_threshold, execution);
@@ -113,7 +113,8 @@ constexpr int rows_kept = 2;
 
 glm::ivec2 room(const glm::ivec2& terminal) { return {std::max(terminal.x, 1), std::max(terminal.y - rows_kept, 1)}; }
 
-/// Whether the terminal announces true colour in COLORTERM. Others get the 256-colour palette, which all support.
+/// Whether the terminal announces true colour in COLORTERM. Other terminals get the 256-colour palette, which all
+/// support.
 bool has_true_color() {
   const char* const value = std::getenv("COLORTERM");
   return value && (std::string_view(value) == "truecolor" || std::string_view(value) == "24bit");

@@ -62,7 +62,7 @@ std::uint64_t hash_of(const Settings& settings) {
   return hash.value();
 }
 
-/// Checks that all ranks run the same command; others would send messages that do not fit.
+/// Checks that all ranks run the same command. Ranks with another command would send messages that do not fit.
 void check_same_command(const Settings& settings, Ranks& ranks) {
   const std::uint64_t hash = hash_of(settings);
   std::uint64_t ends[2] = {hash, ~hash};

@@ -38,8 +38,8 @@ class FailedElsewhere : public std::exception {
   RunFailure failure_;
 };
 
-/// Ranks that check before each operation that none has failed, so that none waits in vain. While they wait, --timeout
-/// mentions it.
+/// Ranks that check before each operation that none has failed, so that none waits in vain. While they wait, the
+/// message of --timeout mentions this.
 class CarefulRanks final : public Ranks {
  public:
   explicit CarefulRanks(std::unique_ptr<Ranks> ranks) : ranks_(std::move(ranks)) {}
@@ -52,8 +52,8 @@ class CarefulRanks final : public Ranks {
   Message broadcast(Message message) override;
   /// Waits until all ranks call it.
   void meet();
-  /// Tells the other ranks about a failure, when they call one of the above. \returns the failure of the lowest failed
-  /// rank.
+  /// Tells the other ranks about a failure, when they call one of the functions above. \returns the failure of the
+  /// lowest failed rank.
   RunFailure fail(const RunFailure& failure);
   /// Waits until all ranks call it, whether they failed or not.
   void part();

@@ -52,7 +52,8 @@ std::optional<std::string> picture_among_models(const Settings& settings) {
   return std::nullopt;
 }
 
-/// Shows the picture on the terminal if no other result is asked for. Output of MPI's ranks goes to no terminal.
+/// Whether the picture is shown on the terminal, because no other result is asked for. If so, prepares the jobs. Output
+/// of MPI's ranks goes to no terminal.
 bool shows_on_terminal(const Settings& settings, std::vector<Job>& jobs) {
   if (has_result(settings, jobs)) return false;
   const std::optional<glm::ivec2> terminal = settings.run.mpi ? std::nullopt : output_terminal();
@@ -86,7 +87,7 @@ int status_of(const std::vector<ViewResult>& results) {
   return std::any_of(results.begin(), results.end(), differs) ? exit_differs : exit_done;
 }
 
-/// State that rendering of models and of streams share.
+/// The state of a run, of a model or of a stream.
 struct Run {
   const Settings& settings;
   std::vector<Job> jobs;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Panoramas and fisheyes: rays instead of a view, ranges instead of depths. The other steps are those of a pinhole,
-// with the maps that such cameras support, at one ray a pixel.
+// Panoramas and fisheyes have rays instead of a view, and ranges instead of depths. The other steps are those of a
+// pinhole. Of the maps, these cameras support some, with one ray per pixel.
 #include <fmt/format.h>
 #include <frontmost/pictures.h>
 #include <frontmost/raycast.h>
@@ -87,7 +87,8 @@ Seen summary_around(const RayScene& rays, const RangeScan& around) {
   return seen;
 }
 
-/// Hits of a job's rays: those of the picture, and one at each pixel's centre, which may be the same.
+/// Hits of a job's rays: those of the picture, and one at each pixel's centre. One scan serves both if the rays are the
+/// same.
 struct SightsAround {
   std::optional<RangeScan> picture, middles;
 

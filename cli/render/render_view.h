@@ -55,7 +55,7 @@ struct Result {
 };
 
 struct ReferenceResult {
-  std::string path, difference_path;  ///< difference_path is empty if they do not differ
+  std::string path, difference_path;  ///< difference_path is empty if the pictures do not differ
   double largest_difference = 0, mean_difference = 0;
   std::uint64_t differing_pixels = 0;
   bool passed = false;
@@ -89,7 +89,7 @@ struct RenderContext {
   const RunSettings& run;
   Execution execution;
   bool keep_picture = false;
-  const RayIndex* index = nullptr;  ///< if the method, cameras or shadows need one
+  const RayIndex* index = nullptr;  ///< null unless the method, cameras or shadows need one
   bool by_rays = false;             ///< whether the method is raycast
   /// Surfaces whose bounds determine the camera, if not `surfaces`.
   const Surfaces* framed = nullptr;
@@ -103,7 +103,8 @@ struct Sights {
   std::optional<SeenView> picture, maps;
   std::optional<VisiblePixels> pixels;  ///< replaces `picture` if only a picture in bytes is needed
   bool shared = false;                  ///< the maps use the visibility of the picture
-  /// For streams: the triangles' numbers by id of the surfaces, and the surfaces that throw shadows. Both borrowed.
+  /// For streams: the number of each triangle in the stream, by id of the surfaces; and what the key light sees. Both
+  /// are borrowed.
   const std::vector<PrimitiveId>* stream_ids = nullptr;
   const Visible* seen_by_light = nullptr;
   const BlankReason* blank_reason = nullptr;  ///< counted during the stream's passes; borrowed

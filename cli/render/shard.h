@@ -20,8 +20,8 @@ void check_shard(const Settings& settings, const std::vector<Job>& jobs);
 
 class ShardRun {
  public:
-  /// `jobs` holds the whole batch; `used` are the model's files, which have been read. Reads the notes of an earlier
-  /// run, and writes a manifest of those that are still valid.
+  /// `jobs` holds the whole batch; `used` are the model's files, which have been read. Reads the manifest of an earlier
+  /// run, and writes a manifest of the views that are still valid.
   ShardRun(const Settings& settings, const std::vector<Job>& jobs, const std::vector<std::filesystem::path>& used);
 
   /// Removes jobs of other shards and finished ones.

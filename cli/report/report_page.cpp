@@ -79,7 +79,7 @@ std::string name_of(const ReportRun& run, std::uint32_t object) {
   return printable_name(run.scene().instances[object].name);
 }
 
-/// The map of objects, as runs: object + 1, and the number of pixels.
+/// The map of objects, as runs. A run is the object + 1, and the number of pixels.
 Json map_json(const ReportRun& run) {
   const Image ids = id_image(run.surfaces, run.visible, IdKind::object);
   Json runs = Json::array();

@@ -14,7 +14,7 @@
 
 namespace frontmost::cli {
 
-/// Zero is not added, because that would turn -0 into 0 in reports of models near zero.
+/// Converts to the file's coordinates. An origin of zero is not added, because that would turn -0 into 0.
 [[nodiscard]] inline glm::dvec3 in_file(const glm::dvec3& in_scene, const glm::dvec3& origin) {
   return origin == glm::dvec3(0) ? in_scene : origin + in_scene;
 }

@@ -22,7 +22,7 @@ struct SeenView {
 [[nodiscard]] DepthState depth_state(const DepthSettings& settings);
 [[nodiscard]] double depth_clear(const DepthSettings& settings);
 
-/// Casts rays if there is an index.
+/// Determines visibility in all pixels of a view. Casts rays if there is an index.
 [[nodiscard]] SeenView look_at_surfaces(const Surfaces& surfaces, const View& view, const DepthSettings& settings,
                                         const Execution& execution, const RayIndex* index = nullptr);
 

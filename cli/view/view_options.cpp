@@ -36,7 +36,8 @@ const Camera& model_camera(const ViewSettings& settings, const Scene& scene) {
       fmt::format("--camera-index: there is no camera {1}; cameras in the model: {0}", scene.cameras.size(), index));
 }
 
-/// Rotation about an axis through `pivot`, anticlockwise as seen from the axis' tip. Rodrigues' formula.
+/// Returns the pose, rotated about an axis through `pivot`, anticlockwise as seen from the axis' tip. Rodrigues'
+/// formula.
 glm::dmat4 turned(const glm::dmat4& pose, const glm::dvec3& pivot, const glm::dvec3& about, double degrees) {
   const glm::dvec3 k = glm::normalize(about);
   const double c = std::cos(degrees * radians_per_degree), s = std::sin(degrees * radians_per_degree);
@@ -115,8 +116,8 @@ std::optional<Intrinsics> intrinsics_of(const ViewSettings& settings) {
   return Intrinsics{fx, fy, cx, cy, settings.pixel_rule};
 }
 
-/// The sides at unit distance. For a parallel projection, the extent that a perspective camera would see at the focal
-/// point.
+/// Returns the projection with its sides at unit distance. place() scales the sides of a parallel projection to what a
+/// perspective camera would see at the focal point.
 Projection shape_of(const ViewSettings& settings, const glm::ivec2& size, const View& base) {
   const double aspect = double(size.x) / size.y;
   if (const auto intrinsics = intrinsics_of(settings))

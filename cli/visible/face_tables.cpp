@@ -47,7 +47,7 @@ double share_of(const VisibleFace& face, const Surfaces& surfaces) {
   return std::min(2 * face.area / doubled, 1.0);
 }
 
-/// Five colours of the map "viridis" (N. Smith, S. van der Walt. 2015), which keeps its order in grey.
+/// Interpolates five colours of the map "viridis" (N. Smith, S. van der Walt. 2015), which keeps its order in grey.
 glm::dvec3 color_of(double share) {
   constexpr double stops[5][3] = {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}};
   const double at = share * 4;

@@ -180,7 +180,7 @@ void write(const std::string& path, const FacesFound& found, const Scene& scene)
   save(found.listed, path, has_suffix(path, {".npy"}) ? TableFormat::npy : TableFormat::csv);
 }
 
-/// Writes the model of the visible faces, and adds the omitted ones to the reports.
+/// Writes the model of the visible faces, and adds the numbers of omitted faces and objects to the reports.
 void write_kept(const std::vector<std::string>& paths, const Surfaces& surfaces, FacesFound& found) {
   if (paths.empty()) return;
   const Scene kept = keep_faces(surfaces.scene(), found.ids);
