@@ -27,7 +27,7 @@ struct Command {
   std::string_view examples;  ///< one per line: the command, two or more blanks, and its effect
   int (*run)(const Settings&);
 
-  /// The argument's name without further signs.
+  /// Returns the argument's name, up to "..." or to a second argument.
   [[nodiscard]] std::string_view argument_name() const { return argument.substr(0, argument.find_first_of(". ")); }
   [[nodiscard]] bool is_argument_needed() const { return !argument.empty() && argument.front() != '['; }
   [[nodiscard]] bool takes_several() const { return argument.ends_with("..."); }
@@ -54,11 +54,11 @@ int run_batch_merge(const Settings& settings);
 /// \throws UsageError
 [[nodiscard]] Settings parse_command_line(const Command& command, std::span<const char* const> words);
 
-/// The rest of a usage line behind the command's name, as in "MODEL... [options]". The argument stands between `before`
-/// and `after`.
+/// Returns the rest of a usage line, behind the command's name, as in "MODEL... [options]". The argument is put between
+/// `before` and `after`.
 [[nodiscard]] std::string usage_of(const Command& command, std::string_view before = "", std::string_view after = "");
 
-/// Texts generated from the tables.
+/// Return texts that are generated from the tables.
 [[nodiscard]] std::string help_overview();
 [[nodiscard]] std::string help_for(const Command& command);
 [[nodiscard]] std::string man_page();

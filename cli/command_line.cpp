@@ -29,7 +29,7 @@ void declare(CLI::App& app, GivenOption& found) {
   if (option.is_switch()) {
     app.add_flag(names, found.is_set)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   } else {
-    // One value at a time, whatever it looks like: -1,2,3 is a vector, and - is a file.
+    // Each flag has one value, whatever the value looks like: -1,2,3 is a vector, and - is a file.
     app.add_option(names, found.texts)->expected(1)->take_all()->allow_extra_args(false);
   }
 }

@@ -59,7 +59,7 @@ void clear_line_when_interrupted(bool shown);
 [[nodiscard]] bool is_interrupted();
 /// \throws Error cancelled
 void stop_if_interrupted();
-/// Prints the reason to standard error if there is one to tell. \returns the exit status.
+/// Prints the reason of an interruption to standard error, if there is one to tell. \returns the exit status.
 int report_interruption();
 
 }  // namespace frontmost::cli

@@ -33,8 +33,8 @@ class InputFiles {
 /// All files that the settings name. \throws UsageError if two of them are standard input.
 [[nodiscard]] InputFiles input_files(const Settings& settings);
 
-/// Checks files that a model uses, known after it was read: material libraries, buffers and textures. \throws
-/// UsageError if an output would replace one of them.
+/// Checks the files that a model uses, such as material libraries, buffers and textures. They are known after the model
+/// was read. \throws UsageError if an output would replace one of them.
 void refuse_outputs_beside(const std::vector<std::filesystem::path>& used, const std::vector<std::string>& outputs);
 
 /// Returns an Execution with the requested threads and instruction set, which reports interruptions.
@@ -47,8 +47,8 @@ void refuse_outputs_beside(const std::vector<std::filesystem::path>& used, const
 void show_warnings(const std::vector<std::string>& warnings, const RunSettings& run, Progress& progress);
 /// Prints framing_warning() and up_warning(): objects reach out of the picture, or the model lies on its back.
 void show_framing_warning(const Settings& settings, const Surfaces& surfaces, Progress& progress);
-/// The scene with its curved meshes cut into triangles for `view`, as --tessellation-error says; empty without that
-/// option.
+/// Returns the scene with its curved meshes cut into triangles for `view`, with the error that --tessellation-error
+/// allows. Returns nothing without that option.
 [[nodiscard]] std::optional<Scene> tessellated(const Scene& scene, const ViewSettings& settings, const View& view);
 
 }  // namespace frontmost::cli

@@ -21,7 +21,7 @@ template <int n, class T>
   return result;
 }
 
-/// A matrix as four rows of four, as written on paper.
+/// Returns a matrix as four rows of four numbers, as on paper.
 [[nodiscard]] inline Json to_json(const glm::dmat4& matrix) {
   Json rows = Json::array();
   for (int row = 0; row < 4; ++row) {

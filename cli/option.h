@@ -68,7 +68,8 @@ struct Given {
 
   [[nodiscard]] double number(const NumberLimits& range = any_number) const { return parse_number(text, range); }
   [[nodiscard]] int integer(const NumberLimits& range) const { return parse_integer(text, range); }
-  /// Precondition: the words in the table are in the order of the enumerators.
+  /// Returns the enumerator of the given word. Precondition: the words in the table are in the order of the
+  /// enumerators.
   template <class Enum>
   [[nodiscard]] Enum choice() const {
     return static_cast<Enum>(parse_choice(text, choices));
@@ -80,12 +81,12 @@ struct Given {
 
 struct Option {
   std::string_view name;   ///< without dashes; also the key in a batch file
-  char letter;             ///< "-o"; 0: none
+  char letter;             ///< letter of the short form, as in "-o"; 0: none
   std::string_view value;  ///< the value: "FILE", "X,Y,Z", or "a|b|c" for one of these; empty: a switch
   std::string_view help;
   Group group;
   unsigned commands;
-  void (*apply)(Settings&, const Given&);  ///< throws UsageError for invalid values
+  void (*apply)(Settings&, const Given&);  ///< applies a given value; throws UsageError if it is invalid
 
   [[nodiscard]] bool is_switch() const { return value.empty(); }
   [[nodiscard]] bool is_file() const { return value.find("FILE") != std::string_view::npos; }
@@ -122,7 +123,7 @@ void for_each_option(const Visit& visit) {
 
 /// Applies one option and notes in the settings that it was given. \throws UsageError as Option::apply does.
 void apply_as_given(const Option& option, std::string_view text, Settings& settings);
-/// Applies one option as above; errors begin with the option's name.
+/// Applies one option like apply_as_given(). Errors begin with the option's name.
 void apply(const Option& option, std::string_view text, Settings& settings);
 
 }  // namespace frontmost::cli

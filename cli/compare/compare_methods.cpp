@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The methods as functions of one type, called as users of the library call them. Preparation (an index) and work for a
-// view are timed separately, because many views of one model share the preparation.
+// Wraps the methods as functions of one type, and calls them as users of the library do. Preparation (an index) and
+// work for a view are timed separately, because many views of one model share the preparation.
 #include "cli/compare/compare_methods.h"
 
 #include <frontmost/abuffer.h>

@@ -48,7 +48,7 @@ struct Answer {
   std::uint64_t primitives = 0;   ///< triangles that the method works on
 };
 
-/// Numbers of fragments, for methods that keep lists of them.
+/// For methods that keep lists of fragments: the number of fragments, and the length of the longest list.
 struct KeptLists {
   std::uint64_t fragments = 0, longest = 0;
 };
@@ -58,7 +58,8 @@ struct ComparedMethod {
   std::string_view title;  ///< the common name
   std::string_view how;    ///< the principle, in a sentence
   Answer (*answer)(const Surfaces&, const View&, const Execution&, StageClock&);
-  KeptLists (*lists)(const Surfaces&, const View&, const Execution&) = nullptr;  ///< counted outside of the timing
+  KeptLists (*lists)(const Surfaces&, const View&, const Execution&) = nullptr;  ///< counts the lists, outside of the
+                                                                                 ///< timing
   bool is_naive = false;  ///< known to be wrong: shown, but not counted among those that agree
 };
 
@@ -68,7 +69,7 @@ struct ComparedMethod {
 /// The run of one method.
 struct MethodRun {
   const ComparedMethod* method = nullptr;
-  std::vector<Stage> stages;     ///< "load" and "surfaces" once, stages of the method --runs times
+  std::vector<Stage> stages;     ///< "load" and "surfaces" have one time, stages of the method --runs times
   std::uint64_t peak_bytes = 0;  ///< peak of resident memory beyond model and surfaces
   Answer answer;
   std::optional<KeptLists> lists;
@@ -80,7 +81,7 @@ struct MethodRun {
 };
 
 /// Reads the model and runs the method in a process of its own. Precondition: this process has no threads yet. \throws
-/// the method's error; Error unsupported if its process ends otherwise.
+/// the method's error; Error unsupported if the other process ends without a result.
 [[nodiscard]] MethodRun run_alone(const ComparedMethod& method, const Settings& settings);
 
 }  // namespace frontmost::cli

@@ -101,7 +101,7 @@ std::string row(std::string_view label, const std::vector<std::string>& cells, s
   return text + "</tr>\n";
 }
 
-/// A row of numbers with bars that show their share of the greatest number in the row.
+/// Returns a row of numbers, with bars that show the share of each number in the greatest one of the row.
 template <class Number, class Text>
 std::string bar_row(const Comparisons& all, std::string_view label, const Number& number, const Text& text) {
   double greatest = 0;
@@ -175,7 +175,7 @@ void save_pictures(const Comparisons& all, const StagedFolder& folder, const Exe
   bool is_first = true;
   for (const Compared& compared : all.methods) {
     const ComparedMethod& method = *compared.run.method;
-    // The picture of this method; a method that keeps lists sees through glass.
+    // A method that keeps lists sees through glass, so its picture does, too.
     const ShadeOptions options{.background = std::nullopt,
                                .layers = {.see_through = method.lists ? SeeThrough::always : SeeThrough::never}};
     const Image picture = shade(all.surfaces, compared.run.answer.visible, options, execution);

@@ -107,7 +107,7 @@ class Receiver {
   std::string_view method_;
 };
 
-/// A field of /proc/self/status, such as VmRSS, in bytes; 0 if missing.
+/// Returns a field of /proc/self/status, such as VmRSS, in bytes, or 0 if the field is missing.
 std::uint64_t status_bytes(std::string_view field) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -116,7 +116,8 @@ std::uint64_t status_bytes(std::string_view field) {
   return 0;
 }
 
-/// Starts the measurement: returns free memory to the system and resets the high-water mark to the current use.
+/// Starts the measurement: gives free memory back to the system, and resets the high-water mark. \returns the current
+/// use.
 std::uint64_t start_counting_memory() {
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << 5;

@@ -156,7 +156,7 @@ Json list(const std::vector<T>& elements, const Turn& turn) {
   return result;
 }
 
-/// A heading and a line for each of the first elements, then the number of others.
+/// Returns a heading, a line for each of the first elements, and the number of the others.
 template <class T, class Line>
 std::string section(std::string_view heading, const std::vector<T>& elements, const Line& line) {
   if (elements.empty()) return {};
@@ -184,7 +184,7 @@ std::string light_line(const LightReport& light, const glm::dvec3& origin) {
   return text;
 }
 
-/// A line about positions that floats may be too coarse for, or about the origin that prevents this.
+/// Returns a line about positions that floats may be too coarse for, or about the origin that prevents this.
 std::string rounding_line(const SceneReport& report) {
   constexpr double coarse = 1e-6;  // part of the diagonal: a thousandth of a pixel in a picture of the whole model
   constexpr double wide = 1e-3;    // in the model's unit: coordinates beyond 16384 are rounded by as much
@@ -195,7 +195,7 @@ std::string rounding_line(const SceneReport& report) {
   return fmt::format("  rounding   {:.2g} at most{}\n", report.rounding, about);
 }
 
-/// The meshes with the highest counts of an oddity, highest first.
+/// Returns the meshes with the highest counts of an oddity, in descending order.
 std::string odd_meshes(const SceneReport& report, std::uint64_t Oddities::*count) {
   constexpr std::size_t meshes_shown = 5;
   std::vector<std::size_t> odd;
@@ -239,7 +239,8 @@ std::string unit_line(const std::optional<ModelUnit>& unit, const Box& bounds) {
                      unit->is_guess ? ", a guess" : "", size.x, size.y, size.z, shown.name);
 }
 
-/// The file's own unit or else the likely one for the model's size. Empty if several are likely.
+/// Returns the file's own unit, or else the likely unit for the model's size. Returns nothing if several units are
+/// likely.
 std::optional<ModelUnit> unit_of_model(const SceneReport& report, std::optional<double> metres_per_unit) {
   if (report.bounds.is_empty()) return std::nullopt;
   if (metres_per_unit) return ModelUnit{*metres_per_unit, false};

@@ -42,7 +42,7 @@ Json view_json(const DrawnView& view, const std::string& name) {
           {"hidden_mm", hidden}};
 }
 
-/// The report. `page` is the page of the sheet as written.
+/// Returns the report of a sheet. `page` is the page of the sheet as written.
 Json lines_json(const Settings& settings, const Sheet& sheet, const Page& page, const StepTimes& times) {
   Json json = {{"model", settings.model}, {"page_mm", {page.width, page.height}}};
   json["scale"] = sheet.scale ? Json(*sheet.scale) : Json(nullptr);
@@ -113,7 +113,7 @@ void name_object(Scene& scene) {
   if (scene.source.format == ModelFormat::stl && scene.instances.size() == 1) scene.instances[0].name = scene.name;
 }
 
-/// Warnings about objects with open outlines.
+/// Returns warnings about objects with open outlines.
 std::vector<std::string> open_outlines(const Sheet& sheet) {
   std::vector<std::string> warnings;
   for (const DrawnView& view : sheet.views) {
@@ -170,8 +170,8 @@ Json draw_model(const Settings& settings, std::vector<Page>& pages, const Execut
   return lines_json(settings, sheet, plotted, times);
 }
 
-/// Moves files that hold the sheets of all models as pages from `outputs` to `books`. \throws UsageError if a file can
-/// hold only one sheet.
+/// Moves from `outputs` to `books` the files that hold the sheets of all models, each sheet on a page. \throws
+/// UsageError if a file can hold only one sheet.
 void part_outputs(DrawingSettings& sheet) {
   std::vector<std::string> own;
   for (const std::string& path : sheet.outputs) {
@@ -188,8 +188,8 @@ void part_outputs(DrawingSettings& sheet) {
   sheet.outputs = std::move(own);
 }
 
-/// The settings of each model's sheet; each has files of its own or pages of a common file. \throws UsageError if a
-/// file would be written twice.
+/// Returns the settings of each model's sheet. A sheet has files of its own, or is a page of a common file. \throws
+/// UsageError if a file would be written twice.
 std::vector<Settings> sheets_of(const Settings& given) {
   std::vector<std::string> models = given.more_models;
   models.insert(models.begin(), given.model);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables of gaps: one buffer with its parts, or several side by side. With a model, also the fighting objects.
+// Prints tables of gaps: for one buffer with the parts of the gaps, or for several buffers side by side. With a model,
+// lists the fighting objects, too.
 #include "cli/precision/precision_report.h"
 
 #include <fmt/format.h>
@@ -64,7 +65,7 @@ std::string reach_text(const PrecisionRun& run) {
       reach);
 }
 
-/// The near plane that resolves the wanted gap, including the rounding of positions.
+/// Returns the near plane that resolves the wanted gap, including the rounding of positions.
 std::optional<double> near_for(const PrecisionRun& run, const DepthSetup& setup) {
   const glm::dvec2 wanted = *run.settings.precision.wanted;
   const double rounding = rounding_gap(setup, wanted.y, run.reach);

@@ -19,7 +19,7 @@ struct PrecisionResult {
   DepthSetup setup;
   std::optional<DepthFights> fights;  ///< with a model
   std::optional<FightAreas> areas;    ///< with a model, unless there are too many pairs
-  std::string too_many;               ///< why there are no areas
+  std::string too_many;               ///< the reason if there are no areas
   /// Remedies; only with a model and a single buffer.
   std::vector<FightRemedy> remedies;
   std::vector<std::optional<OffsetRemedy>> offsets;  ///< for the first pairs of objects

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of rays and of scans: input as lines of a few numbers, output as points.
+// Files of rays and of scans. Input is lines of a few numbers each, output is points.
 //
 //   # from            to            one pair of points per line, or one direction: LineRule gives the number of values
 //   0, -5, 1.8        4, 20, 1.8

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batch files: JSON whose keys are names of options, so that the table of options describes both.
+// Batch files are JSON whose keys are names of options, so that the table of options describes flags and keys alike.
 //
 // The text is parsed twice: once to check limits, without keeping values, and once to read. The library's parser with a
 // callback would go through all views again for each view.
@@ -76,7 +76,7 @@ class BatchCheck final : public nlohmann::json_sax<Json> {
   }
 
   const std::string &text_, &name_;
-  std::vector<std::size_t> keys_;  ///< so far, for each open object and list
+  std::vector<std::size_t> keys_;  ///< number of keys so far, for each open object and list
   std::size_t views_ = 0, values_ = 0;
   bool in_views_ = false;
 };
@@ -163,7 +163,7 @@ bool belongs_to_view(const Option& option) {
 }
 bool belongs_to_outputs(const Option& option) { return option.group == Group::output || option.group == Group::look; }
 
-/// Applies all keys of an object. `belongs` tells which options it may hold.
+/// Applies all keys of an object. `belongs` tells which options the object may hold.
 template <class Belongs>
 void apply_object(const JsonPlace& place, const Belongs& belongs, std::vector<std::string_view> other_keys,
                   Settings& settings) {

@@ -56,7 +56,8 @@ bool is_outside(const WorldCorners& c, const Projection& p) {
 bool is_culled(const WorldCorners& c, const View& view) {
   if (view.culling == Culling::none) return false;
   if (view.culling == Culling::both) return true;
-  // Positive if the corners run counter-clockwise as seen from the eye: y up, looking along +distance.
+  // `facing` is positive if the corners run counter-clockwise as seen from the eye, with y up and a view along
+  // +distance.
   const glm::dvec3 normal = glm::cross(c[1] - c[0], c[2] - c[0]);
   const double facing = view.projection.orthographic ? normal.z : glm::dot(normal, c[0]);
   return view.culling == Culling::front ? facing > 0 : facing < 0;

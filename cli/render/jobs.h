@@ -20,12 +20,13 @@ namespace frontmost::cli {
 
 /// One view, ready to be rendered.
 struct Job {
-  std::string name;        ///< {view}
-  std::size_t number = 0;  ///< in the batch file, from 0
+  std::string name;        ///< text for {view} in file names
+  std::size_t number = 0;  ///< number of the view in the batch file, from 0
   std::uint64_t said = 0;  ///< as Settings::said
   ViewSettings view;
   OutputSettings output;
-  std::vector<FileToWrite> files, layer_files;  ///< files of the front-most surface or of all; files of single layers
+  std::vector<FileToWrite> files, layer_files;  ///< files of the front-most surface or of all surfaces, and files of
+                                                ///< single layers
   std::vector<std::string> figures;             ///< pictures of polygons
   std::string difference;                       ///< path of the difference to the reference; empty: no reference
   std::shared_ptr<const Image> reference;       ///< contents of output.reference; null: to be read again

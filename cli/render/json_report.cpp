@@ -82,7 +82,7 @@ Json light_json(const LightSettings& light) {
   return json;
 }
 
-/// Options that determine the look of a view's pictures, with their defaults.
+/// Returns the options that determine the look of a view's pictures, with their defaults.
 Json look_json(const OutputSettings& output) {
   constexpr std::string_view shadings[] = {"lit", "flat", "normals", "depth", "ids", "uv"};
   constexpr std::string_view lights[] = {"key", "file", "both", "none"}, shadows[] = {"off", "map", "rays"};

@@ -65,7 +65,7 @@ Manifest head_in(const Json& json) {
           {}};
 }
 
-/// The result of `read` for the line; empty if the line is malformed.
+/// Returns the result of `read` for the line, or nothing if the line is malformed.
 template <class Read>
 auto read_line(std::string_view line, const Read& read) -> std::optional<decltype(read(Json()))> {
   try {

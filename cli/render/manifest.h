@@ -39,7 +39,7 @@ struct Manifest {
 
 /// The manifest's name, as in "engine.views.3-of-16.jsonl" for engine.glb and views.json.
 [[nodiscard]] std::string manifest_name(const std::string& stem, const Shard& shard);
-/// The stem of a manifest's name, without "3-of-16"; empty if it is no manifest's name.
+/// Returns the stem of a manifest's name, without "3-of-16", or nothing if no manifest has such a name.
 [[nodiscard]] std::optional<std::string> stem_of_manifest(const std::string& file_name);
 
 /// Reads a manifest and skips malformed lines. \throws Error file_malformed if the file does not begin as a manifest

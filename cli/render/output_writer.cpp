@@ -50,7 +50,7 @@ void note(const Image& part, OutputKind kind, const FileToWrite& file, const Out
   if (source.job.output.hash) one.hash = content_hash(part);
 }
 
-/// The channels of all kinds that the file holds.
+/// Returns the channels of all kinds that the file holds.
 Image compose(const FileToWrite& file, const OutputSource& source, ViewResult& result) {
   Image image;
   for (const OutputKind kind : file.kinds) {

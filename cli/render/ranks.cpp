@@ -72,8 +72,8 @@ void check_same_command(const Settings& settings, Ranks& ranks) {
       "--mpi: the ranks have different command lines or different versions of frontmost; start all of them alike");
 }
 
-/// The current exception as the program would report it. Call in a handler. Interruptions are rethrown, because the
-/// signal that stops one rank stops all.
+/// Returns the current exception as the program would report it. Must be called in a handler. Interruptions are
+/// rethrown, because the signal that stops one rank stops all.
 RunFailure current_failure(const Settings& settings) {
   try {
     throw;
@@ -103,7 +103,7 @@ int run_carefully(const Settings& settings, CarefulRanks& ranks, const std::func
     failure = ranks.fail(mine);
   }
   if (ranks.number() == 0) complain(failure.message);
-  // The launcher ends all ranks when one ends with an error, so all wait until the message is printed.
+  // The launcher ends all ranks when one ends with an error, so all ranks wait until the message is printed.
   ranks.part();
   return failure.status;
 }

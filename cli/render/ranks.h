@@ -66,8 +66,8 @@ class CarefulRanks final : public Ranks {
   std::unique_ptr<Ranks> ranks_;
 };
 
-/// Replaces {rank} in a model's name by each number below `count`, to give a file for each rank. All ranks read a name
-/// without {rank}. `settings` hold all names afterwards. \returns the readers.
+/// Replaces {rank} in a model's name by each number below `count`, so that each rank reads a file of its own. All ranks
+/// read a name without {rank}. `settings` hold all names afterwards. \returns the readers.
 [[nodiscard]] std::vector<int> name_files_of_ranks(int count, Settings& settings);
 
 /// Runs on all ranks that --mpi joins. If one fails, all end, and rank 0 prints the reason.

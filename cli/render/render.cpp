@@ -45,7 +45,7 @@ bool lets_light_through(const Scene& scene) {
                      [](const Material& m) { return m.is_see_through(); });
 }
 
-/// A model that is a picture's name, as in "render model.obj out.png", which lacks "-o".
+/// Returns a model that is a picture's name, as in "render model.obj out.png", which lacks "-o".
 std::optional<std::string> picture_among_models(const Settings& settings) {
   for (const std::string& model : settings.more_models)
     if (format_by_suffix(model) || is_figure(model)) return model;
@@ -115,7 +115,7 @@ bool is_drawn_often(const Run& run) {
   return count * std::size_t(run.settings.run.repeat) > 1;
 }
 
-/// A warning about the model's own lights, if a lit picture ignores them and the user may not know it.
+/// Returns a warning about the model's own lights, if a lit picture ignores them and the user may not know it.
 std::optional<std::string> lights_warning(const Scene& scene, const Job& job) {
   if (job.output.shading != Shading::lit || !writes_colors(job)) return std::nullopt;
   if (scene.lights.empty() && job.output.lights == Lights::file)
@@ -163,7 +163,7 @@ void report(const Settings& settings, const ModelFacts& model, const std::vector
   if (!settings.run.json) print(hash_lines(results, settings.run.batch.has_value()));
 }
 
-/// The reader's warnings, and one warning each about framing and lights, for any of the views.
+/// Returns the reader's warnings, and at most one warning each about framing, lights and up axis, which it also prints.
 std::vector<std::string> model_warnings(const std::vector<Job>& jobs, const Surfaces& surfaces,
                                         const Settings& settings, Progress& progress) {
   std::vector<std::string> warnings = surfaces.scene().warnings;
@@ -173,7 +173,7 @@ std::vector<std::string> model_warnings(const std::vector<Job>& jobs, const Surf
     warnings.push_back(*warning);
     return true;
   };
-  // Framing is the same for all views that are fitted so.
+  // Framing is the same for all views that are fitted to the subject.
   const auto fitted =
       std::find_if(jobs.begin(), jobs.end(), [](const Job& job) { return is_fitted_to_subject(job.view); });
   if (fitted != jobs.end()) tell_once(framing_warning(fitted->view, surfaces));

@@ -21,7 +21,7 @@ namespace {
 constexpr double half_turn_degrees = 180;
 constexpr glm::ivec2 panorama_resolution{2048, 1024}, fisheye_resolution{1024, 1024};
 
-/// The camera with the pose that the same options give a pinhole.
+/// Returns the camera, with the pose that a pinhole with the same options has.
 RayCamera camera_of(const ViewResult& result, int samples) {
   const View& view = result.view;
   if (result.camera_model == CameraModel::panorama)

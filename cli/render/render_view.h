@@ -31,7 +31,7 @@ namespace frontmost::cli {
 /// Times in milliseconds.
 struct Timings {
   std::vector<double> visible;         ///< one for each repetition (--repeat)
-  std::optional<double> visible_maps;  ///< for the maps' single sample, if the picture has more
+  std::optional<double> visible_maps;  ///< for the maps, if the picture has more samples than they
   double shade = 0, save = 0;
 };
 
@@ -102,7 +102,7 @@ struct RenderContext {
 struct Sights {
   std::optional<SeenView> picture, maps;
   std::optional<VisiblePixels> pixels;  ///< replaces `picture` if only a picture in bytes is needed
-  bool shared = false;                  ///< the maps use the visibility of the picture
+  bool shared = false;                  ///< whether the maps use the visibility of the picture
   /// For streams: the number of each triangle in the stream, by id of the surfaces; and what the key light sees. Both
   /// are borrowed.
   const std::vector<PrimitiveId>* stream_ids = nullptr;
@@ -127,10 +127,10 @@ struct SightPlan {
   std::optional<int> picture_samples;
   bool maps = false, shared = false;
 };
-/// Only the size of `view` is used.
+/// Plans the visibility for a job. Only the size of `view` is used.
 [[nodiscard]] SightPlan plan_sights(const Job& job, const RunSettings& run, bool keep_picture, const View& view);
 
-/// The views to determine visibility for: the picture's, then the maps', unless they are the same.
+/// Returns the views to determine visibility for: the picture's, then the maps', unless they are the same.
 [[nodiscard]] std::vector<View> views_of(const View& view, const SightPlan& plan);
 
 /// Shades, and writes all files of the job. Precondition: `result` holds the view.

@@ -66,7 +66,7 @@ class ViewHasher {
   std::map<std::string, std::uint64_t> environments_;
 };
 
-/// Finished views in a manifest. Empty if the file is missing or empty, as a power failure may leave it.
+/// Returns the finished views in a manifest. Empty if the file is missing or empty, as a power failure may leave it.
 std::vector<FinishedView> noted_in(const std::string& path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);

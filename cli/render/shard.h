@@ -24,7 +24,7 @@ class ShardRun {
   /// run, and writes a manifest of the views that are still valid.
   ShardRun(const Settings& settings, const std::vector<Job>& jobs, const std::vector<std::filesystem::path>& used);
 
-  /// Removes jobs of other shards and finished ones.
+  /// Returns the jobs without those of other shards and those that are finished.
   [[nodiscard]] std::vector<Job> remaining(std::vector<Job> jobs) const;
   /// The number of the shard's jobs that an earlier run finished.
   [[nodiscard]] std::size_t finished_count() const { return finished_count_; }

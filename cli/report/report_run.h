@@ -32,12 +32,12 @@ struct ReportRun {
   }
 };
 
-/// Numbers of all objects, or of those that --why names. \throws UsageError if it names none.
+/// Returns the numbers of all objects, or of those that --why names. \throws UsageError if --why names no object.
 [[nodiscard]] std::vector<std::uint32_t> objects_asked_for(const Settings& settings, const Scene& scene);
 /// Reports that `where`, a model, has no `what` called `name`, and suggests similar names. \throws UsageError always.
 [[noreturn]] void complain_of_name(const std::string& where, std::string_view what, std::string_view name,
                                    const std::vector<std::string_view>& known);
-/// Names of the nodes that the model's file hides; with --why NAME, only nodes called NAME.
+/// Returns the names of the nodes that the model's file hides; with --why NAME, only of nodes called NAME.
 [[nodiscard]] std::vector<std::string> hidden_asked_for(const Settings& settings, const Scene& scene);
 /// Numbers of objects, sorted by visible samples, then by samples in the frame, then by number.
 [[nodiscard]] std::vector<std::uint32_t> objects_by_sight(const Accounting& accounts);

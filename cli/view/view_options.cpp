@@ -48,7 +48,7 @@ glm::dmat4 turned(const glm::dmat4& pose, const glm::dvec3& pivot, const glm::dv
   return result;
 }
 
-/// Azimuth and elevation as in VTK and f3d: about the camera's own up, then about its own right.
+/// Turns the camera by azimuth and elevation, as VTK and f3d do: about the camera's own up, then about its own right.
 void turn(Aim& aim, const ViewSettings& settings) {
   if (settings.azimuth != 0) {
     aim.world_from_eye = turned(aim.world_from_eye, aim.target, axis(aim.world_from_eye, 1), settings.azimuth);
@@ -82,7 +82,7 @@ glm::dvec3 ahead_of(const ViewSettings& settings, const View& view, const Surfac
   return view.eye() + view.forward() * (along > 0 ? along : std::max(double(box.diagonal()), 1e-6));
 }
 
-/// `base` is the library's default view, which provides all that the settings omit.
+/// Returns the aim of a camera. `base` is the library's default view, which provides all that the settings omit.
 Aim aim_of(const ViewSettings& settings, const Surfaces& surfaces, const View& base) {
   const glm::dvec3& origin = surfaces.scene().origin;
   const glm::dvec3 target =
@@ -157,7 +157,8 @@ void zoom(Projection& projection, double factor) {
   scale(projection, std::tan(half_angle) / projection.top);
 }
 
-/// Clip planes: the user's, else the model camera's, else fitted ones. `fitted` is the result of framing.
+/// Returns the clip planes: the user's, or else the model camera's, or else fitted ones. `fitted` is the result of
+/// framing.
 ClipDistances clip_of(const ViewSettings& settings, const Surfaces& surfaces, const View& view,
                       const std::optional<ClipDistances>& fitted) {
   const Box box = framed_box(surfaces);
@@ -179,7 +180,8 @@ ClipDistances clip_of(const ViewSettings& settings, const Surfaces& surfaces, co
   return clip;
 }
 
-/// The library's framing. `aim`, if given, replaces the named direction, and its target becomes the centre.
+/// Returns the library's framing. `aim`, if given, replaces the named direction; a given focal point becomes the
+/// centre.
 View framed(const ViewSettings& settings, const Surfaces& surfaces, const glm::ivec2& size, const Aim* aim = nullptr) {
   FrameOptions options;
   if (aim) {
@@ -192,7 +194,7 @@ View framed(const ViewSettings& settings, const Surfaces& surfaces, const glm::i
   options.orthographic = settings.orthographic;
   options.objects = settings.framed.value_or(FramedObjects::subject);
   if (settings.view_angle) {
-    // The library measures the field of view over the smaller side; the flag, like f3d, from bottom to top.
+    // The library's field of view spans the smaller side of the picture; that of the flag and of f3d, its height.
     const double half = std::tan(*settings.view_angle * 0.5 * radians_per_degree);
     options.min_fov = 2 * std::atan(half * std::min(1.0, double(size.x) / size.y));
   }

@@ -20,9 +20,9 @@ void read_pose_file(ViewSettings& settings);
 /// \throws UsageError naming them
 void check_view_settings(const ViewSettings& settings);
 
-/// The view of these surfaces; `samples` is left at 1. Without a position, the model is fitted into the picture.
-/// Settings are in the coordinates of the model's file; a view is relative to the scene's origin. \throws UsageError
-/// for a camera number that the model lacks; Error from the library's own checks.
+/// Returns the view of these surfaces; `samples` is left at 1. Without a position, the model is fitted into the
+/// picture. Settings are in the coordinates of the model's file; a view is relative to the scene's origin. \throws
+/// UsageError for a camera number that the model lacks; Error from the library's own checks.
 [[nodiscard]] View resolve_view(const ViewSettings& settings, const Surfaces& surfaces);
 
 /// Whether the picture is fitted to find_subject(), so that other objects may reach out of it.

@@ -6,7 +6,7 @@
 namespace frontmost::cli {
 namespace {
 
-/// A column with the value of(row) of each row.
+/// Returns a column with the value of(row) of each row.
 template <class Value, class Rows, class Of>
 TableColumn column(const char* name, const Rows& rows, const Of& of) {
   std::vector<Value> values;

@@ -97,8 +97,8 @@ std::vector<ViewSettings> places_of(const Settings& settings) {
   return places;
 }
 
-/// Views along `count` directions on a spiral from below the model to above it. Each turns by a golden angle, so that
-/// all are about equally far from their neighbours.
+/// Returns views along `count` directions on a spiral from below the model to above it. Each direction is turned by a
+/// golden angle from the last one, so that all are about equally far from their neighbours.
 std::vector<View> views_around(const ViewSettings& settings, const Surfaces& surfaces, int count) {
   constexpr double golden_angle = 2.3999632297286533;
   const glm::dvec3 up = direction(surfaces.scene().up), side = {up.y, up.z, up.x}, third = glm::cross(up, side);
@@ -121,7 +121,7 @@ std::vector<View> views_of(const Settings& settings, const std::vector<ViewSetti
   return views;
 }
 
-/// The results.
+/// The faces that were found, and the reports about them.
 struct FacesFound {
   std::vector<PrimitiveId> ids;
   Table listed, colored;  ///< `colored` only if a model is to be written
