@@ -31,7 +31,7 @@ namespace frontmost::cli {
 /// Times in milliseconds.
 struct Timings {
   std::vector<double> visible;         ///< one for each repetition (--repeat)
-  std::optional<double> visible_maps;  ///< for the maps, if the picture has more samples than they
+  std::optional<double> visible_maps;  ///< for the maps, if the picture has several samples
   double shade = 0, save = 0;
 };
 
