@@ -203,7 +203,8 @@ class MemoryInput : public Imf::IStream {
   std::size_t place_ = 0;
 };
 
-/// The planes of `image` as memory to read from or write to, for a window whose first pixel is (left, top).
+/// Describes the planes of `image` to the library as memory to read from or write to, for a window whose first pixel is
+/// (left, top).
 Imf::FrameBuffer frame_buffer(Image& image, int left, int top) {
   const std::size_t stride = exr_value_size * std::size_t(image.width);
   Imf::FrameBuffer frame;
@@ -296,7 +297,7 @@ class DeepRow {
         counts_(std::size_t(image.width)),
         pointers_(image.channels.size(), std::vector<const char*>(std::size_t(image.width))) {}
 
-  /// The frame buffer serves all rows: each row fills the same memory anew.
+  /// Returns a frame buffer for all rows: each row fills the same memory anew.
   [[nodiscard]] Imf::DeepFrameBuffer frame_buffer() {
     Imf::DeepFrameBuffer frame;
     frame.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts_.data()), sizeof counts_[0], 0));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The image formats behind save() and load_image(), and the decoders of textures from PNG, JPEG and WebP to 8-bit RGBA.
+// The image formats behind save() and load_image(), and the decoders that turn PNG, JPEG and WebP into textures of
+// 8-bit RGBA.
 #pragma once
 
 #include <cstddef>
@@ -89,9 +90,9 @@ enum class ImagePart : std::uint8_t { size, pixels };
 [[nodiscard]] Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, ImagePart part);
 [[nodiscard]] bool has_webp();
 
-/// Every decoder calls this check between header and pixels. `densest` is the greatest number of pixels that one byte
-/// of a valid file can hold. A header that claims more belongs to a truncated or hostile file, for which no memory is
-/// allocated. `format` is the place of an error.
+/// Checks a size before any pixel is decoded; every decoder calls this function after it has read the header. `densest`
+/// is the greatest number of pixels that one byte of a valid file can hold. A header that claims more belongs to a
+/// truncated or hostile file, for which no memory is allocated. `format` is the place of an error.
 void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height, std::size_t byte_count,
                       double densest, const char* format = "");
 
@@ -102,13 +103,13 @@ inline constexpr const char* png_scale_key = "frontmost:scale";      ///< depth 
 inline constexpr const char* png_offset_key = "frontmost:offset";
 inline constexpr const char* png_ids_key = "frontmost:ids";  ///< marks an id map; id = value - 1
 
-/// A channel's values as they lie in memory, four bytes each.
+/// Returns a channel's values as they lie in memory, four bytes each.
 [[nodiscard]] inline const std::byte* bytes_of(const Channel& channel) {
   return channel.is_integer() ? reinterpret_cast<const std::byte*>(channel.integers().data())
                               : reinterpret_cast<const std::byte*>(channel.floats().data());
 }
 
-/// The image's channel names as "R, G, B", for messages.
+/// Returns the image's channel names as "R, G, B", for messages.
 [[nodiscard]] std::string channel_list(const Image& image);
 
 }  // namespace frontmost::detail

@@ -58,7 +58,7 @@ void write_raw(const Image& image, const RawLayout& layout, OutputFile& file) {
   }
 }
 
-/// Channel names for formats that store none: see load_image().
+/// Returns channel names for formats that store none: see load_image().
 std::vector<std::string> default_channel_names(std::size_t count, bool integers) {
   if (count == 1) return {integers ? "primitive" : "Z"};
   if (count == 3 && !integers) return {"R", "G", "B"};
@@ -68,7 +68,8 @@ std::vector<std::string> default_channel_names(std::size_t count, bool integers)
   return names;
 }
 
-/// \throws Error file_malformed if `bytes` does not have exactly the layout's size; limit_exceeded.
+/// Reads the channels behind the header. \throws Error file_malformed if `bytes` does not have exactly the layout's
+/// size; limit_exceeded.
 Image read_raw(std::span<const std::byte> bytes, const RawLayout& layout, const std::string& name, const char* format) {
   constexpr std::size_t most_channels = 1024;
   if (layout.channels < 1 || layout.channels > most_channels)
@@ -116,7 +117,7 @@ std::string shape_of(const Image& image) {
   return shape;
 }
 
-/// The dictionary's text, and its end, at which the numbers begin.
+/// The text of the dictionary, and the place in the file where it ends and the numbers begin.
 struct Dictionary {
   std::string_view text;
   std::size_t end = 0;
@@ -137,7 +138,7 @@ Dictionary dictionary(std::span<const std::byte> bytes, const std::string& name)
   return {{reinterpret_cast<const char*>(bytes.data()) + start, length}, start + length};
 }
 
-/// The text behind `key` and a colon in the dictionary. NumPy always writes keys in single quotes.
+/// Returns the text that follows `key` and a colon in the dictionary. NumPy always writes keys in single quotes.
 std::string_view value_of(std::string_view text, std::string_view key, const std::string& name) {
   // This is no parser of Python: keys are found as NumPy writes them, and any other spelling is refused.
   const std::size_t place = text.find(key);

@@ -34,7 +34,7 @@ struct PixelSpan {
 
 using TerminalColor = std::array<double, 4>;
 
-/// The mean colour of a box, in linear light and premultiplied, so that edges keep their brightness.
+/// Returns the mean colour of a box, in linear light and premultiplied, so that edges keep their brightness.
 TerminalColor box_mean(const ColorPlanes& planes, const PixelSpan& columns, const PixelSpan& rows) {
   TerminalColor sum{};
   double weights = 0;

@@ -23,8 +23,8 @@ namespace {
 using detail::append_bytes;
 using detail::FileBytes;
 
-/// One object's triangles in the file's coordinates. Triangles of mirrored objects get the opposite winding, so that
-/// their outer side stays outside.
+/// The triangles of one object in the file's coordinates. Triangles of mirrored objects get the opposite winding, so
+/// that their outer side stays outside.
 class PlacedMesh {
  public:
   PlacedMesh(const Scene& scene, const Instance& instance)
@@ -123,7 +123,7 @@ void write_stl(const Scene& scene, OutputFile& file) {
 
 using Json = nlohmann::ordered_json;
 
-// Numbers of these constants in glTF.
+// The numbers by which glTF names types and uses of buffers.
 constexpr int float_type = 5126, unsigned_int_type = 5125, vertex_target = 34962, index_target = 34963;
 
 float within(float value, float low, float high) { return std::clamp(std::isfinite(value) ? value : low, low, high); }
@@ -145,7 +145,7 @@ class GlbDocument {
  public:
   explicit GlbDocument(const Scene& scene) : scene_(scene) {}
 
-  /// The whole JSON part except the buffer, which is the file's second part.
+  /// The whole JSON part except for the buffer, which is the file's second part.
   Json json = {{"asset", {{"version", "2.0"}, {"generator", "Frontmost"}}}};
   std::string buffer;
 
@@ -158,7 +158,7 @@ class GlbDocument {
     buffer += bytes;
     return append("bufferViews", std::move(view));
   }
-  /// \returns the number of the accessor.
+  /// Adds an accessor and a view with its bytes. \returns the number of the accessor.
   std::size_t add_accessor(Json accessor, const std::string& bytes, int target) {
     accessor["bufferView"] = add_view(bytes, target);
     return append("accessors", std::move(accessor));
@@ -313,7 +313,7 @@ std::size_t GlbDocument::material(std::uint32_t number) {
   return place->second;
 }
 
-/// Indices of a corner's values: position, normal, colour, and texture coordinates by set.
+/// The numbers of a corner's values: position, normal, colour, and texture coordinates by set.
 using CornerKey = std::array<std::uint32_t, 3 + max_texcoord_sets>;
 
 CornerKey corner_key(const Mesh& mesh, std::uint32_t triangle, int corner) {
@@ -376,14 +376,15 @@ bool is_all_finite(const std::vector<T>& values) {
   return true;
 }
 
-/// glTF requires normals of unit length. If any normal has no direction, none are written, and readers compute them.
+/// Whether the normals of a mesh are written. glTF requires normals of unit length. If any normal has no direction,
+/// none are written, and readers compute them.
 bool has_normals(const Mesh& mesh) {
   return !mesh.normals.empty() && is_all_finite(mesh.normals.values) &&
          std::all_of(mesh.normals.values.begin(), mesh.normals.values.end(),
                      [](const glm::vec3& n) { return glm::length(glm::dvec3(n)) > 1e-30; });
 }
 
-/// The primitive that holds the triangles of one material.
+/// Returns the primitive that holds the triangles of one material.
 Json part_json(GlbDocument& document, const Mesh& mesh, std::uint32_t material,
                const std::vector<std::uint32_t>& triangles) {
   const WeldedCorners corners = weld_corners(mesh, triangles);
@@ -424,7 +425,7 @@ Json mesh_json(GlbDocument& document, const Mesh& mesh) {
   return parts.empty() ? Json() : Json{{"name", utf8_text(mesh.name)}, {"primitives", std::move(parts)}};
 }
 
-/// The transform from the scene's axes and origin to the axes of glTF's world, in which y is up and z is front.
+/// Returns the transform from the scene's axes and origin to the axes of glTF's world, in which y is up and z is front.
 Json root_matrix(const Scene& scene) {
   const glm::dvec3 up = direction(scene.up), right = up.x == 0 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 front = glm::cross(right, up);

@@ -12,7 +12,7 @@ namespace {
 struct Converter {
   std::string_view program, command;
 };
-// Gmsh tessellates by OpenCASCADE, 48 edges a circle; assimp keeps materials and the tree of objects.
+// Gmsh tessellates by OpenCASCADE, here with 48 edges for a circle. Assimp keeps materials and the tree of objects.
 constexpr Converter gmsh{"Debian package gmsh", "gmsh -2 -clcurv 48 {in} -o {out}.stl"};
 constexpr Converter assimp{"Debian package assimp-utils", "assimp export {in} {out}.glb"};
 constexpr Converter blender{
@@ -45,7 +45,8 @@ struct ForeignExtension {
   std::string_view name;
   const Converter& converter;
 };
-/// Table of extensions. The first one that a file has chooses the command, which also decodes the later ones.
+/// Extensions in order of precedence. The first one that a file has chooses the command, which also decodes the later
+/// ones.
 constexpr ForeignExtension foreign_extensions[] = {{"KHR_texture_basisu", ktx_to_png},
                                                    {"EXT_texture_webp", webp_to_png},
                                                    {"KHR_draco_mesh_compression", decompress},

@@ -22,7 +22,7 @@ class Coordinates {
       : origin_(origin), is_home_(origin == glm::dvec3(0)), is_looking_(false) {}
 
   [[nodiscard]] glm::vec3 operator()(const glm::dvec3& exact) { return (*this)(glm::vec3(exact), exact); }
-  /// The position of `exact`. `rounded` is the same number, rounded to the nearest float.
+  /// Returns the position of `exact`. `rounded` is the same number, rounded to the nearest float.
   [[nodiscard]] glm::vec3 operator()(const glm::vec3& rounded, const glm::dvec3& exact) {
     if (!is_home_) return glm::vec3(exact - origin_);
     if (is_looking_) search_.include(exact);
@@ -30,7 +30,7 @@ class Coordinates {
   }
   /// Whether found() will stay zero, whatever coordinates follow.
   [[nodiscard]] bool is_settled() const { return search_.is_home(); }
-  /// The origin that suits all coordinates so far.
+  /// Returns the origin that suits all coordinates so far.
   [[nodiscard]] glm::dvec3 found() const { return search_.origin(); }
 
  private:
@@ -39,8 +39,8 @@ class Coordinates {
   bool is_home_ = true, is_looking_ = true;
 };
 
-/// Calls `read` with coordinates about zero. If the model lies far from zero, calls `read` again with a better origin,
-/// which becomes the scene's.
+/// Reads a model once, or twice if it lies far from zero: calls `read` with coordinates about zero, and perhaps again
+/// with a better origin, which becomes the scene's.
 template <class Read>
 [[nodiscard]] Scene read_about_origin(const Read& read) {
   Coordinates home;

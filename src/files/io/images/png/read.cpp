@@ -17,7 +17,7 @@
 namespace frontmost::detail {
 namespace {
 
-/// Chunks that libpng must not see: none of them changes a pixel here, and compressed ones may be huge.
+/// Chunks that libpng must not see. None of them changes a pixel here, and compressed ones may be huge.
 constexpr png_byte unread_chunks[] = "iCCP\0zTXt\0iTXt\0eXIf\0sPLT\0hIST\0gAMA\0cHRM\0sRGB";
 constexpr png_byte text_chunk[] = "tEXt";
 
@@ -69,7 +69,7 @@ class PngReader {
   /// Whether the file has one channel and no palette.
   [[nodiscard]] bool is_grey() const { return png_get_color_type(png_, info_) == PNG_COLOR_TYPE_GRAY; }
 
-  /// Text chunks before the pixels, by keyword.
+  /// Returns the texts of the chunks before the pixels, by keyword.
   [[nodiscard]] std::map<std::string, std::string> texts() const {
     std::map<std::string, std::string> result;
     png_textp texts = nullptr;

@@ -83,8 +83,9 @@ namespace {
 constexpr std::uint32_t deflate_level = 1;
 constexpr std::size_t level_memory_size = ISAL_DEF_LVL1_DEFAULT;
 
-/// Size below which zlib compresses. In about one process of a hundred, ISA-L 2.30 packs small pictures into different,
-/// though valid, bytes. Differences occurred up to 2 kB, and in none of 8400 pieces from 3 kB on.
+/// Number of bytes below which a piece is compressed by zlib instead. In about one process of a hundred, ISA-L 2.30
+/// packs small pictures into different, though valid, bytes. Differences occurred up to 2 kB, and in none of 8400
+/// pieces from 3 kB on.
 constexpr std::size_t small_piece = 8192;
 
 /// Returns the most bytes that `raw` bytes can become. Bytes that do not shrink are stored in blocks of 65535, each

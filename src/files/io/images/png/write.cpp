@@ -69,7 +69,7 @@ std::string_view as_text(const ByteVector& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Signature and all chunks before the pixels.
+/// Returns the signature and all chunks before the pixels.
 ByteVector head(const PngContents& contents) {
   ByteVector header;
   append_word(header, std::uint32_t(contents.width));
@@ -155,7 +155,7 @@ Strip make_strip(const PngContents& contents, int first, int end, Workspace& spa
   return strip;
 }
 
-/// The end of the zlib stream and of the file.
+/// Returns the end of the zlib stream and of the file.
 ByteVector tail(const std::vector<Strip>& strips) {
   uLong checksum = 1;  // Adler-32 of no bytes
   for (const Strip& strip : strips) checksum = ::adler32_combine(checksum, strip.checksum, z_off_t(strip.raw_size));
@@ -192,7 +192,7 @@ void store_big_endian(std::uint8_t* place, unsigned value) {
   place[1] = std::uint8_t(value);
 }
 
-/// `number` with all digits that a double has.
+/// Returns `number` with all digits that a double has.
 std::string digits(double number) { return general_text(number, 17); }
 
 PngContents colors(PictureRows rows) {
@@ -235,7 +235,7 @@ PngContents directions(const Image& image, int bits) {
   return contents;
 }
 
-/// stored = depth * scale + offset, rounded; 0 if the pixel shows nothing.
+/// How depths are stored: depth * scale + offset, rounded, or 0 if the pixel shows nothing.
 struct DepthMapping {
   double scale = 1, offset = 0;
 
@@ -255,7 +255,8 @@ DepthMapping fitted_mapping(const Buffer<float>& depths) {
   return {scale, 1 - double(low) * scale};
 }
 
-/// A fixed scale promises what the numbers mean, so depths beyond it are an error and are not clipped.
+/// Returns the mapping with a scale that the caller chose. The scale promises what the numbers mean, so depths beyond
+/// it are an error and are not clipped.
 DepthMapping fixed_mapping(const Channel& channel, double scale, const std::string& name) {
   if (!(scale > 0) || !std::isfinite(scale))
     throw Error(ErrorCode::bad_argument, name, "", "the depth scale must be a positive number");

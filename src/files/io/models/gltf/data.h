@@ -34,7 +34,7 @@ struct Container {
 [[nodiscard]] bool is_data_uri(std::string_view uri);
 /// Decodes "data:[TYPE][;base64],...". `place` is the value that holds the URI.
 [[nodiscard]] std::vector<std::byte> decode_data_uri(std::string_view uri, const JsonValue& place);
-/// Decodes %20 and the like; text that is no valid escape stays.
+/// Decodes %20 and the like. Text that is no valid escape stays.
 [[nodiscard]] std::string percent_decode(std::string_view text);
 
 enum class Component : std::uint16_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
@@ -83,11 +83,11 @@ class Data {
   [[nodiscard]] std::size_t view_count() const { return views_.size(); }
   [[nodiscard]] std::size_t accessor_count() const { return accessors_.size(); }
   [[nodiscard]] const Accessor& accessor(std::uint32_t i) const { return accessors_[i]; }
-  /// The accessor that `user` names. \throws Error if it cannot be read.
+  /// Returns the number of the accessor that `user` names. \throws Error if it cannot be read.
   [[nodiscard]] std::uint32_t readable_accessor(const JsonValue& user) const;
-  /// The bytes of a view, which must have contents. `user` is the place that refers to the view.
+  /// Returns the bytes of a view, which must have contents. `user` is the place that refers to the view.
   [[nodiscard]] Bytes view_bytes(std::uint32_t i, const JsonValue& user) const;
-  /// Size of the file and of the files that it names, in bytes.
+  /// Returns the size of the file and of the files that it names, in bytes.
   [[nodiscard]] std::uint64_t byte_count() const;
 
   /// Keeps decoded bytes. \returns a view of them, valid during the object's lifetime.
@@ -137,8 +137,8 @@ struct DecodedPrimitive {
 class DracoPrimitives {
  public:
   explicit DracoPrimitives(Data& data) : data_(data), budget_(data.byte_count()) {}
-  /// Empty if the primitive is not compressed or if this build has no Draco. \throws Error file_malformed, unsupported,
-  /// limit_exceeded.
+  /// Returns the decoded arrays, or nothing if the primitive is not compressed or if this build has no Draco. \throws
+  /// Error file_malformed, unsupported, limit_exceeded.
   [[nodiscard]] std::optional<DecodedPrimitive> decode(const JsonValue& primitive);
 
  private:

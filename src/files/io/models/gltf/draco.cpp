@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Primitives compressed by Draco; their decoded arrays become accessors of the file.
+// Primitives compressed by Draco. Their decoded arrays become accessors of the file.
 //
 // Draco's decoder checks what it reads, but allocates memory by the numbers in its data: a stream of 20 bytes may state
 // a billion triangles, or an attribute of 255 components. So classes derived from its decoders check these numbers:

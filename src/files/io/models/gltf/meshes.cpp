@@ -22,7 +22,7 @@ struct VertexRun {
   std::string place;      ///< place of the first primitive that uses the run
 };
 
-/// The values of a set of texture coordinates. Creates the set if absent.
+/// Returns the values of a set of texture coordinates. Creates the set if it is absent.
 std::vector<glm::vec2>& texcoords_of(Mesh& mesh, std::size_t set) {
   if (set == 0) return mesh.texcoords.values;
   if (mesh.further_texcoords.size() < set) mesh.further_texcoords.resize(set);
@@ -64,8 +64,8 @@ class Influences {
     }
   }
 
-  /// The weighted mean of the joints' matrices. Weights stored as bytes may not sum to exactly one, so the sum is
-  /// divided out.
+  /// Returns the weighted mean of the joints' matrices. Weights stored as bytes may not sum to exactly one, so the sum
+  /// is divided out.
   [[nodiscard]] glm::dmat4 matrix(std::size_t vertex, std::span<const glm::dmat4> joints) const {
     glm::dmat4 sum(0.0);
     double total = 0;
@@ -84,7 +84,7 @@ class Influences {
   std::vector<float> weights_;
 };
 
-/// The inverse transpose up to a positive factor. It also exists for singular matrices.
+/// Returns the inverse transpose up to a positive factor. It also exists for singular matrices.
 glm::dmat3 normal_matrix(const glm::dmat3& m) {
   const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
   return glm::dot(m[0], cofactors[0]) < 0 ? -cofactors : cofactors;
@@ -289,7 +289,8 @@ class MeshBuilder {
       mesh_.positions[i] = glm::vec3(glm::dvec3(mesh_.positions[i]) - origin);
   }
 
-  /// Posing takes no memory, but many targets of many vertices would take too long.
+  /// Charges the budget for the work of a pose. Posing takes no memory, but many targets of many vertices would take
+  /// too long.
   void charge_pose(const VertexRun& block, const VertexPose& pose) {
     const auto targets =
         std::size_t(std::count_if(pose.weights.begin(), pose.weights.end(), [](double w) { return w != 0; }));

@@ -19,7 +19,7 @@
 namespace frontmost::gltf {
 namespace {
 
-/// Sizes of the arrays that nodes refer to.
+/// The lengths of the lists that nodes refer to.
 struct Counts {
   std::size_t nodes, meshes, skins, cameras, lights;
 };
@@ -147,7 +147,7 @@ std::vector<std::uint32_t> place_in_world(std::vector<Node>& nodes, const ModelS
   return roots;
 }
 
-/// Start nodes of the shown scene. A start node with a parent keeps the parent's transform.
+/// Returns the nodes at which the shown scene starts. A start node with a parent keeps the parent's transform.
 std::vector<std::uint32_t> scene_starts(const JsonValue& root, std::size_t node_count,
                                         std::vector<std::uint32_t> roots) {
   const std::size_t scene_count = root.count("scenes");
@@ -159,11 +159,11 @@ std::vector<std::uint32_t> scene_starts(const JsonValue& root, std::size_t node_
   return starts;
 }
 
-/// Matrices world_from_joint * inverse bind matrix for the joints of a skin, in rest pose.
+/// For each joint of a skin in rest pose, the matrix world_from_joint * inverse bind matrix.
 using Joints = std::vector<glm::dmat4>;
 
-/// Skinned vertices are stored in world space; if they lie far from zero, they are stored relative to an origin near
-/// them.
+/// The joints of a skin. Skinned vertices are stored in world space, or relative to an origin near them if they lie far
+/// from zero.
 struct Skin {
   Joints joints;
   glm::dvec3 origin{0};
@@ -293,7 +293,7 @@ class PosedMeshes {
     return number;
   }
 
-  /// EXT_mesh_gpu_instancing: adds one instance for each element of its attributes.
+  /// Adds one instance for each element of the attributes of EXT_mesh_gpu_instancing.
   void place_copies(const Node& node, const Instance& first) {
     const InstancingAccessors& copies = *node.copies;
     budget_.charge(copies.count, sizeof(Instance) + first.name.size() + 64, node.place, source_);

@@ -65,7 +65,7 @@ struct MeshPlan {
 [[nodiscard]] std::vector<MeshPlan> plan_meshes(const JsonValue& root, Data& data, const MaterialList& materials,
                                                 std::vector<std::string>& warnings);
 
-/// Deformation of vertices: by morph targets, then by joints.
+/// A deformation of vertices: by morph targets, then by joints.
 struct VertexPose {
   std::vector<double> weights;              ///< one per morph target, or none
   std::span<const glm::dmat4> joints = {};  ///< world_from_joint * inverse bind matrix; empty: no skin
@@ -76,7 +76,7 @@ struct VertexPose {
 [[nodiscard]] Mesh read_mesh(const MeshPlan& plan, const VertexPose& pose, const Data& data, Budget& budget,
                              const ModelSource& source, std::vector<std::string>& warnings);
 
-/// Accessors of EXT_mesh_gpu_instancing.
+/// The numbers of the accessors that EXT_mesh_gpu_instancing names.
 struct InstancingAccessors {
   std::size_t count = 0;
   std::uint32_t translation = no_index, rotation = no_index, scale = no_index;
@@ -104,7 +104,7 @@ struct NodeTree {
 /// parents and for loops.
 [[nodiscard]] NodeTree read_nodes(const JsonValue& root, const Data& data, std::vector<std::string>& warnings);
 
-/// The transform composed of translation, rotation (x, y, z, w; any length) and scale.
+/// Returns the transform composed of translation, rotation (x, y, z, w; any length) and scale.
 [[nodiscard]] glm::dmat4 compose(const glm::dvec3& translation, const glm::dvec4& rotation, const glm::dvec3& scale);
 
 /// Fills scene.meshes and scene.instances. Meshes keep the file's numbers; further poses of a mesh are appended at the
@@ -116,7 +116,7 @@ void place_meshes(const JsonValue& root, const Data& data, const std::vector<Mes
 /// requires.
 void place_cameras(const JsonValue& root, const NodeTree& tree, Scene& scene);
 
-/// The list of lights that nodes refer to by number (KHR_lights_punctual), or nothing.
+/// Returns the list of lights that nodes refer to by number (KHR_lights_punctual), or nothing.
 [[nodiscard]] std::optional<JsonValue> find_lights(const JsonValue& root);
 /// Fills scene.lights, one for each shown node that has a light and is not hidden.
 void place_lights(const JsonValue& root, const NodeTree& tree, Scene& scene);

@@ -24,7 +24,7 @@ Texture::Wrap wrap_of(std::uint64_t code) {
 }
 constexpr std::uint64_t repeat_code = 10497, nearest_code = 9728;
 
-/// The text of a warning about a texture without an image that can be read.
+/// Returns the text of a warning about a texture without an image that can be read.
 std::string lack_of_image(const JsonValue& texture) {
   if (texture.extension("KHR_texture_basisu")) {
     const auto advice = conversion_of_extensions({"KHR_texture_basisu"}, texture.source().name());
