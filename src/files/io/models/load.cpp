@@ -20,7 +20,7 @@
 namespace frontmost {
 namespace {
 
-/// The first bytes as text, without leading white space and comment lines.
+/// Returns the first bytes as text, without leading white space and comment lines.
 std::string_view first_statement(Bytes bytes) {
   constexpr std::size_t window = 1 << 16;
   std::string_view text = text_of(bytes.first(std::min(bytes.size(), window)));
@@ -52,7 +52,7 @@ bool looks_like_obj(std::string_view text) {
 /// searched.
 bool has_asset(Bytes bytes) { return text_of(bytes).find("\"asset\"") != std::string_view::npos; }
 
-/// A remark about the points of a scene without triangles.
+/// Returns a remark about the points of a scene without triangles.
 std::string points_told(const Scene& scene) {
   std::size_t points = 0;
   for (const Mesh& mesh : scene.meshes) points += mesh.positions.size();

@@ -28,12 +28,12 @@ namespace {
 struct BlockableEar {
   const std::array<glm::vec2, 3>& corners;
 
-  /// For each of the edges ab, bc and ca, the side on which a point lies; +1 is the inner side.
+  /// Returns for each of the edges ab, bc and ca the side on which a point lies; +1 is the inner side.
   [[nodiscard]] std::array<int, 3> sides(const glm::vec2& p) const {
     const auto& [a, b, c] = corners;
     return {orientation(a, b, p), orientation(b, c, p), orientation(c, a, p)};
   }
-  /// False only if the ear holds no point of the box, not even on its edges.
+  /// Whether the ear may hold a point of the box. False only if it holds none, not even on its edges.
   [[nodiscard]] bool may_hold(const glm::vec2& low, const glm::vec2& high) const {
     for (std::size_t k = 0; k < 3; ++k) {
       const glm::vec2 &from = corners[k], &to = corners[(k + 1) % 3];
@@ -82,7 +82,7 @@ class CornerTree {
     nodes_[0] = {{}, {}, 0, count, 0};
     build(0);
   }
-  /// O(log n).
+  /// Sets or clears the mark of a corner. O(log n).
   void mark(std::uint32_t corner, bool is_marked) {
     if (bool(is_marked_[corner]) == is_marked) return;
     is_marked_[corner] = is_marked;
@@ -166,7 +166,7 @@ class CornerTree {
 
 namespace {
 
-/// Twice the polygon's area, projected along each axis (M. Newell).
+/// Returns twice the polygon's area, projected along each axis (M. Newell).
 glm::dvec3 area_vector(std::span<const glm::vec3> corners) {
   glm::dvec3 sum{0};
   const glm::dvec3 origin(corners[0]);
@@ -175,7 +175,7 @@ glm::dvec3 area_vector(std::span<const glm::vec3> corners) {
   return sum;
 }
 
-/// Clamps to [0, 1]. NaN gives 1, so that an undefined colour changes nothing.
+/// Clamps a value to [0, 1]. NaN becomes 1, so that an undefined colour changes nothing.
 float clamped(float value) { return value < 0 ? 0.0f : (value < 1 ? value : 1.0f); }
 
 float linear(float srgb) {

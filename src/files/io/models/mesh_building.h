@@ -11,7 +11,7 @@
 
 namespace frontmost {
 
-/// Greatest number of objects: each costs some hundred bytes, and a few bytes of text can start one.
+/// Greatest number of objects, because each costs some hundred bytes, and a few bytes of text can start one.
 inline constexpr std::size_t max_objects = std::size_t(1) << 20;
 
 /// Adds an empty mesh and its one instance, both called `name`. The error names `place` if there are too many objects.
@@ -48,7 +48,7 @@ class PolygonWriter {
                                   Mesh& mesh);
   /// Starts another mesh, whose first face is 0.
   void restart() { face_ = 0; }
-  /// The number of polygons with fewer than three corners, over all meshes.
+  /// Returns the number of polygons with fewer than three corners, over all meshes.
   [[nodiscard]] std::uint64_t skipped_count() const { return skipped_; }
 
  private:
@@ -60,7 +60,7 @@ class PolygonWriter {
   std::uint64_t skipped_ = 0;
 };
 
-/// A warning for Scene::warnings about polygons that PolygonWriter skipped.
+/// Returns a warning for Scene::warnings about polygons that PolygonWriter skipped.
 [[nodiscard]] std::string skipped_faces_warning(std::uint64_t count);
 
 /// Converts a colour of a file, sRGB from 0 to 1, to a linear one. Alpha is linear in both. NaN counts as 1.

@@ -27,7 +27,7 @@ bool leaves_folder(const std::string& reference) {
   return !normal.empty() && *normal.begin() == "..";
 }
 
-/// The start of `text`, at most `longest` bytes, cut between UTF-8 characters.
+/// Returns the start of `text`, at most `longest` bytes, cut between UTF-8 characters.
 std::string_view start_of(std::string_view text, std::size_t longest) {
   if (text.size() <= longest) return text;
   const auto continues = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80; };

@@ -20,7 +20,7 @@
 namespace frontmost {
 namespace {
 
-/// Colours as read, 0 to 255 or 0 to 1. The range is known after all were read.
+/// Colours as the file states them, from 0 to 255 or from 0 to 1. The range is known after all were read.
 class RawColors {
  public:
   void add(const glm::vec4& color) {
@@ -41,7 +41,7 @@ class RawColors {
     for (glm::vec4& color : colors_) color = linear_color(color / range);
     return std::move(colors_);
   }
-  /// NaN stands for opaque white, because the scale of the colours is not known yet.
+  /// Returns a value for no colour. NaN stands for opaque white, because the scale of the colours is not known yet.
   static glm::vec4 none() { return glm::vec4(std::numeric_limits<float>::quiet_NaN()); }
 
  private:
@@ -162,7 +162,7 @@ class OffReader {
     while (count < 6 && !text_.at_line_end() && text_.number(values[count])) ++count;
     return count;
   }
-  /// A colour of three or four components. Other counts, such as an index of a colour map, give no colour.
+  /// Returns a colour of three or four components. Other counts, such as an index of a colour map, give no colour.
   static glm::vec4 color(const float (&values)[6], int count) {
     if (count != 3 && count != 4) return RawColors::none();
     return {values[0], values[1], values[2], count == 4 ? values[3] : std::numeric_limits<float>::quiet_NaN()};

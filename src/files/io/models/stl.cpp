@@ -56,7 +56,7 @@ std::uint16_t attribute_of(Bytes record) {
   return read_value<std::uint16_t>(record.data() + attribute_offset, Endian::little);
 }
 
-/// Colours of triangles. Two groups of programs store them in the two bytes behind each triangle, 5 bits a channel:
+/// The colours of triangles. Two groups of programs store them in the two bytes behind each triangle, 5 bits a channel:
 /// - VisCAM and SolidView: if bit 15 is set, the triangle has a colour, with blue in the lowest bits;
 /// - Magics: the header has "COLOR=" and the colour of the whole part. If bit 15 is clear, a triangle has its own
 ///   colour, with red in the lowest bits. MeshLab writes such files with bit 15 set.
@@ -117,7 +117,7 @@ void color_records(Bytes records, const StlColors& colors, std::size_t first, Me
   }
 }
 
-/// The count in the header, which cannot be trusted.
+/// Returns the count in the header, which cannot be trusted.
 std::uint64_t promised_count(Bytes prelude) {
   return read_value<std::uint32_t>(prelude.data() + header_size, Endian::little);
 }
@@ -151,7 +151,7 @@ std::uint64_t checked_count(Bytes prelude, std::uint64_t file_size, const ModelS
   return promised;
 }
 
-/// The solid's name, if the header is text. Exporters often put "solid NAME" there.
+/// Returns the solid's name, if the header is text. Exporters often put "solid NAME" there.
 std::string header_name(Bytes prelude) {
   std::string name(reinterpret_cast<const char*>(prelude.data()), header_size);
   name.resize(std::min(name.find('\0'), name.size()));
@@ -220,7 +220,8 @@ Scene read_binary_stl(Bytes bytes, const ModelSource& source) {
   return scene;
 }
 
-/// Text: each solid becomes a mesh. Words may be in any case and anywhere on a line, as in files from the wild.
+/// Reads text, in which each solid becomes a mesh. Words may be in any case and anywhere on a line, as in files from
+/// the wild.
 ///
 ///   solid NAME
 ///     facet normal nx ny nz
@@ -385,7 +386,7 @@ class StlStream final : public ModelStream {
   }
 
  private:
-  /// The best origin. The first piece suffices if the model lies near zero.
+  /// Returns the best origin. The first piece suffices if the model lies near zero.
   glm::dvec3 fitting_origin() {
     constexpr std::uint64_t triangles_at_once = 4096;
     OriginSearch search;
@@ -399,7 +400,7 @@ class StlStream final : public ModelStream {
     return search.origin();
   }
 
-  /// Reports a pipe that ends early; the size of a file would have told this before.
+  /// Reports a pipe that ends early. The size of a file would have told this before.
   void end_early(std::size_t rest) {
     if (is_open_ && rest != 0)
       source_.fail("triangle " + std::to_string(next_),

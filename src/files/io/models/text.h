@@ -26,7 +26,8 @@ namespace frontmost {
 // slow path.
 
 namespace detail {
-/// The general case: many digits, large exponents, nan and inf in every spelling. Returns null if there is no number.
+/// Reads numbers of the general form: many digits, large exponents, nan and inf in every spelling. Returns null if
+/// there is no number.
 const char* parse_float_slowly(const char* at, const char* end, float& value);
 const char* parse_double_slowly(const char* at, const char* end, double& value);
 
@@ -86,7 +87,7 @@ inline const char* parse_float(const char* at, const char* end, float& value) {
   return after;
 }
 
-/// Reads a number as the nearest double; otherwise like parse_float().
+/// Reads a number as the nearest double. Otherwise like parse_float().
 inline const char* parse_double(const char* at, const char* end, double& exact) {
   const char* const after = detail::parse_short(at, end, exact);
   return after != nullptr ? after : detail::parse_double_slowly(at, end, exact);
@@ -99,7 +100,7 @@ inline const char* parse_both(const char* at, const char* end, float& value, dou
   return detail::parse_float_slowly(at, end, value);
 }
 
-/// The value of a hexadecimal digit; -1 for other characters.
+/// Returns the value of a hexadecimal digit, or -1 for other characters.
 inline int hex_digit(char c) {
   if (detail::is_digit(c)) return c - '0';
   const char lower = char(c | 0x20);
@@ -158,14 +159,14 @@ class TextScanner {
     return true;
   }
 
-  /// The next word of this line; empty at its end.
+  /// Takes the next word of this line. \returns the word, which is empty at the end of the line.
   std::string_view word() {
     if (at_line_end()) return {};
     const char* const start = at_;
     while (at_ != end_ && !is_space(*at_)) ++at_;
     return {start, std::size_t(at_ - start)};
   }
-  /// The rest of the line, with comments, without blanks around it.
+  /// Takes the rest of the line, with comments. \returns the rest without blanks around it.
   std::string_view rest() {
     skip_blanks();
     const char* const start = at_;

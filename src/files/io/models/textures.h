@@ -15,12 +15,12 @@
 
 namespace frontmost {
 
-/// Budget of pixels. A file of 32 kB can hold an image of a gigabyte in one colour, but real images have some 1 to 30
-/// pixels a byte. Each byte of an image file allows 64 pixels; 8192 x 8192 more are free.
+/// A budget of pixels. A file of 32 kB can hold an image of a gigabyte in one colour, but real images have some 1 to 30
+/// pixels a byte. Each byte of an image file allows 64 pixels, and 8192 x 8192 more are free.
 class PixelBudget {
  public:
   void add_file(std::uint64_t byte_count) { left_ += pixels_per_byte * byte_count; }
-  /// \returns false, without taking any pixels, if they exceed the budget.
+  /// Takes pixels from the budget. \returns false, without taking any, if they exceed the budget.
   [[nodiscard]] bool take(std::uint64_t pixels) {
     if (pixels > left_) return false;
     left_ -= pixels;
@@ -50,7 +50,7 @@ class TextureFiles {
  public:
   TextureFiles(const ModelSource& source, Scene& scene) : source_(source), scene_(scene) {}
 
-  /// The number of a texture in the scene. Files that cannot be read are left out, with a warning at `place`.
+  /// Returns the number of a texture in the scene. Files that cannot be read are left out, with a warning at `place`.
   MadeTexture get(const TextureParts& parts, const std::string& place);
 
  private:

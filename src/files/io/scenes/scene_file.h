@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contents of a scene file before any model is read. The file is JSON that places models:
+// The contents of a scene file before any model is read. The file is JSON that places models:
 //
 //   {"up": "z", "metres_per_unit": 0.001,
 //    "objects": [{"model": "cup.ply", "name": "left cup", "category": "cup", "pose": [16 numbers], "material": "red"},
@@ -46,12 +46,12 @@ struct SceneFile {
   std::vector<PlacedModel> objects;
 };
 
-/// \throws Error file_malformed or limit_exceeded: "name: place: reason".
+/// Parses the text of a scene file. \throws Error file_malformed or limit_exceeded: "name: place: reason".
 [[nodiscard]] SceneFile parse_scene_file(std::string_view text, const ModelSource& source);
 
-/// All objects of a model as one mesh, in their order, in the model's space: relative to its origin, rounded to floats.
-/// If some meshes have normals, colours or texture coordinates, the others get the values that count as missing.
-/// Preconditions: the model is valid and has no curved meshes. O(triangles).
+/// Returns all objects of a model as one mesh, in their order, in the model's space: relative to its origin, rounded to
+/// floats. If some meshes have normals, colours or texture coordinates, the others get the values that count as
+/// missing. Preconditions: the model is valid and has no curved meshes. O(triangles).
 [[nodiscard]] Mesh one_mesh(const Scene& model);
 
 }  // namespace frontmost

@@ -123,7 +123,7 @@ std::uint64_t bytes_of(const Attribute<T>& attribute) {
   return attribute.values.size() * sizeof(T) + attribute.triangles.size() * sizeof(glm::uvec3);
 }
 
-/// Memory of a copy of a mesh, with room for the corner indices that one_mesh() may add to attributes.
+/// Returns the memory of a copy of a mesh, with room for the corner indices that one_mesh() may add to attributes.
 std::uint64_t bytes_of(const Mesh& mesh) {
   constexpr std::uint64_t corner_lists = 2 + max_texcoord_sets;
   std::uint64_t bytes = mesh.positions.size() * sizeof(glm::vec3) + bytes_of(mesh.normals) + bytes_of(mesh.texcoords) +
@@ -132,7 +132,7 @@ std::uint64_t bytes_of(const Mesh& mesh) {
   return bytes;
 }
 
-/// Total size of the files that a model was read from.
+/// Returns the total size of the files that a model was read from.
 std::uint64_t file_bytes(const SceneSource& source) {
   std::uint64_t bytes = 0;
   for (const std::filesystem::path& path : source.files) {
@@ -150,7 +150,7 @@ struct RigidPlace {
   double growth;  ///< factor of lengths along the direction of view or of the light
 };
 
-/// Precondition: the transform is not singular.
+/// Returns the place that a transform gives. Precondition: the transform is not singular.
 RigidPlace rigid_place(const glm::dmat4& placed) {
   const glm::dvec3 back(placed[2]), right = glm::cross(glm::dvec3(placed[1]), back);
   const double length = glm::length(back);
@@ -179,7 +179,7 @@ Light transformed(Light light, const glm::dmat4& scene_from_model) {
   return light;
 }
 
-/// One model as read from its file, and those of its meshes that are in the scene already.
+/// A model as read from its file, and those of its meshes that are in the scene already.
 class PlacedMeshes {
  public:
   /// Moves the model's materials and textures to the scene.
@@ -198,8 +198,8 @@ class PlacedMeshes {
 
   [[nodiscard]] const Scene& model() const { return model_; }
 
-  /// The objects of the scene that one object of the scene file makes. `scene_from_model` applies to the model's
-  /// coordinates.
+  /// Returns the objects of the scene that one object of the scene file makes. `scene_from_model` applies to the
+  /// model's coordinates.
   std::vector<Instance> place(const PlacedModel& object, const glm::dmat4& scene_from_model) {
     const bool is_one = !object.has_parts && model_.instances.size() > 1;
     const std::vector<std::uint32_t>& meshes = meshes_of(object, is_one);
@@ -225,7 +225,7 @@ class PlacedMeshes {
   }
 
  private:
-  /// Meshes by the model's own numbers, or a single one if the objects are joined.
+  /// Returns meshes by the model's own numbers, or a single one if the objects are joined.
   const std::vector<std::uint32_t>& meshes_of(const PlacedModel& object, bool is_one) {
     const auto [found, is_new] = known_.emplace(std::pair(is_one, object.replacement), std::vector<std::uint32_t>());
     if (!is_new) return found->second;
@@ -346,7 +346,8 @@ class SceneReader {
     }
   }
 
-  /// The transform from the model's world space, which is relative to its origin, to the coordinates of the scene file.
+  /// Returns the transform from the model's world space, which is relative to its origin, to the coordinates of the
+  /// scene file.
   [[nodiscard]] glm::dmat4 place_of(const PlacedModel& object, const Scene& model) const {
     glm::dmat4 from_origin(1.0), scaled(1.0);
     from_origin[3] = glm::dvec4(model.origin, 1);

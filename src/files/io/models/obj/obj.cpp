@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint64_t max_library_bytes = std::uint64_t(1) << 28;
 
-/// The lists of the whole file.
+/// The lists of values to which all faces of the file refer.
 struct ObjPool {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec4> colors;  ///< as many as positions, or none
@@ -159,8 +159,8 @@ class ObjMeshes {
   bool is_mixed_ = false;  ///< the current mesh has more than one material
 };
 
-/// The indices of a polygon's corners into one list of the file, and the greatest index so far. Its element may be
-/// defined later.
+/// The indices of a polygon's corners into one list of the file, and the greatest index so far, which may name an
+/// element that the file defines later.
 struct IndexList {
   const char* what;
   std::vector<std::uint32_t> corners;

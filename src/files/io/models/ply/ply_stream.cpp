@@ -18,7 +18,7 @@ namespace {
 
 using namespace ply;
 
-/// Greatest header, greatest row, and greatest size of a pipe's vertices, in bytes.
+/// Limits in bytes for a header, for a row, and for the vertices of a pipe.
 constexpr std::size_t max_header = std::size_t(1) << 24;
 constexpr std::size_t max_row = std::size_t(1) << 28;
 constexpr std::uint64_t max_kept_vertices = std::uint64_t(1) << 29;
@@ -83,7 +83,7 @@ struct VertexRows {
     reader->read(part, begin, end, coordinates, mesh);
   }
 
-  /// The best origin of the vertices. The first block suffices if the model lies near zero.
+  /// Returns the best origin of the vertices. The first block suffices if the model lies near zero.
   [[nodiscard]] glm::dvec3 fitting_origin() const {
     constexpr std::uint64_t block = 4096;
     Coordinates coordinates;

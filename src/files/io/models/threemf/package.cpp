@@ -43,7 +43,7 @@ class NamingReader : public XmlPart {
  public:
   NamingReader(const Naming& naming, const ModelSource& source) : XmlPart(naming.part, source), naming_(naming) {}
 
-  /// The named part; empty if there is none, or before read().
+  /// Returns the named part, or an empty text if there is none, or before read().
   [[nodiscard]] const std::string& found() const { return found_; }
 
  protected:
