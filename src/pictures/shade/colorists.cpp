@@ -49,7 +49,7 @@ glm::vec3 shown_depth(float depth, const DepthRange& range) {
   return glm::vec3(linear_of_shown_channel(0.95f - 0.85f * t));
 }
 
-/// A distinctive colour for an object; as displayed, 0 to 1. Hues are a golden angle apart, in three rounds of
+/// Returns a distinctive colour for an object, as displayed, 0 to 1. Hues are a golden angle apart, in three rounds of
 /// brightness, so that consecutive numbers look different.
 glm::vec3 color_of_object(std::uint32_t object) {
   const float hue = float(object * 0x9E3779B9u >> 8) / float(1 << 24) * 6.0f;

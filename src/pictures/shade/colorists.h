@@ -51,7 +51,7 @@ struct DepthRange {
 };
 /// Returns the range of all visible depths, or 0 and 0 if nothing is visible. O(samples), in parallel.
 [[nodiscard]] DepthRange depth_range(const Visible& visible, const Execution& execution);
-/// Return the colorists of pictures of planar depths and of distances from the eye.
+/// Returns the colorist of pictures of planar depths. The next function returns that of distances from the eye.
 [[nodiscard]] FragmentShader::Colorist depth_colorist(const DepthRange& range, const glm::vec3& forward);
 [[nodiscard]] FragmentShader::Colorist distance_colorist(const DepthRange& range);
 

@@ -31,7 +31,7 @@ class TriangleCache {
     std::uint16_t number;
     bool is_new;  ///< the caller has to set up this triangle
   };
-  /// Precondition: the cache is not full.
+  /// Returns the number of a triangle, which is added if it is absent. Precondition: the cache is not full.
   Found find_or_add(PrimitiveId id) {
     std::uint32_t slot = id * 0x9E3779B1u >> 21;  // 11 bits: slot_count
     while (slots_[slot].generation == generation_) {
@@ -72,23 +72,23 @@ class FragmentShader {
     batch_.coverage.steps = steps;
     clear();
   }
-  /// How many more fragments can be added before hand_out().
+  /// Returns how many more fragments can be added before hand_out().
   [[nodiscard]] int room() const { return cache_.is_full() ? 0 : batch_capacity - batch_.coverage.count; }
   [[nodiscard]] bool is_full() const { return room() == 0; }
-  /// How many fragments were added since the last hand_out().
+  /// Returns how many fragments were added since the last hand_out().
   [[nodiscard]] int count() const { return batch_.coverage.count; }
   /// Adds a fragment, shaded at the position `screen`. The caller chooses `number`; `samples` has one bit for each
   /// covered sample of the pixel. Precondition: not full.
   void add(PrimitiveId id, std::uint32_t number, const glm::vec2& screen, std::uint64_t samples, float weight) {
     add_row(id, 1, {number, screen, samples, weight});
   }
-  /// What the pixels of a row share, with the number and position of the first pixel.
+  /// The values that the pixels of a row share, with the number and position of the first pixel.
   struct RowStart {
     std::uint32_t number;
     glm::vec2 screen;
     std::uint64_t samples;
     float weight;
-    int step = 1;  ///< pixels from one to the next
+    int step = 1;  ///< distance from one pixel to the next
   };
   /// Adds `count` pixels of a row. Their numbers are `step` apart, like the pixels. Precondition: room() >= count.
   void add_row(PrimitiveId id, int count, const RowStart& start) {

@@ -21,12 +21,12 @@ namespace frontmost::shading {
 [[nodiscard]] inline bool shows_materials(Shading shading) {
   return shading == Shading::lit || shading == Shading::flat || shading == Shading::normals;
 }
-/// \throws Error bad_argument unless exactly one of the two inputs is given.
+/// Checks the input of a picture. \throws Error bad_argument unless exactly one of the two inputs is given.
 inline void check_given(const ShadeInput& input, const char* who) {
   if (!input.visible == !input.pixels)
     throw Error(ErrorCode::bad_argument, who, "give either a Visible or VisiblePixels");
 }
-/// \throws Error bad_argument if the opacity is not from 0 to 1.
+/// Checks the opacity. \throws Error bad_argument if it is not from 0 to 1.
 inline void check_opacity(const ShadeOptions& options) {
   if (!(options.opacity >= 0.0f && options.opacity <= 1.0f))
     throw Error(ErrorCode::bad_argument, "shade: opacity", "must be 0 to 1");

@@ -69,12 +69,12 @@ class ShownMaterials {
                     scene_.materials.has_textures());
   }
 
-  /// The positions of samples within a pixel, in 1/256.
+  /// Returns the positions of samples within a pixel, in 1/256.
   [[nodiscard]] std::span<const glm::ivec2> samples() const {
     return layers_ ? std::span(layer_samples_) : sample_offsets(input_.view().samples);
   }
 
-  /// Precondition: the layers were found.
+  /// Returns every fragment with its colour. Precondition: the layers were found.
   [[nodiscard]] DeepImage deep(const FragmentShader::Colorist& colorist) const {
     return deep_layers(scene_.surfaces, input_.view(), *source_, *layers_, colorist, request_.execution);
   }
@@ -203,7 +203,7 @@ void paint_map(const PictureRequest& request, TileCanvas& canvas) {
   paint(depth_colorist(depth_range(visible, request.execution), glm::vec3(visible.view.forward())));
 }
 
-/// Precondition: check() has accepted the request.
+/// Paints a picture. Precondition: check() has accepted the request.
 void paint(const PictureRequest& request, TileCanvas& canvas) {
   const auto paint_surfaces = shows_materials(request.options.shading) ? paint_materials : paint_map;
   if (!request.options.light.shows_environment) return paint_surfaces(request, canvas);

@@ -10,8 +10,8 @@
 namespace frontmost::shading {
 namespace {
 
-/// A fragment's number is the number of its pixel, in the low kPixelBits. A fragment shared by a block of 2 x 2 pixels
-/// has the number of the block's first pixel; the next four bits say which pixels share it.
+/// A fragment's number is the number of its pixel, in the low kPixelBits. If a block of 2 x 2 pixels shares a fragment,
+/// the number is that of the block's first pixel, and the next four bits say which pixels share the fragment.
 constexpr std::uint32_t kPixelBits = 16;
 constexpr std::uint32_t kWholeBlock = 15u << kPixelBits;
 static_assert(tile_pixels <= 1 << kPixelBits);

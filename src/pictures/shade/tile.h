@@ -49,7 +49,7 @@ class TileWork {
   [[nodiscard]] const std::vector<glm::vec4>& pixels() const { return pixels_; }
 
  private:
-  /// What the samples of a row of pixels see.
+  /// The primitives that the samples of a row of pixels see.
   struct Row {
     PrimitiveId first[tile_width];      ///< sample 0
     PrimitiveId differing[tile_width];  ///< not 0 where samples see different primitives
@@ -72,7 +72,8 @@ class TileWork {
   /// Adds the fragments of rows y and y + 1 by blocks of 2 x 2 pixels. Pixels of a block with the same primitive share
   /// one fragment.
   void add_blocks(const TileRectangle& tile, int y, int left, int right);
-  /// The number of adjacent blocks, from x up to `right`, that show the same single primitive, or background only.
+  /// Returns the number of adjacent blocks, from x up to `right`, that show the same single primitive, or background
+  /// only.
   [[nodiscard]] int whole_blocks(int y, int x, int right) const;
   /// Adds one fragment for each different id of a block, and clears the ids. The block begins at `corner` and `pixel`.
   void add_shared(PrimitiveId (&ids)[4], glm::vec2 corner, std::uint32_t pixel);

@@ -52,7 +52,7 @@ class PlanesCanvas final : public TileCanvas {
   [[nodiscard]] Image take() { return std::move(image_); }
 
  private:
-  /// The index in a plane of the first value of row y of the tile.
+  /// Returns the index in a plane of the first value of row y of the tile.
   [[nodiscard]] std::size_t row(const TileRectangle& tile, int y) const;
   Image image_;
 };
@@ -91,7 +91,7 @@ class EnvironmentCanvas final : public TileCanvas {
   /// Passes on the tile, with over(i, environment behind pixel i) for each pixel i.
   template <class Over>
   void paint(const TileRectangle& tile, const glm::vec4& background, const Over& over);
-  /// The radiance of the environment behind the middle of a pixel.
+  /// Returns the radiance of the environment behind the middle of a pixel.
   [[nodiscard]] glm::vec3 radiance(int x, int y) const;
 
   TileCanvas& canvas_;

@@ -20,7 +20,7 @@ using shading::PrefilteredEnvironment;
 
 constexpr int kMostWidth = 16384;
 
-/// \throws Error as documented for the constructor of Environment.
+/// Checks the picture of an environment. \throws Error as documented for the constructor of Environment.
 void check_picture(const Image& picture) {
   validate(picture);
   const auto fail = [](ErrorCode code, const std::string& reason) { throw Error(code, "environment", reason); };
@@ -38,7 +38,7 @@ void check_picture(const Image& picture) {
   }
 }
 
-/// A smooth step from 0 to 1 as t goes from 0 to 1, with slope 0 at both ends.
+/// Returns a smooth step from 0 to 1 as t goes from 0 to 1, with slope 0 at both ends.
 float eased(float t) {
   const float inside = std::clamp(t, 0.0f, 1.0f);
   return inside * inside * (3 - 2 * inside);
@@ -57,7 +57,7 @@ class SoftBox {
         softness_(softness),
         radiance_(radiance) {}
 
-  /// The radiance from a direction, where `light` is the radiance behind the box.
+  /// Returns the radiance from a direction, where `light` is the radiance behind the box.
   [[nodiscard]] float before(float light, const glm::vec3& towards) const {
     const float distance = glm::dot(towards, ahead_);
     if (distance <= 0) return light;

@@ -21,7 +21,7 @@ float arc_tangent(float t) {
   return t * (0.99997726f + t2 * (-0.33262347f + t2 * (0.19354346f + t2 * (-0.11643287f + t2 * high))));
 }
 
-/// The angle of (x, y) from the x axis towards the y axis, -pi to pi; 0 for (0, 0).
+/// Returns the angle of (x, y) from the x axis towards the y axis, -pi to pi, or 0 for (0, 0).
 float angle_of(float x, float y) {
   const float ax = std::abs(x), ay = std::abs(y), longer = std::max(ax, ay);
   if (!(longer > 0)) return 0;

@@ -30,14 +30,14 @@ class OctahedralMap {
   static constexpr int channels = 4;
 
   OctahedralMap() = default;
-  /// The texels are undefined.
+  /// Makes a map whose texels are undefined.
   explicit OctahedralMap(int size)
       : size_(size), texels_(std::size_t(size + 2) * std::size_t(size + 2) * std::size_t(channels)) {}
 
   [[nodiscard]] int size() const { return size_; }        ///< texels per side, without the border
   [[nodiscard]] int stride() const { return size_ + 2; }  ///< texels per row, with the border
   [[nodiscard]] const float* texels() const { return texels_.data(); }
-  /// x and y are -1 to size.
+  /// Returns the address of a texel. x and y are -1 to size.
   [[nodiscard]] float* texel(int x, int y) { return texels_.data() + index(x, y); }
   [[nodiscard]] const float* texel(int x, int y) const { return texels_.data() + index(x, y); }
   void set(int x, int y, const glm::vec3& color) {
@@ -51,7 +51,7 @@ class OctahedralMap {
     const float* const in = texel(x, y);
     return {in[0], in[1], in[2]};
   }
-  /// Bilinear look-up. `towards` has any length but zero.
+  /// Returns the colour in a direction, by a bilinear look-up. `towards` has any length but zero.
   [[nodiscard]] glm::vec3 color(const glm::vec3& towards) const;
 
   /// Copies the texels beyond the folds into the border.
@@ -69,14 +69,14 @@ class OctahedralMap {
   Buffer<float> texels_;
 };
 
-/// Returns the point of the octahedron at (u, v), each 0 to 1 across the square: a direction that is not of unit
+/// Returns the point of the octahedron at (u, v), each 0 to 1 across the square. As a direction, it is not of unit
 /// length.
 [[nodiscard]] glm::vec3 octahedron_point(float u, float v);
-/// The point of the octahedron at the middle of a texel.
+/// Returns the point of the octahedron at the middle of a texel.
 [[nodiscard]] inline glm::vec3 octahedron_point(int size, int x, int y) {
   return octahedron_point((float(x) + 0.5f) / float(size), (float(y) + 0.5f) / float(size));
 }
-/// The solid angle of a texel at this point, divided by the texel's area on the square of side length 2.
+/// Returns the solid angle of a texel at this point, divided by the texel's area on the square of side length 2.
 [[nodiscard]] float solid_angle(const glm::vec3& octahedron_point);
 
 /// The light reflected by a white diffuse surface is a polynomial of its normal: mean + 2 first . n + 15/8 n . second
@@ -113,7 +113,7 @@ struct LobeDirection {
   int map = 0;           ///< index of the map for the look-up
 };
 
-/// The data of an environment, for shading.
+/// Returns the data of an environment, for shading.
 [[nodiscard]] const PrefilteredEnvironment& prefiltered(const Environment& environment);
 
 /// Computes levels 1 and up, and the moments, from level 0. The size of level 0 is a power of two, at least 64. The

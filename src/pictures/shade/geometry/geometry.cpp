@@ -17,7 +17,7 @@ bool all_equal(const PrimitiveId* ids, std::size_t count, PrimitiveId id) {
   return different == 0;
 }
 
-/// \returns false if a value is not finite.
+/// Stores the affine weights of a triangle. \returns false if a value is not finite.
 bool store(const RayVolumes& v, double scale, std::array<Affine, 3>& weight) {
   bool finite = true;
   for (int k = 0; k < 3; ++k) {

@@ -71,7 +71,7 @@ class BitSet {
   std::vector<std::atomic<std::uint64_t>> words_;
 };
 
-/// The set of the given ids. Reuses `memory` for the result if its size fits. O(ids), in parallel.
+/// Returns the set of the given ids. Reuses `memory` for the result if its size fits. O(ids), in parallel.
 [[nodiscard]] BitSet seen_primitives(std::size_t primitive_count, std::span<const PrimitiveId> ids,
                                      const Execution& execution, BitSet memory = {});
 
@@ -81,7 +81,7 @@ class BitSet {
 /// parallel.
 [[nodiscard]] BitSet large_primitives(std::size_t primitive_count, std::span<const PrimitiveId> ids, int width,
                                       const Execution& execution, BitSet memory = {});
-/// large_primitives() of the first samples.
+/// Returns large_primitives() of the first samples.
 [[nodiscard]] inline BitSet large_primitives(std::size_t primitive_count, const Visible& visible,
                                              const Execution& execution, BitSet memory = {}) {
   return large_primitives(primitive_count, {visible.primitives.data(), visible.view.pixel_count()}, visible.view.width,
@@ -114,7 +114,7 @@ struct TriangleSetup {
   std::array<bool, max_texcoord_sets> has_texcoord{};                ///< by set
   std::array<std::array<glm::vec2, 3>, max_texcoord_sets> texcoord;  ///< zero in the first set if it is missing
 
-  /// The texture coordinates of corner k; zero if the mesh has no such set.
+  /// Returns the texture coordinates of corner k, or zero if the mesh has no such set.
   [[nodiscard]] glm::vec2 texcoord_at(std::uint32_t set, std::size_t k) const {
     return has_texcoord[set] ? texcoord[set][k] : glm::vec2(0);
   }
@@ -125,8 +125,8 @@ struct TriangleSetup {
 void set_up_plane(TriangleSetup& setup, const ScreenRays& rays, const std::array<glm::vec3, 3>& corners_world,
                   const glm::vec2& reference);
 
-/// Weights at a screen position: none is negative and they sum to 1, so interpolation stays within the triangle.
-/// `divisor` is their sum before normalization, which gradients need.
+/// The weights of the corners at a screen position. None is negative and they sum to 1, so interpolation stays within
+/// the triangle. `divisor` is their sum before normalization, which gradients need.
 struct Barycentric {
   glm::vec3 weight;
   float divisor;
@@ -151,7 +151,7 @@ struct PackedNormal {
   std::int16_t x = 0, y = 0;
 };
 [[nodiscard]] PackedNormal pack(const glm::vec3& direction);
-/// The result is not normalized.
+/// Returns the direction, which is not normalized.
 [[nodiscard]] glm::vec3 unpack(PackedNormal packed);
 
 /// Facets that meet at a larger angle keep an edge between them.
@@ -160,9 +160,9 @@ inline constexpr double crease_cosine = 0.766044443118978;  // 40 degrees
 /// Corner normals in mesh space, three for each triangle. Normals of triangles that were not requested are undefined.
 using PackedCornerNormals = Buffer<std::array<PackedNormal, 3>>;
 
-/// A normal for each corner of the triangles for which `is_wanted` is true: the mean of the facet normals at the
-/// corner's exact position, weighted by area and by the angle at the corner. Only facets within the crease angle of the
-/// corner's own facet count. Degenerate facets do not count; their normals are arbitrary. O(triangles).
+/// Returns a normal for each corner of the triangles for which `is_wanted` is true: the mean of the facet normals at
+/// the corner's exact position, weighted by area and by the angle at the corner. Only facets within the crease angle of
+/// the corner's own facet count. Degenerate facets do not count, and their own normals are arbitrary. O(triangles).
 [[nodiscard]] PackedCornerNormals smooth_normals(const Mesh& mesh, const std::function<bool(std::uint32_t)>& is_wanted,
                                                  const Execution& execution = {});
 
@@ -201,10 +201,10 @@ class TriangleStore {
   /// Updates the placement of an instance that has moved.
   void follow(const Surfaces& surfaces, std::uint32_t instance);
 
-  /// The placement that holds `id`; tries `guess` first.
+  /// Returns the placement that holds `id`. Tries `guess` first.
   [[nodiscard]] const Placement& placement_with(PrimitiveId id, const Placement& guess) const;
   [[nodiscard]] const Placement& first_placement() const { return placements_.front(); }
-  /// The smooth normals of a mesh: empty if the mesh has its own normals, or none were requested.
+  /// Returns the smooth normals of a mesh, or none if the mesh has its own normals, or none were requested.
   [[nodiscard]] const PackedCornerNormals& smooth_normals_of(std::uint32_t mesh) const { return smooth_[mesh]; }
 
  private:

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kTrianglesAtOnce = 1u << 13;
 constexpr std::size_t kCornersPerBucket = 4096;
-/// With more corners at one position, every facet keeps its own normal, because all pairs would be compared.
+/// If more corners have one position, every facet keeps its own normal there, because all pairs would be compared.
 constexpr std::size_t kMostCorners = 256;
 /// Corners have 32-bit numbers, so on larger meshes every facet keeps its own normal.
 constexpr std::size_t kMostTriangles = std::size_t(1) << 30;
@@ -38,7 +38,7 @@ std::uint32_t hash_of(const PositionBits& bits) {
   return h ^ (h >> 16);
 }
 
-/// The angle from 0 to pi with this ratio of sine and cosine, to 0.005: precise enough for a weight.
+/// Returns the angle from 0 to pi with this ratio of sine and cosine, to 0.005, which is precise enough for a weight.
 double angle_of(double sine, double cosine) {
   const double c = std::abs(cosine);
   const bool steep = sine > c;

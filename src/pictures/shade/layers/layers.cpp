@@ -71,7 +71,7 @@ class LayerShader {
   }
 
  private:
-  /// The mean of the covered positions, in pixels.
+  /// Returns the mean of the covered positions, in pixels.
   [[nodiscard]] glm::vec2 centroid(std::uint64_t mask) const {
     glm::vec2 sum(0);
     float count = 0;

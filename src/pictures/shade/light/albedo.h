@@ -35,8 +35,8 @@ inline constexpr float least_sheen_roughness = 0.1f;
 struct SheenAngles {
   float n_l, n_v, n_h;  ///< N.V above 0, the others 0 or more
 };
-/// The sheen of fibres that stand out of a cloth, by KHR_materials_sheen: they mirror light if the half vector is
-/// perpendicular to them, and so shine at the rim.
+/// Evaluates the sheen of fibres that stand out of a cloth, by KHR_materials_sheen: they mirror light if the half
+/// vector is perpendicular to them, and so shine at the rim.
 ///
 ///   distribution   (2 + 1/a) / 2 * sin(N.H)^(1/a), a = roughness squared    A. Estevez, C. Kulla. Production Friendly
 ///                  (the factor 1 / pi is the light's)                       Microfacet Sheen BRDF. SIGGRAPH 2017.

@@ -31,13 +31,14 @@ inline float mix(float a, float b, float t) { return a + (b - a) * t; }
 inline Direction direction_of(const Lane3& lanes, int i) { return {lanes.x[i], lanes.y[i], lanes.z[i]}; }
 inline Direction direction_of(const glm::vec3& v) { return {v.x, v.y, v.z}; }
 
-/// (1 - c)^5, for Schlick's approximation.
+/// Returns (1 - c)^5, for Schlick's approximation.
 inline float fifth_power_below_one(float c) {
   const float x = clamp01(1.0f - c), x2 = x * x;
   return x2 * x2 * x;
 }
 
-/// The least roughness is 0.09, because the highlight of a smoother surface could fall between two pixels.
+/// Returns the roughness, limited to 0.09 to 1, because the highlight of a smoother surface could fall between two
+/// pixels.
 inline float shown_roughness(float roughness) { return at_most(at_least(roughness, 0.09f), 1.0f); }
 /// Returns N.V, but at least a little above 0, because a bumpy normal may lean away from the viewer.
 inline float towards_viewer(const Direction& normal, const Direction& to_viewer) {
@@ -83,8 +84,8 @@ struct LayeredSurface {
             {m.base.y[i] * (1.0f - metallic) * stays, mix(layers.f0.y[i], m.base.y[i], metallic), f90},
             {m.base.z[i] * (1.0f - metallic) * stays, mix(layers.f0.z[i], m.base.z[i], metallic), f90}};
   }
-  /// Returns, for these fragments, the least share of all channels, so that coloured mirroring does not tint the
-  /// diffuse part.
+  /// Returns the share of light that reaches the diffuse part of a channel. If the fragment's is_dielectric is 1, it is
+  /// the least share of all channels, so that coloured mirroring does not tint the diffuse part.
   static inline float below(const FragmentBatch& batch, int i, float own, float least) {
     return batch.layers.is_dielectric[i] > 0.5f ? least : own;
   }

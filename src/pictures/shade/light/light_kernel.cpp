@@ -26,7 +26,7 @@ struct LobeInput {
   float n_l, n_v, n_h, roughness;
 };
 
-/// GGX distribution times Smith's height-correlated masking. The factor 1 / pi is part of the light's unit.
+/// Returns the GGX distribution times Smith's height-correlated masking. The factor 1 / pi is part of the light's unit.
 inline float ggx(const LobeInput& in) {
   const float alpha = in.roughness * in.roughness, alpha2 = alpha * alpha;
   const float t = in.n_h * in.n_h * (alpha2 - 1.0f) + 1.0f;
@@ -49,7 +49,7 @@ inline DirectTerms direct_terms(const Direction& l, const FragmentBatch& batch, 
   return t;
 }
 
-/// The mirrored share by Schlick's approximation.
+/// Returns the mirrored share by Schlick's approximation.
 inline float mirrored(const Reflection& m, const DirectTerms& t) { return m.f0 + (m.f90 - m.f0) * t.fresnel; }
 
 /// Returns the reflected light of one channel. `below` is the share of the light that reaches the diffuse part.
@@ -157,7 +157,7 @@ void FinishBy(const Map& map, float exposure, FragmentBatch& batch) {
 
 }  // namespace
 
-/// The light of a lamp at each fragment, by its distance, range window and cone.
+/// Computes the light of a lamp at each fragment, by its distance, range window and cone.
 void FindLampLight(const Lamp& lamp, const FragmentBatch& batch, LampLight& out) {
   const Lane3& position = batch.geometry.position;
   const Direction at = direction_of(lamp.position), axis = direction_of(lamp.axis);

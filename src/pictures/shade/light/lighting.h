@@ -7,7 +7,7 @@
 //   finish_light       exposure and tone mapping, to a range that a picture can hold
 //   let_through        opacity of glass, once light holds the final colour
 //
-// Varnish and fibres of cloth reflect light themselves and keep some of it from the surface below; glass transmits
+// Varnish and fibres of cloth reflect light themselves and keep some of it from the surface below. Glass transmits
 // light. The light of varnish is in batch.coat->light, and that of fibres in batch.layers.sheen_light, until
 // finish_light() combines all.
 //
@@ -114,11 +114,11 @@ struct PictureLights {
   void set(const DirectLight* key, std::span<const Light> lights, const glm::dvec3& eye);
 };
 
-/// \throws Error bad_argument as documented for LightOptions.
+/// Checks the options of light. \throws Error bad_argument as documented for LightOptions.
 void check_light(const LightOptions& options);
-/// The direction of the key light, of unit length. Precondition: check_light().
+/// Returns the direction of the key light, of unit length. Precondition: check_light().
 [[nodiscard]] glm::vec3 direction_to_key(const View& view, const LightOptions& options);
-/// The intensity of the key light. Precondition: check_light().
+/// Returns the intensity of the key light. Precondition: check_light().
 [[nodiscard]] double key_intensity(const LightOptions& options);
 /// Returns the light for a picture of a scene with this up axis. Borrows the environment: the one of the options, or a
 /// default if they have none. Precondition: check_light().

@@ -43,7 +43,7 @@ void fill(Lane3& lanes, int count, float value) {
   for (Lane* lane : {&lanes.x, &lanes.y, &lanes.z}) fill(*lane, count, value);
 }
 
-/// The reflectance at normal incidence between air and this index of refraction; an index of 0 means a mirror.
+/// Returns the reflectance at normal incidence between air and this index of refraction. An index of 0 means a mirror.
 float straight_reflectance(float ior) {
   const float ratio = (ior - 1) / (ior + 1);
   return ratio * ratio;
@@ -149,7 +149,7 @@ class MaterialRun {
     return set == 0 ? batch_.geometry.texcoord : textures_.further[set - 1];
   }
 
-  /// Sets alpha by the material's alpha mode; fragments without blending are opaque.
+  /// Sets alpha by the material's alpha mode. Fragments without blending are opaque.
   void settle_alpha(int begin, int end) {
     for (int i = begin; i < end; ++i) {
       float& alpha = batch_.material.alpha[i];
@@ -169,7 +169,7 @@ class MaterialRun {
   std::optional<LayerRun> layers_;  ///< none if the material has no layers
 };
 
-/// The material of triangles without one: a light neutral grey whose shape shows on a white page.
+/// Returns the material of triangles without one: a light neutral grey whose shape shows on a white page.
 Material default_material() {
   Material material;
   material.base_color = glm::vec4(0.66f, 0.675f, 0.70f, 1.0f);

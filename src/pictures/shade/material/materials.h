@@ -25,7 +25,7 @@ class NormalMap {
   void turn(std::uint16_t triangle, const glm::vec4& texel, int i, Lane3& normals);
 
  private:
-  /// The unit directions on a triangle in which u and v grow; zero where the coordinates do not span a plane.
+  /// The unit directions on a triangle in which u and v grow. They are zero where the coordinates do not span a plane.
   struct TangentFrame {
     glm::vec3 along_u{0}, along_v{0};
   };
@@ -52,7 +52,7 @@ struct LayerRow {
 /// was called.
 [[nodiscard]] std::unique_ptr<LayerRow> layers_of(const Material& material);
 
-/// The factor by which an instance scales lengths; 0 if it is flattened.
+/// Returns the factor by which an instance scales lengths, or 0 if it is flattened.
 [[nodiscard]] float length_scale_of(const Instance& instance);
 
 /// The data that all runs of fragments share.
@@ -112,14 +112,15 @@ class MaterialTable {
   void make_ready(const std::vector<bool>& is_needed, const Execution& execution);
   /// Whether any material has a texture.
   [[nodiscard]] bool has_textures() const { return has_textures_; }
-  /// The factor by which each instance scales lengths.
+  /// Returns the factor by which each instance scales lengths.
   [[nodiscard]] const std::vector<float>& length_scales() const { return length_scales_; }
   /// Updates an instance that has moved.
   void follow(std::uint32_t instance) { length_scales_[instance] = length_scale_of(scene_.instances[instance]); }
   /// Whether make_ready() has nothing left to do.
   [[nodiscard]] bool is_ready() const { return unready_ == 0; }
 
-  /// The triangle's material, or the default one. The default is white for meshes with colours, which grey would dim.
+  /// Returns the triangle's material, or the default one. The default is white for meshes with colours, which grey
+  /// would dim.
   [[nodiscard]] const MaterialRow& row_of(const TriangleSetup& triangle) const {
     if (triangle.material < rows_.size()) return rows_[triangle.material];
     return triangle.has_color ? white_ : default_;

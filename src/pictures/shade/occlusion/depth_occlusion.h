@@ -47,9 +47,9 @@ class DepthOcclusion {
   Buffer<float> depths_;
 };
 
-/// \throws Error bad_argument naming the field.
+/// Checks the options of ambient occlusion. \throws Error bad_argument naming the field.
 void check_ambient_occlusion(const ShadeOptions& options);
-/// The default of AmbientOcclusion::radius.
+/// Returns the default of AmbientOcclusion::radius.
 [[nodiscard]] double default_occlusion_radius(const Surfaces& surfaces);
 
 }  // namespace frontmost::shading

@@ -54,7 +54,7 @@ HWY_INLINE EyeVector AlongAxes(const OcclusionGrid& grid, const Lane3& lane, int
 HWY_INLINE VF Clamped(VF value) { return hn::Max(All(-1), hn::Min(value, All(1))); }
 HWY_INLINE VF Root(VF value) { return hn::Sqrt(hn::Max(value, All(0))); }
 
-/// The arc cosine, to 7e-5. (M. Abramowitz, I. Stegun. Handbook of Mathematical Functions. 1964: 4.4.45.)
+/// Returns the arc cosine, to 7e-5. (M. Abramowitz, I. Stegun. Handbook of Mathematical Functions. 1964: 4.4.45.)
 HWY_INLINE VF AngleOf(VF cosine) {
   const VF x = hn::Abs(cosine);
   VF sum = hn::Add(hn::Mul(x, All(-0.0187293f)), All(0.0742610f));
@@ -91,8 +91,8 @@ HWY_INLINE Points PointsOf(const OcclusionGrid& grid, const FragmentBatch& batch
   return p;
 }
 
-/// Returns the horizon, raised by the surface at the screen position (x, y). A horizon is the cosine of its angle from
-/// the line of sight.
+/// Returns the horizon, raised if the surface at the screen position (x, y) rises above it. A horizon is the cosine of
+/// its angle from the line of sight.
 HWY_INLINE VF Raised(const OcclusionGrid& grid, const Points& p, VF x, VF y, VF low, VF horizon) {
   const DF d;
   const DI di;

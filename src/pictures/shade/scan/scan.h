@@ -27,7 +27,7 @@ class ScanDirections {
 
  private:
   using At = std::function<glm::dvec3(int, int)>;
-  /// The unit vector through the middle of a pixel, or zero if no ray goes there.
+  /// Returns the unit vector through the middle of a pixel, or zero if no ray goes there.
   [[nodiscard]] glm::dvec3 middle(const glm::ivec2& at) const;
   [[nodiscard]] glm::dvec3 step_to(const glm::ivec2& from, const glm::ivec2& step) const;
 
@@ -51,7 +51,7 @@ class ScanFaces {
   /// Borrows `store` and `large`, like TriangleSource.
   ScanFaces(const TriangleStore& store, const RayCamera& camera, const BitSet* large, bool has_texcoords);
 
-  /// The face on which a direction lies.
+  /// Returns the face on which a direction lies.
   [[nodiscard]] static int face_of(const glm::dvec3& direction);
   [[nodiscard]] const TriangleSource& source(int face) const { return sources_[std::size_t(face)]; }
   [[nodiscard]] glm::vec2 screen(int face, const glm::dvec3& direction) const;
@@ -82,7 +82,7 @@ struct ScanLayer {
 ///                                     shadows are asked for ray by ray
 ///   through glass      a - c - d      fragments one behind another, composited for each ray, nearest first
 ///
-/// One thread uses it, again for every tile and picture.
+/// The object serves one thread, and is used again for every tile and picture.
 class ScanTileWork {
  public:
   ScanTileWork() : pixels_(tile_pixels) {}
@@ -136,10 +136,10 @@ struct RequestFor {
 };
 using ScanRequest = RequestFor<ScanInput>;
 
-/// \throws Error bad_argument for a scan whose planes or ids do not fit, or options out of range.
+/// Checks a request. \throws Error bad_argument for a scan whose planes or ids do not fit, or options out of range.
 void check_scan(const ScanRequest& request);
 
-/// Precondition: check_scan().
+/// Paints the picture of a scan. Precondition: check_scan().
 void paint_scan(const ScanRequest& request, TileCanvas& canvas, const glm::vec4& background);
 
 }  // namespace frontmost::shading

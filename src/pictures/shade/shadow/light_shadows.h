@@ -45,7 +45,7 @@ struct AskedFragments {
 /// own points. The distance is a hundred-thousandth of the segment's length plus the rounding error of floats.
 class RayShadows {
  public:
-  /// The most rays of a picture, and the message of the error if there are more.
+  /// The greatest number of rays of a picture, and the message of the error if there are more.
   struct Limit {
     std::uint64_t most;
     std::string error;
@@ -57,7 +57,7 @@ class RayShadows {
   RayShadows(const RayIndex& index, bool knows_ids, std::span<const glm::ivec2> samples, const View& view,
              const Execution& execution, Limit limit);
 
-  /// Asks at a single point for each fragment, instead of at the samples of its pixel.
+  /// Makes find_light() ask at a single point for each fragment, instead of at the samples of its pixel.
   void ask_at_points() { at_points_ = true; }
 
   /// Fills batch.shadow of the asked fragments: the share of each fragment's samples that the light reaches.
@@ -137,13 +137,13 @@ class LightShadows {
   /// Fills batch.shadow of the asked fragments: the share of the light that arrives. Precondition: has_shadows().
   void find_arriving(std::size_t light, const AskedFragments& asked, Isa isa) const;
 
-  /// The surfaces, or their opaque part. The first call makes the opaque part if some material is see-through.
+  /// Returns the surfaces, or their opaque part. The first call makes the opaque part if some material is see-through.
   [[nodiscard]] const Surfaces& casters(const Execution& execution);
   /// Draws the casters in a view. Reuses the memory of `planes`, whatever its size.
   [[nodiscard]] Visible draw_casters(const View& view, Visible&& planes, const Execution& execution);
 
  private:
-  /// The map of one light; its address does not change.
+  /// The map of one light. Its address does not change.
   struct DrawnMap {
     ShadowMap map;
     Visible planes;          ///< planes of map.view(), if drawn here
@@ -151,8 +151,8 @@ class LightShadows {
   };
 
   void draw_maps(const ShadedPicture& picture, const Execution& execution);
-  /// The number of the map of a light of the file, which depends on the light's place in the scene only. None beyond
-  /// the first sixteen lights with maps.
+  /// Returns the number of the map of a light of the file, or none beyond the first sixteen lights with maps. The
+  /// number depends on the light's place in the scene only.
   [[nodiscard]] std::optional<std::size_t> map_number(const Light& source) const;
   const ShadowMap* draw_map(std::size_t number, const std::optional<View>& light, const ShadedPicture& picture,
                             const Execution& execution);

@@ -79,7 +79,8 @@ void FindPlacesOfSun(const ShadowGrid& grid, const ShadowPoints& points, MapPoin
   }
 }
 
-/// The slope for a spot's bias uses the cosine between normal and ray, times the ray's length per unit along the axis.
+/// Finds the places of points in the map of a spot. The slope for the bias uses the cosine between normal and ray,
+/// times the ray's length per unit along the axis.
 void FindPlacesOfSpot(const ShadowGrid& grid, const ShadowPoints& points, MapPoints& out) {
   const DF d;
   const VF one = hn::Set(d, 1.0f), nowhere = hn::Set(d, -1.0f);
@@ -126,7 +127,7 @@ HWY_INLINE LightOfBlocks AskBlocks(const ShadowGrid& grid, const MapPoints& poin
           BitsOf(d, hn::AndNot(hn::Or(is_before, is_behind), is_within))};
 }
 
-/// One bit for each of `count` answers.
+/// Returns one bit for each of `count` answers.
 HWY_INLINE std::uint64_t BitsAt(const bool* answers, int count) {
   std::uint64_t bits = 0;
   for (int i = 0; i < count; ++i) bits |= std::uint64_t(answers[i]) << i;

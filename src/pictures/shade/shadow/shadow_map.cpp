@@ -29,7 +29,7 @@ struct LightExtent {
   [[nodiscard]] bool is_empty() const { return !(low.x <= high.x); }
 };
 
-/// The size at which a texel is about as small as a pixel; small pictures would not show more.
+/// Returns the size at which a texel is about as small as a pixel. Small pictures would not show more.
 int texels_for(const View& picture) {
   const int wanted = std::max(picture.width, picture.height) * 8 / 5;
   return std::clamp((wanted + 63) / 64 * 64, kLeastSize, kMostSize);
@@ -72,7 +72,8 @@ glm::dmat3 axes_of_light(const glm::dvec3& to_light, const View& view) {
   return {side, glm::cross(to_light, side), to_light};
 }
 
-/// The window of the light's view: around the visible points, clipped to the scene, with a margin for the filter.
+/// Returns the window of the light's view: around the visible points, clipped to the scene, with a margin for the
+/// filter.
 LightExtent window_of(const LightExtent& seen, const LightExtent& all, int texels) {
   LightExtent window = all;
   for (int k = 0; k < 2; ++k) {
@@ -91,13 +92,13 @@ LightExtent window_of(const LightExtent& seen, const LightExtent& all, int texel
   return window;
 }
 
-/// Light passes through one-sided triangles from behind if the eye sees through them. Other culling is for the eye
-/// alone.
+/// Returns the culling of the light's view. Light passes through one-sided triangles from behind if the eye sees
+/// through them. Other culling is for the eye alone.
 Culling culling_of_light(const View& picture) {
   return picture.culling == Culling::material ? Culling::material : Culling::none;
 }
 
-/// The view of a window whose coordinates are relative to `zero`.
+/// Returns the view of a window whose coordinates are relative to `zero`.
 View view_of_window(const LightExtent& window, const glm::dmat3& axes, const glm::dvec3& zero, const View& picture) {
   View view;
   view.width = view.height = texels_for(picture);
@@ -148,7 +149,7 @@ void spread(float* numbers, std::size_t size, const Choose& choose) {
         numbers[y * size + x] = choose(numbers[y * size + x], numbers[next * size + x]);
 }
 
-/// The range of a block of keys whose rows are `size` apart.
+/// Returns the range of a block of keys whose rows are `size` apart.
 KeyRange range_of_block(const float* keys, std::size_t size) {
   constexpr std::size_t block = ShadowGrid::block;
   float least[block], greatest[block];

@@ -63,12 +63,12 @@ class SeenPoints {
 [[nodiscard]] std::optional<View> view_of_light(const SeenPoints& visible, const Box& bounds,
                                                 const glm::dvec3& to_light, const Execution& execution);
 
-/// view_of_light() for a sun of the file, with the window on a fixed grid.
+/// Returns view_of_light() for a sun of the file, with the window on a fixed grid.
 [[nodiscard]] std::optional<View> view_of_sun(const SeenPoints& visible, const Box& bounds, const Light& sun,
                                               const Execution& execution);
 
-/// The view of a spot of the file, for pictures of this size. It reaches at most 75 degrees from the axis; points
-/// beyond have no shadow. None if nothing can cast a shadow.
+/// Returns the view of a spot of the file, for pictures of this size, or none if nothing can cast a shadow. The view
+/// reaches at most 75 degrees from the axis; points beyond have no shadow.
 [[nodiscard]] std::optional<View> view_of_spot(const View& picture, const Box& bounds, const Light& spot);
 
 /// The data of a map in the form that the kernel reads.
@@ -111,7 +111,7 @@ class ShadowMap {
   void measure_from(const glm::dvec3& eye);
   /// Makes everything lit.
   void clear() { grid_.size = 0; }
-  /// The view that was drawn.
+  /// Returns the view that was drawn.
   [[nodiscard]] const View& view() const { return light_; }
   [[nodiscard]] const ShadowGrid& grid() const { return grid_; }
 

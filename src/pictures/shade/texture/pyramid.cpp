@@ -38,7 +38,7 @@ FinerTexels finer_texels(int i, int fine, int coarse) {
   return {2 * i, 3, {float(coarse - i) * total, float(coarse) * total, float(i + 1) * total}};
 }
 
-/// Two adjacent texels in memory order.
+/// Returns two adjacent texels in memory order.
 std::uint64_t pair_at(const glm::u8vec4* texels) {
   std::uint64_t pair;
   std::memcpy(&pair, texels, sizeof pair);
@@ -104,7 +104,7 @@ struct Halving {
       out[x] = {mean(0), mean(1), mean(2), 0xFF};
     }
   }
-  /// A mean weighted by alpha, so that colours of transparent texels do not bleed into their neighbours.
+  /// Returns a mean weighted by alpha, so that colours of transparent texels do not bleed into their neighbours.
   [[nodiscard]] glm::u8vec4 weighted_mean(int x, int y) const {
     const FinerTexels tx = finer_texels(x, width, std::max(1, width / 2)),
                       ty = finer_texels(y, height, std::max(1, height / 2));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texels are read one by one, because one load brings all channels of a texel; a gather over many fragments would bring
-// one channel of each. A vector holds the four channels of one or more texels of two levels. Addresses are computed for
-// many taps at a time.
+// Texels are read one by one, because one load brings all channels of a texel, whereas a gather over many fragments
+// would bring one channel of each. A vector holds the four channels of one or more texels of two levels. Addresses are
+// computed for many taps at a time.
 
 #include "shade/texture/texture_sampler.h"
 
@@ -24,7 +24,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace frontmost::HWY_NAMESPACE;
 namespace {
 
-/// log2 of positive numbers to 0.01, by operations that every machine rounds alike.
+/// Returns log2 of positive numbers to 0.01, by operations that every machine rounds alike.
 HWY_INLINE VF Log2(VF value) {
   const DF d;
   const DI di;
@@ -138,7 +138,7 @@ class WrappingLanes {
   float lanes_[18];
 };
 
-/// Vector form of wrapped() in texture_lookup.h.
+/// Returns what wrapped() of texture_lookup.h returns, for a vector of coordinates.
 struct Wrapping {
   MPlaces repeats, mirrors;
 
@@ -154,7 +154,7 @@ struct Wrapping {
   }
 };
 
-/// Vector form of texel_pair() in texture_lookup.h, or of texel_of() for textures without filter.
+/// Finds the texels of all taps, as texel_pair() of texture_lookup.h does, or texel_of() for textures without filter.
 void PlaceTaps(const Texture& texture, Taps& taps) {
   const DPlaces d;
   const hn::RebindToSigned<DPlaces> di;
@@ -193,7 +193,7 @@ using DSum = hn::CappedTag<float, kLanes / 2>;
 using VSum = hn::Vec<DSum>;
 constexpr int kSumLanes = int(hn::MaxLanes(DSum())), kSums = kLanes / 2 / kSumLanes;
 
-/// The lanes where `pattern` is 1, in a vector that begins at lane `first`.
+/// Returns the lanes where `pattern` is 1, in a vector that begins at lane `first`.
 template <class D>
 HWY_INLINE hn::Mask<D> LanesOf(D d, const float* pattern, int first) {
   return hn::Gt(hn::LoadU(d, pattern + first), hn::Zero(d));
@@ -225,8 +225,8 @@ HWY_INLINE V Mix(V a, V b, V t) {
   return hn::Add(a, hn::Mul(hn::Sub(b, a), t));
 }
 
-/// Two adjacent texels in the upper row around a tap, and the two below them. One level alone fills the lower half of
-/// each number.
+/// The four texels around a tap: two adjacent ones in the upper row, and the two below them. A single level fills the
+/// lower half of each number.
 struct Quad {
   std::uint64_t upper[2], lower[2];
 };
@@ -248,7 +248,7 @@ HWY_INLINE Quad Joined(const Quad& fine, const Quad& coarse) {
           {fine.lower[0] | coarse.lower[0] << 32, fine.lower[1] | coarse.lower[1] << 32}};
 }
 
-/// The floats of sixteen bytes from byte `first` on, as many as a vector has.
+/// Returns the floats of sixteen bytes from byte `first` on, as many as a vector has.
 template <class D>
 HWY_INLINE hn::Vec<D> PartOf(D d, const std::uint64_t (&bytes)[2], int first) {
   constexpr std::size_t lanes = hn::MaxLanes(D());

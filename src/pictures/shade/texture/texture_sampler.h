@@ -42,7 +42,8 @@ class Pyramid {
   [[nodiscard]] const Texture& texture() const { return *texture_; }
   [[nodiscard]] Encoding encoding() const { return encoding_; }
   [[nodiscard]] const std::vector<Level>& levels() const { return levels_; }
-  /// Width and height of a level and of the next one (or again this one), as floats to multiply coordinates with.
+  /// Returns width and height of a level and of the next one (or again this one), as floats to multiply coordinates
+  /// with.
   [[nodiscard]] const std::array<float, 4>& sizes_from(int level) const { return sizes_[std::size_t(level)]; }
 
  private:
@@ -106,7 +107,7 @@ class TextureSampler {
   void sample(const Pyramid& pyramid, const TexcoordTransform& transform, glm::vec4* out);
 
  private:
-  /// Everything that determines the taps for given coordinates; the texture's content does not.
+  /// The values that determine the taps for given coordinates. The texture's content does not.
   struct Places {
     int width, height;
     Texture::Wrap wrap_u, wrap_v;
