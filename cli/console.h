@@ -23,7 +23,7 @@ void complain(std::string_view text);
 [[nodiscard]] std::optional<glm::ivec2> output_terminal();
 [[nodiscard]] bool error_is_terminal();
 
-/// The number with a comma before every three digits: 1,234,567.
+/// Returns the number with a comma before every three digits: 1,234,567.
 [[nodiscard]] std::string grouped(std::uint64_t number);
 
 /// Returns a name from a file in a form for terminals: escaped as printable_text() does, or "(no name)".

@@ -57,7 +57,7 @@ class WaitingForRanks {
 void clear_line_when_interrupted(bool shown);
 
 [[nodiscard]] bool is_interrupted();
-/// \throws Error cancelled
+/// Checks for an interruption. \throws Error cancelled if there was one.
 void stop_if_interrupted();
 /// Prints the reason of an interruption to standard error, if there is one to tell. \returns the exit status.
 int report_interruption();

@@ -21,7 +21,7 @@ class InputFiles {
   /// Adds a file. `is` describes an output of the same name: "is the model itself". A file that is missing or not
   /// ordinary cannot be replaced and is ignored.
   void add(const std::filesystem::path& path, const std::string& is);
-  /// \throws UsageError naming the first output that equals one of the files.
+  /// Compares outputs with these files. \throws UsageError naming the first output that equals one of the files.
   void refuse_outputs(const std::vector<std::string>& outputs) const;
 
  private:
@@ -30,7 +30,7 @@ class InputFiles {
 
 /// Whether the environment is a file, not a built-in one.
 [[nodiscard]] bool is_environment_file(const LightSettings& light);
-/// All files that the settings name. \throws UsageError if two of them are standard input.
+/// Returns all files that the settings name. \throws UsageError if two of them are standard input.
 [[nodiscard]] InputFiles input_files(const Settings& settings);
 
 /// Checks the files that a model uses, such as material libraries, buffers and textures. They are known after the model

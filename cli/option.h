@@ -75,7 +75,7 @@ struct Given {
     return static_cast<Enum>(parse_choice(text, choices));
   }
   [[nodiscard]] std::string string() const { return std::string(text); }
-  /// \throws UsageError if the text is empty.
+  /// Returns the text as a file name. \throws UsageError if the text is empty.
   [[nodiscard]] std::string file_name() const;
 };
 
@@ -95,8 +95,8 @@ struct Option {
   }
 };
 
-/// The tables in the order of the help. Each is in the file of its command, or in a file of its own if several commands
-/// share it.
+/// The tables in the order of the help. Each table is in the file of its command, or in a file of its own if several
+/// commands share it.
 [[nodiscard]] std::span<const Option> view_option_table();
 [[nodiscard]] std::span<const Option> depth_option_table();
 [[nodiscard]] std::span<const Option> precision_option_table();

@@ -71,7 +71,7 @@ void add(std::vector<FileToWrite>& files, const FileToWrite& added) {
   same->kinds.push_back(kind);
 }
 
-/// A canonical path, which is equal for all spellings of a path.
+/// Returns a canonical path, which is equal for all spellings of a path.
 std::string canonical(const std::string& path) {
   std::error_code ignored;
   const fs::path result = fs::weakly_canonical(fs::absolute(path, ignored), ignored);

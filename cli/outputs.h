@@ -30,7 +30,7 @@ struct FileToWrite {
 /// ...
 [[nodiscard]] std::string_view kind_name(OutputKind kind);
 
-/// The text for {model}: the file's name without folder and suffix.
+/// Returns the text for {model}: the file's name without folder and suffix.
 [[nodiscard]] std::string model_name(const std::string& model);
 /// Replaces {model} and {view}, and {layer} if given. {{ and }} become single braces.
 /// \throws UsageError on any other name in braces.
@@ -46,14 +46,14 @@ void check_given_format(const std::vector<std::string>& paths, int given, std::s
 [[nodiscard]] std::vector<FileToWrite> plan_outputs(const OutputSettings& settings, const std::string& model,
                                                     const std::string& view);
 
-/// \throws UsageError if a file is one of the inputs or is written twice; Error file_unwritable if its folder is
-/// missing or not writable, or if it is no regular file.
+/// Checks the files to write. \throws UsageError if a file is one of the inputs or is written twice; Error
+/// file_unwritable if its folder is missing or not writable, or if it is no regular file.
 void check_outputs(const std::vector<std::string>& paths, const InputFiles& inputs);
 
-/// \throws UsageError if a reference is one of the outputs, even if neither exists yet.
+/// Checks the references. \throws UsageError if a reference is one of the outputs, even if neither exists yet.
 void check_references(const std::vector<std::string>& references, const std::vector<std::string>& outputs);
 
-/// The path of the difference picture.
+/// Returns the path of the difference picture.
 [[nodiscard]] std::string difference_path(const OutputSettings& settings, const std::vector<FileToWrite>& files);
 
 }  // namespace frontmost::cli

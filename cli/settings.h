@@ -32,7 +32,7 @@ struct DepthSettings {
   PolygonOffset offset;
 };
 
-/// The shape of the pixels' rays; all cameras but pinholes are ray cast.
+/// The shape of the pixels' rays. All cameras but pinholes are ray cast.
 enum class CameraModel : std::uint8_t { pinhole, panorama, fisheye };
 
 /// The camera and the pixel grid.
@@ -60,7 +60,7 @@ struct ViewSettings {
   DepthSettings depth;
 };
 
-/// What a file to write holds.
+/// The contents of a file to write.
 enum class OutputKind : std::uint8_t {
   picture,
   deep,
@@ -114,7 +114,7 @@ struct OutputSettings {
 /// The method that determines visibility.
 enum class Method : std::uint8_t { zbuffer, raycast, abuffer };
 
-/// Every `count`-th view of a batch, beginning with view number - 1.
+/// A part of a batch: every `count`-th view, beginning with view number - 1.
 struct Shard {
   int number = 1, count = 1;
 

@@ -16,7 +16,7 @@
 namespace frontmost::cli {
 namespace {
 
-// Removes a leading '+', which from_chars refuses, but users write: "+1,0,0".
+// Returns the text without a leading '+', which from_chars refuses, but users write: "+1,0,0".
 std::string_view without_plus(std::string_view text) {
   return text.size() > 1 && text[0] == '+' && text[1] != '-' ? text.substr(1) : text;
 }
@@ -70,7 +70,7 @@ std::optional<glm::vec3> hex_color(std::string_view text) {
   return color;
 }
 
-/// The number of insertions, deletions, replacements and swaps of neighbours that turn one word into the other.
+/// Returns the number of insertions, deletions, replacements and swaps of neighbours that turn one word into the other.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before, row(b.size() + 1), above;
   std::iota(row.begin(), row.end(), 0u);

@@ -22,13 +22,13 @@ Answer answer_by_raycast(const Surfaces& surfaces, const View& view, const Execu
   return {clock.time("visible", [&] { return raycast(index, view, execution); }), {}, index.triangle_count()};
 }
 
-/// Finds two layers, because the second one shows through the first.
+/// Answers by the A-buffer. Finds two layers, because the second one shows through the first.
 Answer answer_by_abuffer(const Surfaces& surfaces, const View& view, const Execution& execution, StageClock& clock) {
   std::vector<Visible> layers = clock.time("visible", [&] { return visible_layers(surfaces, view, 2, {}, execution); });
   return {std::move(layers[0]), std::move(layers[1]), surfaces.primitive_count()};
 }
 
-/// Sorts the polygons and paints them one over the other.
+/// Answers by a method that sorts the polygons and paints them one over the other.
 template <PaintMethod method>
 Answer answer_by_painter(const Surfaces& surfaces, const View& view, const Execution& execution, StageClock& clock) {
   return {

@@ -41,14 +41,14 @@ class StageClock {
   std::vector<Stage> stages_;
 };
 
-/// A method's answer and the size of its input.
+/// The answer of a method, and the size of its input.
 struct Answer {
   Visible visible;
   std::optional<Visible> behind;  ///< layer behind the front-most, if the method finds it
   std::uint64_t primitives = 0;   ///< triangles that the method works on
 };
 
-/// For methods that keep lists of fragments: the number of fragments, and the length of the longest list.
+/// The number of fragments, and the length of the longest list, for methods that keep lists of fragments.
 struct KeptLists {
   std::uint64_t fragments = 0, longest = 0;
 };
@@ -74,9 +74,9 @@ struct MethodRun {
   Answer answer;
   std::optional<KeptLists> lists;
 
-  /// The number of times that the method ran.
+  /// Returns the number of times that the method ran.
   [[nodiscard]] std::size_t runs() const { return stages.empty() ? 0 : stages.back().times.size(); }
-  /// The median time of a stage; empty if the method lacks the stage.
+  /// Returns the median time of a stage, or nothing if the method lacks the stage.
   [[nodiscard]] std::optional<double> median_of(std::string_view stage) const;
 };
 

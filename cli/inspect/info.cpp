@@ -70,7 +70,7 @@ Json odd_json(const Oddities& odd) {
   return json;
 }
 
-/// The corners of a box; null for a model without a finite point.
+/// Returns the corners of a box, or null for a model without a finite point.
 Json box_json(const Box& box, const glm::dvec3& origin) {
   if (box.is_empty()) return nullptr;
   return {{"low", to_json(in_file(box.low, origin))}, {"high", to_json(in_file(box.high, origin))}};
@@ -184,7 +184,7 @@ std::string light_line(const LightReport& light, const glm::dvec3& origin) {
   return text;
 }
 
-/// Returns a line about positions that floats may be too coarse for, or about the origin that prevents this.
+/// Returns a line about positions that floats may round too coarsely, or about the origin that prevents this.
 std::string rounding_line(const SceneReport& report) {
   constexpr double coarse = 1e-6;  // part of the diagonal: a thousandth of a pixel in a picture of the whole model
   constexpr double wide = 1e-3;    // in the model's unit: coordinates beyond 16384 are rounded by as much

@@ -108,7 +108,7 @@ void write_books(const std::vector<Page>& pages, const Settings& settings, const
   }
 }
 
-/// STL files hold only object names that programs invent, so a single object is named after its file.
+/// Names a single object after its file in STL files, which hold only object names that programs invent.
 void name_object(Scene& scene) {
   if (scene.source.format == ModelFormat::stl && scene.instances.size() == 1) scene.instances[0].name = scene.name;
 }

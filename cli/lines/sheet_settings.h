@@ -31,7 +31,7 @@ inline constexpr LengthUnit length_units[] = {{"mm", 1}, {"cm", 10}, {"m", 1000}
 /// Finds options that exclude or need one another, before a model is read. \throws UsageError naming the options.
 void check_drawing_settings(const Settings& settings);
 
-/// The options of a sheet for the model of that name.
+/// Returns the options of a sheet for the model of that name.
 [[nodiscard]] SheetOptions sheet_options(const Settings& settings, const std::string& model);
 
 /// Draws the sheet. \throws UsageError naming a flag if its value does not fit on the page or misses the model; other

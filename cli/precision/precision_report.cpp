@@ -25,7 +25,7 @@ std::string object_name(const PrecisionRun& run, std::uint32_t instance) {
   return (*run.names)[instance];
 }
 
-/// The table of a single buffer, with details.
+/// Returns the table of a single buffer, with details.
 std::string table_of(const PrecisionRun& run, const DepthSetup& setup) {
   std::string text = fmt::format("{:>12}  {:>12}  {:>12}  {:>12}  {:>14}  {:>11}\n", "distance", "of format",
                                  "of positions", "smallest gap", "gap / distance", "values used");
@@ -39,7 +39,7 @@ std::string table_of(const PrecisionRun& run, const DepthSetup& setup) {
   return text;
 }
 
-/// The table of several buffers, side by side.
+/// Returns the table of several buffers, side by side.
 std::string table_of(const PrecisionRun& run) {
   std::string text = fmt::format("{:>12}  {:>12}", "distance", "of positions");
   for (const PrecisionResult& result : run.results) text += fmt::format("  {:>12}", setup_name(result.setup));
@@ -129,7 +129,7 @@ std::string_view kind_name(FightKind kind) {
   return "";
 }
 
-/// The visible area in square pixels, of all pairs or of one kind.
+/// Returns the visible area in square pixels, of all pairs or of one kind.
 double visible_area(const FightAreas& areas, std::optional<FightKind> kind) {
   double sum = 0;
   for (const FightingObjects& pair : areas.objects)
@@ -152,7 +152,7 @@ std::string remedies_text(const PrecisionResult& result) {
   return text;
 }
 
-/// The fighting pairs of objects, for a single buffer.
+/// Returns the fighting pairs of objects, for a single buffer.
 std::string pairs_text(const PrecisionRun& run) {
   const PrecisionResult& result = run.results.front();
   std::string text;
@@ -211,7 +211,7 @@ Json fights_json(const PrecisionRun& run, const DepthFights& fights) {
           {"pairs", std::move(pairs)}};
 }
 
-/// The pairs of faces with the largest visible areas.
+/// Returns the pairs of faces with the largest visible areas.
 Json faces_json(const FightAreas& areas) {
   constexpr std::size_t most_faces = 1000;
   std::vector<const FightingFaces*> largest;

@@ -129,7 +129,7 @@ Lidar rings_of(const LidarSettings& s) {
   return lidar;
 }
 
-/// The rays in the scanner's own axes.
+/// Returns the rays in the scanner's own axes.
 RayCamera rays_of(const LidarSettings& s) {
   RayCamera camera;
   if (s.directions)

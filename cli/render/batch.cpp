@@ -106,7 +106,7 @@ std::string number_text(const Json& value) {
   return value.is_number_integer() ? value.dump() : fmt::format("{}", value.get<double>());
 }
 
-/// The value as it would be written on a command line.
+/// Returns the value as it would be written on a command line.
 std::string text_of(const JsonPlace& place) {
   const Json& value = place.value;
   if (value.is_string()) return value.get<std::string>();
@@ -128,7 +128,7 @@ std::string text_of(const JsonPlace& place) {
   return text;
 }
 
-/// Refuses NUL characters, at which the system would end names.
+/// Throws an error for NUL characters, at which the system would end names.
 void refuse_nul(const JsonPlace& place, const std::string& text) {
   if (text.find('\0') != std::string::npos) place.refuse("must not hold a NUL character");
 }

@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 7> clauses = {"has vertices that are not 
 
 using WorldCorners = std::array<glm::dvec3, 3>;
 
-/// Corners in eye space, with z replaced by the distance.
+/// Returns corners in eye space, with z replaced by the distance.
 WorldCorners in_eye(const std::array<glm::vec3, 3>& corners, const View& view) {
   WorldCorners result;
   for (std::size_t i = 0; i < 3; ++i) {

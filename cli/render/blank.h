@@ -31,7 +31,7 @@ class BlankReason {
   void gather(Ranks& ranks);
   /// Whether a triangle is in the frame, but covers no sample: because of its size, or of holes in its material.
   [[nodiscard]] bool has_small() const;
-  /// The reason as a clause: "all of the model is behind the camera".
+  /// Returns the reason as a clause: "all of the model is behind the camera".
   [[nodiscard]] std::string clause() const;
 
  private:
@@ -60,7 +60,7 @@ class BlankReason {
 /// Whether all visible materials have opacity 0. False if nothing is seen.
 [[nodiscard]] bool is_invisible(const Surfaces& surfaces, std::span<const PrimitiveId> primitives);
 
-/// The warning about a picture in which nothing stands out.
+/// Returns the warning about a picture in which nothing stands out.
 [[nodiscard]] std::string contrast_warning(bool is_invisible);
 
 }  // namespace frontmost::cli

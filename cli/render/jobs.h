@@ -36,13 +36,13 @@ struct Job {
 /// \throws UsageError and Error as plan_outputs() and check_outputs() do; errors in the batch file name the place.
 [[nodiscard]] std::vector<Job> plan_jobs(const Settings& settings);
 
-/// All files that the jobs write.
+/// Returns all files that the jobs write.
 [[nodiscard]] std::vector<std::string> output_paths(const std::vector<Job>& jobs);
 
-/// The settings of each view of a batch file. \throws UsageError naming file and place; Error file_unreadable, or
-/// limit_exceeded for more than 64 MiB.
+/// Returns the settings of each view of a batch file. \throws UsageError naming file and place; Error file_unreadable,
+/// or limit_exceeded for more than 64 MiB.
 [[nodiscard]] std::vector<Settings> read_batch(const std::string& path, const Settings& defaults);
-/// The settings of each view from a batch file's text; `name` stands for the file in messages.
+/// Returns the settings of each view from a batch file's text. `name` stands for the file in messages.
 [[nodiscard]] std::vector<Settings> parse_batch(const std::string& text, const std::string& name,
                                                 const Settings& defaults);
 

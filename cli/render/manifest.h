@@ -37,7 +37,7 @@ struct Manifest {
   std::vector<FinishedView> finished;
 };
 
-/// The manifest's name, as in "engine.views.3-of-16.jsonl" for engine.glb and views.json.
+/// Returns the manifest's name, as in "engine.views.3-of-16.jsonl" for engine.glb and views.json.
 [[nodiscard]] std::string manifest_name(const std::string& stem, const Shard& shard);
 /// Returns the stem of a manifest's name, without "3-of-16", or nothing if no manifest has such a name.
 [[nodiscard]] std::optional<std::string> stem_of_manifest(const std::string& file_name);
@@ -45,7 +45,7 @@ struct Manifest {
 /// Reads a manifest and skips malformed lines. \throws Error file_malformed if the file does not begin as a manifest
 /// does, so that no other file is overwritten; file_unreadable.
 [[nodiscard]] Manifest read_manifest(const std::string& path);
-/// \throws Error file_unwritable.
+/// Writes a whole manifest. \throws Error file_unwritable.
 void write_manifest(const Manifest& manifest, const std::string& path);
 /// Appends a line to an existing manifest. \throws Error file_unwritable.
 void append_to_manifest(const FinishedView& view, const std::string& path);

@@ -23,7 +23,7 @@ bool is_picture_alone(const FileToWrite& file) {
   return file.kinds.size() == 1 && file.kinds.front() == OutputKind::picture;
 }
 
-/// The picture without alpha, because PFM holds three channels.
+/// Returns the picture without alpha, because PFM holds three channels.
 Image without_alpha(const Image& picture) {
   Image copy = picture;
   if (copy.channels.size() == 4) copy.channels.pop_back();

@@ -50,7 +50,7 @@ std::string text_of(const Ranks::Message& message) {
   return {reinterpret_cast<const char*>(message.data()), message.size()};
 }
 
-/// Hash of all settings that determine the messages between ranks.
+/// Returns a hash of all settings that determine the messages between ranks.
 std::uint64_t hash_of(const Settings& settings) {
   RunningHash hash;
   hash.add(settings.said);

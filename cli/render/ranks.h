@@ -38,15 +38,15 @@ class FailedElsewhere : public std::exception {
   RunFailure failure_;
 };
 
-/// Ranks that check before each operation that none has failed, so that none waits in vain. While they wait, the
-/// message of --timeout mentions this.
+/// Ranks that check before each operation that none of them has failed, so that none waits in vain. While they wait,
+/// the message of --timeout mentions this.
 class CarefulRanks final : public Ranks {
  public:
   explicit CarefulRanks(std::unique_ptr<Ranks> ranks) : ranks_(std::move(ranks)) {}
 
   [[nodiscard]] int number() const override { return ranks_->number(); }
   [[nodiscard]] int count() const override { return ranks_->count(); }
-  /// \throws FailedElsewhere, as do gather(), broadcast() and meet().
+  /// Keeps the greatest of each value over all ranks. \throws FailedElsewhere, as do gather(), broadcast() and meet().
   void keep_greatest(std::span<std::uint64_t> values) override;
   std::vector<Message> gather(Message message) override;
   Message broadcast(Message message) override;
@@ -59,7 +59,7 @@ class CarefulRanks final : public Ranks {
   void part();
 
  private:
-  /// \returns the failure of the lowest failed rank; status exit_done if there is none.
+  /// Waits until all ranks call it. \returns the failure of the lowest failed rank; status exit_done if there is none.
   RunFailure agree(const RunFailure& mine);
   void check();
 

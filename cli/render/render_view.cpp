@@ -83,7 +83,7 @@ Sights look(const Job& job, const RenderContext& context, ViewResult& result) {
   return sights;
 }
 
-/// The content hash, by the stream's own ids if the surfaces are an excerpt of a stream.
+/// Returns the content hash, by the stream's own ids if the surfaces are an excerpt of a stream.
 std::uint64_t hash_of(const Sights& sights) {
   if (!sights.stream_ids) return content_hash(sights.for_maps().visible);
   Visible visible = sights.for_maps().visible;

@@ -110,7 +110,7 @@ struct Sights {
   const BlankReason* blank_reason = nullptr;  ///< counted during the stream's passes; borrowed
 
   [[nodiscard]] const SeenView& for_maps() const { return shared ? *picture : *maps; }
-  /// Precondition: there is a picture.
+  /// Returns the input of the shader. Precondition: there is a picture.
   [[nodiscard]] ShadeInput shade_input(const RayIndex* index) const {
     return pixels ? ShadeInput{.pixels = &*pixels, .seen_by_light = seen_by_light, .index = index}
                   : ShadeInput{.visible = &picture->visible, .seen_by_light = seen_by_light, .index = index};
@@ -136,13 +136,13 @@ struct SightPlan {
 /// Shades, and writes all files of the job. Precondition: `result` holds the view.
 void finish_view(const Job& job, const RenderContext& context, const Sights& sights, ViewResult& result);
 
-/// The number of samples of a picture: the user's choice, or 4, or fewer if the picture is too large.
+/// Returns the number of samples of a picture: the user's choice, or 4, or fewer if the picture is too large.
 [[nodiscard]] int picture_samples(const Job& job, const View& view);
 /// Whether the job's picture has the light that moves with the camera.
 [[nodiscard]] bool has_key_light(const Job& job);
-/// The shading options of the job's picture.
+/// Returns the shading options of the job's picture.
 [[nodiscard]] ShadeOptions shade_options(const Job& job, const RenderContext& context);
-/// The map of a kind: one channel, or a few that belong together.
+/// Returns the map of a kind: one channel, or a few that belong together.
 [[nodiscard]] Image map_of(OutputKind kind, const Job& job, const RenderContext& context, const Sights& sights);
 
 /// Counts pixels, in total and by object, in a map of objects.
@@ -151,10 +151,10 @@ void count_objects(const Surfaces& surfaces, const Image& objects, Seen& seen);
 /// Determines visibility, shades, and writes all files of the job.
 [[nodiscard]] ViewResult render_view(const Job& job, const RenderContext& context);
 
-/// \throws UsageError for outputs that only a pinhole supports.
+/// Checks the outputs of a camera that is no pinhole. \throws UsageError for outputs that only a pinhole supports.
 void check_outputs_around(const Job& job);
 
-/// render_view() for a job whose camera is no pinhole. Precondition: the context has an index.
+/// Does what render_view() does, for a job whose camera is no pinhole. Precondition: the context has an index.
 [[nodiscard]] ViewResult render_around(const Job& job, const RenderContext& context);
 
 /// Context of a streamed view, available before anything has been read.
@@ -166,9 +166,9 @@ struct StreamContext {
   Ranks* ranks = nullptr;  ///< ranks of the stream, which render together
 };
 
-/// render_view() for a stream. Passes: one to find the camera, unless it is given; one for visibility; and one for
-/// shadows and smooth normals, if the picture has them. With several ranks, the first one writes the files. \throws
-/// Error unsupported if standard input would have to be read again.
+/// Does what render_view() does, for a stream. Passes: one to find the camera, unless it is given; one for visibility;
+/// and one for shadows and smooth normals, if the picture has them. With several ranks, the first one writes the files.
+/// \throws Error unsupported if standard input would have to be read again.
 [[nodiscard]] ViewResult render_streamed_view(const Job& job, Stream& stream, const StreamContext& context);
 
 }  // namespace frontmost::cli

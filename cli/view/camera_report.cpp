@@ -24,7 +24,7 @@ bool is_centred(const Projection& p) {
          std::abs(p.bottom + p.top) <= 1e-9 * (p.top - p.bottom);
 }
 
-/// The angle between two edges of the picture, in degrees.
+/// Returns the angle between two edges of the picture, in degrees.
 double angle(double low, double high) { return (std::atan(high) - std::atan(low)) * degrees_per_radian; }
 
 /// Returns the vertical view angle of a view. For a parallel projection, it is the angle of the picture as seen from

@@ -5,7 +5,7 @@
 //          up         .-.                      up
 //           |        /   \                      |      ___
 //           |        |   |                      |   .-'   |  <- flat, and nothing else is
-//            |        |___|  <- flat             |   '-.___|      no other side is flat
+//           |        |___|  <- flat             |   '-.___|      no other side is flat
 //
 // Plates are flat on both sides and boxes everywhere, so they cause no warning.
 #include "cli/view/up_axis.h"

@@ -70,12 +70,12 @@ Subject subject_of(const ViewSettings& settings, const Surfaces& surfaces) {
   return objects == FramedObjects::all ? Subject{surfaces.bounds(), {}} : find_subject(surfaces);
 }
 
-/// Bounds of the framed objects.
+/// Returns the bounds of the framed objects.
 Box subject_box(const ViewSettings& settings, const Surfaces& surfaces) {
   return or_unit_box(subject_of(settings, surfaces).bounds);
 }
 
-/// The centre of the framed objects, projected onto the viewing axis.
+/// Returns the centre of the framed objects, projected onto the viewing axis.
 glm::dvec3 ahead_of(const ViewSettings& settings, const View& view, const Surfaces& surfaces) {
   const Box box = subject_box(settings, surfaces);
   const double along = glm::dot(middle_of(box) - view.eye(), view.forward());
@@ -180,7 +180,7 @@ ClipDistances clip_of(const ViewSettings& settings, const Surfaces& surfaces, co
   return clip;
 }
 
-/// Returns the library's framing. `aim`, if given, replaces the named direction; a given focal point becomes the
+/// Returns the library's framing. `aim`, if given, replaces the named direction. A given focal point becomes the
 /// centre.
 View framed(const ViewSettings& settings, const Surfaces& surfaces, const glm::ivec2& size, const Aim* aim = nullptr) {
   FrameOptions options;

@@ -80,7 +80,7 @@ void check(const Settings& settings) {
   check_outputs(files_of(s), input_files(settings));
 }
 
-/// The views' settings, checked before the model is read.
+/// Returns the views' settings, checked before the model is read.
 std::vector<ViewSettings> places_of(const Settings& settings) {
   std::vector<ViewSettings> places;
   if (!settings.visible.views) return {settings.view};
