@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// File names, checked as far as possible before anything is drawn: a run of an hour must not end in "no such folder".
-// Suffixes give the format; --format serves names without one. Two kinds in one file become channels of an OpenEXR
-// file.
+// File names are checked as far as possible before anything is drawn, because a run of an hour must not end in "no such
+// folder". Suffixes give the format; --format serves names without a suffix. Two kinds in one file become channels of
+// an OpenEXR file.
 #include "cli/outputs.h"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ constexpr std::string_view kind_names[] = {"picture", "deep",          "depth", 
 constexpr std::string_view format_names[] = {"png", "exr", "pfm", "npy", "jpg", "webp"};
 constexpr std::string_view given_formats = "png, exr, pfm, npy, jpg or webp";
 
-/// The suffix in lower case without its dot; "jpeg" becomes "jpg".
+/// Returns the suffix in lower case without its dot. "jpeg" becomes "jpg".
 std::string suffix_of(const std::string& path) {
   std::string suffix = fs::path(path).extension().string();
   for (char& c : suffix) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
@@ -71,7 +71,7 @@ void add(std::vector<FileToWrite>& files, const FileToWrite& added) {
   same->kinds.push_back(kind);
 }
 
-/// A canonical path, which is equal for all spellings of a path.
+/// Returns a canonical path, which is equal for all spellings of a path.
 std::string canonical(const std::string& path) {
   std::error_code ignored;
   const fs::path result = fs::weakly_canonical(fs::absolute(path, ignored), ignored);

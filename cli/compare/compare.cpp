@@ -45,7 +45,7 @@ void check(const Settings& settings) {
   if (settings.model == "-") throw UsageError("compare reads its model several times: give a file");
 }
 
-/// The files of the page; empty unless a page is asked for.
+/// Returns the files of the page, or none unless a page is asked for.
 std::vector<std::string> outputs_of(const Settings& settings) {
   std::vector<std::string> paths;
   if (!settings.compare.folder) return paths;

@@ -42,7 +42,7 @@ Json view_json(const DrawnView& view, const std::string& name) {
           {"hidden_mm", hidden}};
 }
 
-/// The report. `page` is the page of the sheet as written.
+/// Returns the report of a sheet. `page` is the page of the sheet as written.
 Json lines_json(const Settings& settings, const Sheet& sheet, const Page& page, const StepTimes& times) {
   Json json = {{"model", settings.model}, {"page_mm", {page.width, page.height}}};
   json["scale"] = sheet.scale ? Json(*sheet.scale) : Json(nullptr);
@@ -89,7 +89,8 @@ std::optional<PageFormat> format_of(const std::string& path, const DrawingSettin
   return page_format(path) ? page_format(path) : settings.format;
 }
 
-/// Writes all outputs. Plotters get the page as paths; programs that read DXF know line types.
+/// Writes all outputs. DXF files get `page`, because programs that read them know line types. Other files get
+/// `plotted`, which has real dashes for plotters.
 void write(const Page& page, const Page& plotted, const Settings& settings, const Execution& execution) {
   for (const std::string& path : settings.drawing.outputs) {
     stop_if_interrupted();
@@ -107,12 +108,12 @@ void write_books(const std::vector<Page>& pages, const Settings& settings, const
   }
 }
 
-/// STL files hold only object names that programs invent, so a single object is named after its file.
+/// Names a single object after its file in STL files, which hold only object names that programs invent.
 void name_object(Scene& scene) {
   if (scene.source.format == ModelFormat::stl && scene.instances.size() == 1) scene.instances[0].name = scene.name;
 }
 
-/// Warnings about objects with open outlines.
+/// Returns warnings about objects with open outlines.
 std::vector<std::string> open_outlines(const Sheet& sheet) {
   std::vector<std::string> warnings;
   for (const DrawnView& view : sheet.views) {
@@ -169,8 +170,8 @@ Json draw_model(const Settings& settings, std::vector<Page>& pages, const Execut
   return lines_json(settings, sheet, plotted, times);
 }
 
-/// Moves files that hold the sheets of all models as pages from `outputs` to `books`. \throws UsageError if a file can
-/// hold only one sheet.
+/// Moves from `outputs` to `books` the files that hold the sheets of all models, each sheet on a page. \throws
+/// UsageError if a file can hold only one sheet.
 void part_outputs(DrawingSettings& sheet) {
   std::vector<std::string> own;
   for (const std::string& path : sheet.outputs) {
@@ -187,8 +188,8 @@ void part_outputs(DrawingSettings& sheet) {
   sheet.outputs = std::move(own);
 }
 
-/// The settings of each model's sheet; each has files of its own or pages of a common file. \throws UsageError if a
-/// file would be written twice.
+/// Returns the settings of each model's sheet. A sheet has files of its own, or is a page of a common file. \throws
+/// UsageError if a file would be written twice.
 std::vector<Settings> sheets_of(const Settings& given) {
   std::vector<std::string> models = given.more_models;
   models.insert(models.begin(), given.model);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Plans the views and files of a run, and checks which options exclude each other: layers and streams, polygons and
-// depth buffers. A wish that cannot be met is an error that names both options; it never silently gives another file.
+// depth buffers. A request that cannot be met is an error that names both options; no other file is written instead.
 #include "cli/render/jobs.h"
 
 #include <fmt/format.h>

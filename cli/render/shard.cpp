@@ -24,7 +24,7 @@ std::set<std::string> paths_of(const Job& job) {
   return {paths.begin(), paths.end()};
 }
 
-/// Hash of the model's contents; its path does not count.
+/// Returns a hash of the model's contents. Its path does not count.
 std::uint64_t hash_of_model(const Settings& settings, const std::vector<std::filesystem::path>& used) {
   RunningHash hash;
   hash.add(std::string_view(FRONTMOST_VERSION));
@@ -66,7 +66,7 @@ class ViewHasher {
   std::map<std::string, std::uint64_t> environments_;
 };
 
-/// Finished views in a manifest. Empty if the file is missing or empty, as a power failure may leave it.
+/// Returns the finished views in a manifest, or none if the file is missing or empty, as a power failure may leave it.
 std::vector<FinishedView> noted_in(const std::string& path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);

@@ -79,7 +79,7 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-/// Suggestions for an unknown name: names that contain it, or the nearest one.
+/// Returns suggestions for an unknown name: known names that contain it, or the nearest one.
 std::string names_like(std::string_view wanted, const std::vector<std::string_view>& known) {
   constexpr std::size_t most_named = 5;
   std::vector<std::string> near;

@@ -29,7 +29,7 @@ void check_view_of_report(const ViewSettings& view, const ReportSettings& report
     throw UsageError("report counts the nearest surfaces; options of a depth buffer must be left out");
 }
 
-/// The views of the file, checked before the model is read.
+/// Returns the views of the file, checked before the model is read.
 std::vector<ViewSettings> views_of_file(const Settings& settings) {
   std::vector<ViewSettings> views;
   std::map<std::string, std::size_t> numbers;  // by name of the view

@@ -2,7 +2,7 @@
 // Checks which view options exclude or need one another.
 //
 // A camera can be given in four ways: by a name, by places and directions, by a pose, or by a camera of the model. Two
-// of them contradict each other, and a parameter of one has no meaning for the others. So each such pair is an error
+// ways contradict each other, and a parameter of one way has no meaning for the others. So each such pair is an error
 // that names both flags; there is no rule of precedence.
 #include <fmt/format.h>
 
