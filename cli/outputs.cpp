@@ -41,7 +41,7 @@ void check_format(OutputKind kind, ImageFormat format, const std::string& path) 
   if (kind == OutputKind::deep && format != ImageFormat::exr)
     throw UsageError(fmt::format("{}: a deep file must be .exr", path));
   if (kind != OutputKind::picture && holds_pictures_alone(format))
-    throw UsageError(fmt::format("{}: JPEG and WebP hold only pictures; use .exr, .npy or .png", path));
+    throw UsageError(fmt::format("{}: JPEG and WebP hold only colour pictures; use .exr, .npy or .png", path));
 }
 
 ImageFormat format_of(const OutputSettings& settings, const std::string& path) {

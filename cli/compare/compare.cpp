@@ -42,7 +42,7 @@ void check(const Settings& settings) {
   check_view_settings(settings.view);
   // Each method reads the model in its own process.
   if (settings.view.samples.value_or(1) > 16) throw UsageError("--samples: compare takes 1, 2, 4, 8 or 16");
-  if (settings.model == "-") throw UsageError("compare reads its model several times: give a file");
+  if (settings.model == "-") throw UsageError("the command compare reads its model several times: give a file");
 }
 
 /// Returns the files of the page, or none unless a page is asked for.

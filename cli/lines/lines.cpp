@@ -82,7 +82,7 @@ void check_outputs_of(const Settings& settings) {
   if (s.format) check_given_format(s.outputs, int(*s.format), "svg|pdf|dxf|json");
   const bool takes_output = std::find(s.outputs.begin(), s.outputs.end(), "-") != s.outputs.end();
   if (takes_output && settings.run.json)
-    throw UsageError("--json and an output to - both write to standard output; give a file");
+    throw UsageError("--json and the output '-' both write to standard output; give a file");
 }
 
 std::optional<PageFormat> format_of(const std::string& path, const DrawingSettings& settings) {
@@ -147,7 +147,7 @@ void warn_of(const Sheet& sheet, const Surfaces& surfaces, const Settings& setti
         {fmt::format("cylinders without a diameter, because none of their lines is drawn: {}{}", sheet.undrawn,
                      settings.drawing.sheet.hidden == HiddenLines::none ? "; --hidden dashed draws hidden ones" : "")});
   if (sheet.prisms > 0)
-    warn({fmt::format("cylinders of 7 to 17 sides, which count as prisms and have no diameter: {}", sheet.prisms)});
+    warn({fmt::format("cylinders of 7 to 17 sides count as prisms and get no diameter: {}", sheet.prisms)});
 }
 
 /// Draws one model and writes its own files. Adds its page to `pages` if a file holds all sheets. \returns the report.

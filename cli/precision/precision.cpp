@@ -54,7 +54,7 @@ void check(const Settings& settings) {
   const std::vector<std::string> files = outputs_of(precision);
   check_outputs(files, input_files(settings));
   if (settings.run.json && std::find(files.begin(), files.end(), "-") != files.end())
-    throw UsageError("--json and an output to - both write to standard output; give a file");
+    throw UsageError("--json and the output '-' both write to standard output; give a file");
 }
 
 ViewSettings with_far(const Settings& settings) {

@@ -12,7 +12,8 @@
 
 namespace frontmost::cli {
 
-/// The number of values on a line, and the reason, for error messages: "a pair of points needs six numbers".
+/// The number of values that each line must have, and the text of the error if a line has more or fewer values: "a pair
+/// of points needs six numbers".
 struct LineRule {
   std::size_t count;
   const char* text;

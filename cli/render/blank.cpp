@@ -108,7 +108,8 @@ std::array<Alike, 3> alike_to(const glm::vec3& background, const Scale& scale) {
   return alike;
 }
 
-/// Whether too few of the pixels that see something stand out. stands_out(i) says whether pixel i does.
+/// Whether less than one in `one_in` of the covered pixels differs from the background. stands_out(i) says whether
+/// pixel i differs. False if no pixel is covered.
 template <class StandsOut>
 bool too_few(std::span<const PrimitiveId> primitives, const StandsOut& stands_out) {
   std::size_t covered = 0, distinct = 0;

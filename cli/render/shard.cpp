@@ -86,11 +86,11 @@ void check_shard(const Settings& settings, const std::vector<Job>& jobs) {
     const auto refuse = [&](const char* why) { throw UsageError(fmt::format("--shard: view {} {}", job.name, why)); };
     const std::set<std::string> paths = paths_of(job);
     if (paths.empty())
-      refuse(
-          "has no output file, so that a repeated run could not skip it; give an output, such as -o, --depth or --ids");
+      refuse("has no output file; give one (-o, --depth or --ids), so that a repeated run can skip the view");
     if (paths.count("-"))
-      refuse("is written to standard output, so that a repeated run could not skip it; give a file");
-    if (job.output.reference) refuse("has a --reference, which a repeated run would not compare again; leave it out");
+      refuse("is written to standard output; give a file, so that a repeated run can skip the view");
+    if (job.output.reference)
+      refuse("has a --reference; leave it out, because a repeated run skips the view and its comparison");
   }
 }
 

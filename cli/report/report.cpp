@@ -115,7 +115,7 @@ void check(const Settings& settings, const std::vector<std::string>& outputs) {
   if (report.page && *report.page != "-" && !report.page->ends_with(".html") && !report.page->ends_with(".htm"))
     throw UsageError(*report.page + ": the report is a page; use .html");
   if (settings.run.json && std::find(outputs.begin(), outputs.end(), "-") != outputs.end())
-    throw UsageError("--json and an output to - both write to standard output; give a file");
+    throw UsageError("--json and the output '-' both write to standard output; give a file");
 }
 
 }  // namespace

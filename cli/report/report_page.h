@@ -6,7 +6,7 @@
 
 namespace frontmost::cli {
 
-/// Returns the script that makes the page interactive, without its element.
+/// Returns the script that makes the page interactive, without the <script> tags around it.
 [[nodiscard]] std::string_view report_script();
 /// Returns the graph of hiding as an SVG element, for the pairs with the most hidden samples, or an empty text if
 /// nothing is hidden. Hiding objects are above hidden ones.

@@ -24,9 +24,9 @@ void check_view_of_report(const ViewSettings& view, const ReportSettings& report
   if (report.bop && view.orthographic)
     throw UsageError("--bop needs a perspective camera, because BOP has no other cameras");
   if (view.camera_model != CameraModel::pinhole)
-    throw UsageError("report needs a pinhole camera; --camera-model must be left out");
+    throw UsageError("the command report needs a pinhole camera; --camera-model must be left out");
   if (view.depth.is_used)
-    throw UsageError("report counts the nearest surfaces; options of a depth buffer must be left out");
+    throw UsageError("the command report counts the nearest surfaces; leave out the options of a depth buffer");
 }
 
 /// Returns the views of the file, checked before the model is read.

@@ -69,7 +69,7 @@ void check(const Settings& settings) {
   if (s.sphere && (v.named || v.position || v.direction || v.pose || v.pose_file || v.camera_index))
     throw UsageError("--sphere looks from all around, and excludes options of the camera's position and direction");
   if (settings.run.json && writes_standard_output(s))
-    throw UsageError("--json and an output to - both write to standard output; give a file");
+    throw UsageError("--json and the output '-' both write to standard output; give a file");
   for (const std::string& path : s.outputs)
     if (path != "-" && !has_suffix(path, {".csv", ".npy", ".ply"}))
       throw UsageError(path + ": the suffix names no format; use .csv, .npy or .ply");
@@ -88,7 +88,7 @@ std::vector<ViewSettings> places_of(const Settings& settings) {
     try {
       check_view_settings(one.view);
       if (one.view.camera_model != CameraModel::pinhole || one.view.tessellation_error)
-        throw UsageError("visible needs a pinhole camera, and excludes --tessellation-error");
+        throw UsageError("the command visible needs a pinhole camera, and excludes --tessellation-error");
     } catch (const UsageError& error) {
       throw UsageError(fmt::format("{}: views[{}]: {}", *settings.visible.views, places.size(), error.what()));
     }

@@ -122,7 +122,7 @@ struct VisibleParts {
 /// cut triangles; the picture's sides do not. Triangles with holes (alpha mode MASK) are whole. The result is the same
 /// to the bit for any number of threads. O(n log n), and one test per pair that overlaps on the screen and in depth.
 /// 200 bytes a triangle, 110 of them the result. \throws Error as validate(view) does; limit_exceeded beyond the limits
-/// of PainterOptions, or 2^28 tests and 8,192 per polygon.
+/// of PainterOptions, or if n triangles need more than 2^28 + 8,192 n tests.
 [[nodiscard]] PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOptions& options = {},
                                  const Execution& execution = {});
 
@@ -131,7 +131,7 @@ struct VisibleParts {
 /// along a grid. Polygons are cut at the picture's sides. Parts thinner than 1/1024 pixel are left out. Cuts that would
 /// leave a part of 1/1024 to 1/16 pixel are not made. Hidden parts that are kept are painted over, as in the order.
 /// Near-linear, as painter(), except for long parallel strips, which share many cells of the grid.
-/// \throws Error limit_exceeded as painter() does for tests.
+/// \throws Error limit_exceeded if n polygons need more than 2^28 + 8,192 n tests.
 [[nodiscard]] VisibleParts visible_parts(const PaintOrder& order, const Occluders& occluders = Occluders::all(),
                                          const Execution& execution = {});
 

@@ -48,8 +48,8 @@ struct DepthSetup {
 /// change of its depth over 1/512 pixel along x and along y. \throws Error as resolvable_gap() does.
 [[nodiscard]] double rounding_gap(const DepthSetup& setup, double distance, std::optional<double> reach = {});
 
-/// The sum of both gaps: two surfaces this far apart, the nearer at `distance`, are resolved at every pixel of every
-/// picture. \throws Error as resolvable_gap() does.
+/// The resolvable gap and the rounding gap together: two surfaces this far apart, the nearer at `distance`, are
+/// resolved at every pixel of every picture. \throws Error as resolvable_gap() does.
 [[nodiscard]] double certain_gap(const DepthSetup& setup, double distance, std::optional<double> reach = {});
 
 /// \returns the share of the format's values that lie between the near plane and `distance`, 0 to 1.

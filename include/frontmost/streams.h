@@ -27,8 +27,9 @@
 namespace frontmost {
 
 /// The processes that stream one model together, each a part of it, on one machine or many: MPI's ranks, or anything
-/// else with these three operations. All ranks call the same operations in the same order, as their Streams do. A call
-/// returns when it has received what it needs from the other ranks. Exceptions of an operation are passed on.
+/// else with these three operations. All ranks call the same operations in the same order, because every rank calls the
+/// same functions of its Stream. A call returns when it has received what it needs from the other ranks. Exceptions of
+/// an operation are passed on.
 class Ranks {
  public:
   using Message = std::vector<std::byte>;

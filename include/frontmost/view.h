@@ -267,7 +267,7 @@ void merge(Visible& into, const Visible& other, PrimitiveId first_id = 0, const 
 /// Packs every sample into one number, of which merge() keeps the greater. The upper half is the key's bits, the lower
 /// half the inverted id; 0 where nothing is seen. A maximum of uint64, such as MPI_MAX, thus merges parts on different
 /// machines. `first_id` is added to ids, as in merge(). O(samples), in parallel.
-/// \throws Error bad_argument if the planes do not have the size of their view; limit_exceeded if an id would reach
+/// \throws Error bad_argument if the arrays do not match the size of their view; limit_exceeded if an id would reach
 /// no_primitive.
 [[nodiscard]] Buffer<std::uint64_t> pack(const Visible& visible, PrimitiveId first_id = 0,
                                          const Execution& execution = {});

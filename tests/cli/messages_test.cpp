@@ -116,7 +116,7 @@ TEST_F(Messages, OfCamerasThatAreNoPinholes) {
 
 TEST_F(Messages, OfCompare) {
   write("file", "");
-  expect_usage({{"compare -", "compare reads its model several times: give a file"},
+  expect_usage({{"compare -", "the command compare reads its model several times: give a file"},
                 {"compare cube.stl --samples 64", "--samples: compare takes 1, 2, 4, 8 or 16"}});
   expect_could_not({{"compare cube.stl -o file/page", "file/page: cannot be made into a folder"},
                     {"compare cube.stl -o file", "file: cannot be made into a folder"}});

@@ -106,9 +106,9 @@ TEST_F(Report, ViewsOfAFileEqualThoseOneByOne) {
   expect_failure("report squares.obj --views views.json -o page.html", 2,
                  "--views excludes --output, because a page holds one view");
   write("panorama.json", R"({"views": [{"camera-model": "panorama"}]})");
-  expect_failure("report squares.obj --views panorama.json", 2, "views[0]: report needs a pinhole camera");
+  expect_failure("report squares.obj --views panorama.json", 2, "views[0]: the command report needs a pinhole camera");
   write("depth.json", R"({"views": [{"depth-func": "LESS"}]})");
-  expect_failure("report squares.obj --views depth.json", 2, "options of a depth buffer must be left out");
+  expect_failure("report squares.obj --views depth.json", 2, "leave out the options of a depth buffer");
 }
 
 TEST_F(Report, AllHidersAreThereOnRequest) {

@@ -161,7 +161,7 @@ class Expansion {
   detail::TermList terms_;
 };
 
-/// A bound of a dozen roundings, relative to the sum of the terms' absolute values.
+/// Bounds the error of a dozen roundings, relative to the sum of the terms' absolute values.
 inline constexpr double kRounding = 32.0 / 9007199254740992.0;
 
 using ExactVector = std::array<Expansion, 3>;

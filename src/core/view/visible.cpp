@@ -63,7 +63,7 @@ std::uint64_t merge_run(Visible& into, const Visible& other, PrimitiveId first_i
 void check_planes(const Visible& visible, const char* who) {
   const std::size_t count = visible.view.sample_count();
   if (visible.primitives.size() != count || visible.keys.size() != count)
-    throw Error(ErrorCode::bad_argument, std::string(who), "the planes do not have the size of their view");
+    throw Error(ErrorCode::bad_argument, std::string(who), "the arrays do not match the size of their view");
 }
 
 void check_ids(std::span<const PrimitiveId> ids, std::uint32_t primitive_count, const char* who,
@@ -241,9 +241,9 @@ void check_answer(const VisiblePixels& pixels, std::uint32_t primitive_count, co
   const std::size_t runs = pixels.runs_across() * std::size_t(view.height);
   if (view.width != first.width || view.height != first.height || first.samples != 1 || pixels.mixed.size() != runs ||
       pixels.places.size() != runs || pixels.others.size() < pixels.other_count)
-    throw Error(ErrorCode::bad_argument, std::string(who), "the planes do not have the size of their view");
+    throw Error(ErrorCode::bad_argument, std::string(who), "the arrays do not match the size of their view");
   if (!has_all_others(pixels))
-    throw Error(ErrorCode::bad_argument, std::string(who), "mixed pixels lie beyond the planes");
+    throw Error(ErrorCode::bad_argument, std::string(who), "a mixed pixel lies outside the picture or lacks samples");
   check_ids({pixels.others.data(), pixels.other_count}, primitive_count, who, execution);
 }
 

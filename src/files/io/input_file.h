@@ -58,7 +58,7 @@ class InputFile {
 /// memory, and a file cut short by another program causes an early end instead of a signal.
 class ByteStream {
  public:
-  /// Opens `path`, of which "-" is standard input. `name` stands for the file in messages. \throws Error
+  /// Opens `path`. The path "-" stands for standard input. Messages call the file `name`. \throws Error
   /// file_unreadable.
   ByteStream(const std::string& path, std::string name);
   ~ByteStream();

@@ -19,9 +19,9 @@
 namespace frontmost {
 namespace {
 
-/// In pixels: how far snapping may move a corner, how far a sample on a cut may lie beyond it, and the length of the
-/// shortest cut that counts. Corners where planes meet at small angles are so inaccurate that a cut between two near
-/// corners has no direction.
+/// Lengths in pixels: how far snapping may move a corner, how far beyond a cut a sample still counts as on the cut, and
+/// the length of the shortest cut that counts. Corners where planes meet at small angles are so inaccurate that a cut
+/// between two near corners has no direction.
 constexpr double kSnapping = 1.0 / 128, kOnCut = 1e-9, kShortest = 1.0 / 1024;
 
 /// Vertices in 1/256 pixel from the image's top left, clockwise with y down.

@@ -102,11 +102,12 @@ HWY_INLINE hn::Vec<DI> ToPixel(VF from_centre, std::int32_t centre, std::int32_t
 // leaves a factor of two for poses whose matrix is a rotation only to 1e-4.
 constexpr float kFacingRounding = kConeRounding + 1.0f / 1024.0f;
 
-/// The rays to the points of a box, and the altitude on the screen that the test of facing needs.
+/// The rays from the eye to the points of a box, and the size that a triangle needs so that snapping and rounding
+/// cannot turn it over.
 struct Rays {
   CullVector low, high;  // range of p - E over the box; in parallel projection both are the axis
   VF farthest;           // upper bound of |p - E|
-  VF needed;             // lower bound of altitude * sine that makes facing certain
+  VF needed;             // a triangle with a greater altitude * sine is not turned over
 };
 
 class FacingCull {

@@ -44,7 +44,7 @@ class OutlineFinder {
   /// Includes the points of a mesh, but does not look at every vertex: a run of neighbouring triangles whose box would
   /// change nothing has no point of the outline.
   void include(const Mesh& mesh) {
-    constexpr std::size_t run = 64;  // mostly neighbours in space, so few runs reach out and are examined
+    constexpr std::size_t run = 64;  // mostly neighbours in space, so few runs extend the outline
     const std::size_t count = mesh.triangles.size();
     // A few triangles from all over the piece go first. Otherwise, where a model grows from one end to the other, every
     // run would reach farther than the last, and all vertices would be examined.
@@ -77,7 +77,7 @@ class OutlineFinder {
   }
 
  private:
-  /// Examines a run in quarters, because mostly a small part of it reaches out.
+  /// Examines a run in quarters, because mostly only a small part of the run extends the outline.
   void include_run(const Mesh& mesh, std::size_t begin, std::size_t end) {
     if (!may_change_by(finite_bounds(mesh, begin, end))) return;
     const std::size_t part = (end - begin + 3) / 4;

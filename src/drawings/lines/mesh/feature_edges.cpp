@@ -276,11 +276,11 @@ class Gaps {
   SideTree tree_;
 };
 
-/// Removes from `edges` the boundaries across which their surface continues. Such a boundary has other boundaries of
-/// the same object and material along its whole length, at most `widest` and a sixteenth of its length away. The
-/// triangles of these other boundaries lie across the gap, face the same way, and differ in direction by at most the
-/// classifier's angle. (Exporters tessellate each face by itself, so rims share no vertices.) If more than a third of
-/// all sides are open, the triangles form no surface, and all boundaries stay.
+/// Removes from `edges` the boundaries across which their surface continues. Other boundaries of the same object and
+/// material lie along the whole length of such a boundary. Their distance from it is at most `widest`, and also at most
+/// a sixteenth of its length. The triangles of these other boundaries lie across the gap, face the same way, and differ
+/// in direction by at most the classifier's angle. (Exporters tessellate each face by itself, so rims share no
+/// vertices.) If more than a third of all sides are open, the triangles form no surface, and all boundaries stay.
 /// \returns pairs of vertices on opposite sides of a gap, the lower vertex first, ascending. O(boundaries log
 /// boundaries); a boundary with more than 64 others beside it stays.
 VertexPairs leave_out_gaps(const SeenMesh& seen, const Classifier& classifier, double widest, std::size_t triangles,

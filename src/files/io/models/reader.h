@@ -69,8 +69,9 @@ class ModelSource {
   /// Whether files named inside the model can be read at all.
   [[nodiscard]] bool has_folder() const { return !path_.empty(); }
   /// Opens a file that the model names relative to its own folder, with either kind of slashes. \throws Error
-  /// file_unreadable if it is missing, no ordinary file, or outside the model's folder (by name or through links) and
-  /// the allowed folders; limit_exceeded. what() starts with the model's name and `reference`.
+  /// file_unreadable if the file is missing, is no ordinary file, or lies (by name or through links) in neither the
+  /// model's folder nor an allowed folder; limit_exceeded if the file is larger than `max_bytes`. what() starts with
+  /// the model's name and `reference`.
   [[nodiscard]] InputFile open(const std::string& reference, std::uint64_t max_bytes) const;
   /// Returns the real path of such a file, without links. \throws Error as open() does.
   [[nodiscard]] std::filesystem::path path_of(const std::string& reference) const;

@@ -35,8 +35,8 @@ struct LaneColors {
 };
 
 #if HWY_TARGET != HWY_SCALAR
-/// Returns a vector with one colour in every four lanes: those with the numbers numbers[0], numbers[4], numbers[8] and
-/// so on.
+/// Returns a vector with one colour of the table in every four lanes. The indices of these colours are numbers[0],
+/// numbers[4], numbers[8] and so on.
 template <class D>
 HWY_INLINE hn::Vec<D> ColorsBeside(D d, const float* table, const std::uint32_t* numbers) {
   if constexpr (hn::MaxLanes(D()) == 4) {

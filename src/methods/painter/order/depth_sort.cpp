@@ -54,15 +54,16 @@ void sort_by_depth(const Pieces& pieces, std::vector<std::uint32_t>& members, co
   for (std::size_t i = 0; i < items.size(); ++i) members[i] = std::uint32_t(items[i]);
 }
 
-/// Tests one piece against others, from the cheapest to the most expensive test. Each test may decide:
+/// Tests whether piece P covers piece Q. The tests go from the cheapest to the most expensive, and the first test that
+/// decides ends them:
 ///
-///    is all of this piece behind the plane of the other?      it cannot cover the other
-///    is all of the other before the plane of this one?        it cannot cover the other
-///    does a side of either separate them on the screen?       they do not overlap
-///    (two whole triangles) which is nearer in the overlap?    by vertices within, then by sides that cross
+///    1. P lies wholly behind the plane of Q:        P does not cover Q
+///    2. Q lies wholly in front of the plane of P:   P does not cover Q
+///    3. a side separates P from Q on the screen:    P does not cover Q
+///    4. P and Q are whole triangles:                vertices in the overlap tell which is nearer, or sides that cross
 ///
 /// The first two tests decide most pairs. The fourth test reuses the signs of the third, so no sign is computed twice.
-/// All signs are exact: a pair that is tested in two cells, or from both sides, gets one answer.
+/// All signs are exact, so a pair that is tested in two cells, or also with P and Q exchanged, gets consistent answers.
 class NewellTests {
  public:
   NewellTests(const Pieces& pieces, std::uint32_t piece)

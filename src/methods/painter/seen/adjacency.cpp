@@ -99,11 +99,12 @@ class OpenSides {
 /// If a greater share of sides is open, the search takes longer than it saves.
 constexpr double kMostOpen = 0.3;
 
-/// The place of a way from a to b relative to an outline.
+/// The place of the segment from a to b relative to an outline.
 enum class Beside : std::uint8_t { apart, touching, crossing };
 
-/// Tests the lines along the sides and along the way. The result is `apart` if one of these lines keeps outline and way
-/// more than OutlineClipper::thin away from each other.
+/// Tests the lines through the sides of the outline, and the line through a and b. The result is `apart` if one of
+/// these lines separates the outline from the segment a b, and one of the two is more than OutlineClipper::thin from
+/// the line.
 Beside beside(Outline outline, const glm::dvec2& a, const glm::dvec2& b) {
   const glm::dvec2 across = b - a;
   double least = std::numeric_limits<double>::infinity(), greatest = -least;

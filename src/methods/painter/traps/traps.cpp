@@ -367,7 +367,8 @@ class TrapMaker {
     }
   }
 
-  /// Sets the knots of a side's trap, which is as high as it is hidden.
+  /// Sets the knots of a side's trap. Along the side, the trap is as high as the strip that other polygons hide there,
+  /// but no higher than `width_`.
   void fit(std::size_t number) {
     TrappedSide& side = sides_[number];
     side.knots.clear();

@@ -77,8 +77,9 @@ struct RayTree {
   Box bounds;                              ///< around the triangles
   std::shared_ptr<const Cutouts> cutouts;  ///< null if no triangle has holes
   std::shared_ptr<const MaterialSides> sides;
-  /// A tree of copies. Each copy has the vertices of a triangle of this tree, in the same order, and a higher id.
-  /// Queries for the nearest hit, or for any hit, do not need the copies. Null if no copies were taken out.
+  /// A second tree, which holds the copies that were removed from this tree. Each copy has the vertices of a triangle
+  /// of this tree, in the same order, and a higher id. Queries for the nearest hit, or for any hit, do not need the
+  /// copies. Null if no copies were removed.
   std::shared_ptr<RayTree> copies;
   std::optional<RayLinks> links;  ///< made when first needed
 

@@ -46,7 +46,8 @@ class PacketHits {
     packet_end_ = all;
   }
 
-  /// Ends of each block and of the packet. A triangle that begins beyond an end is not the nearest triangle of any ray.
+  /// Distances beyond which no ray of a block, or of the packet, meets its nearest triangle. So a triangle that begins
+  /// beyond such a distance need not be tested.
   [[nodiscard]] HWY_INLINE const float* block_ends() const { return block_end_; }
   [[nodiscard]] HWY_INLINE float packet_end() const { return packet_end_; }
 

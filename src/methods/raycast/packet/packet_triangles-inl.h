@@ -261,7 +261,7 @@ class TrianglePlacer {
     return hn::Sub(hn::Load(d, leaf_.corner[to][axis] + first), hn::Load(d, leaf_.corner[from][axis] + first));
   }
 
-  /// Prepares the edges. \returns the triangles that all rays of the packet pass on the outer side of an edge.
+  /// Prepares the edges. \returns the triangles that all rays of the packet miss, as Outside() finds them.
   HWY_INLINE QM PlaceEdges(std::size_t first, const QV (&at)[3][3], QV size, QM serves) const {
     const QF d;
     QV normal[3][3], longest = hn::Zero(d);

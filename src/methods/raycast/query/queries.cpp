@@ -145,7 +145,8 @@ int determinant_sign(const HighLowVector& a, const HighLowVector& b, const HighL
     det += x[std::size_t(i)] * (p - q);
     size += std::abs(x[std::size_t(i)]) * (std::abs(p) + std::abs(q));
   }
-  // Three roundings of the coordinates and five more: less than 16 half units in the last place of the size.
+  // Each product in `det` has three rounded coordinates, and five more roundings follow. So the error of `det` is less
+  // than 16 half units in the last place of `size`.
   if (std::abs(det) > size * 0x1p-49) return det > 0 ? 1 : -1;
   return dot(unrounded(a), cross(unrounded(b), unrounded(c))).sign();
 }

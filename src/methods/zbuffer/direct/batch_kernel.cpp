@@ -117,8 +117,8 @@ class TilePixels {
   const Tile& tile_;
 };
 
-// After this many triangles, the painter finds again which blocks hide, and whether testing for hidden triangles pays.
-// Testing that does not pay pauses for kMostIdle windows.
+// After this many triangles, the painter decides again whether testing for hidden triangles pays. If so, it updates the
+// farthest keys of the blocks. Otherwise, testing pauses for kMostIdle windows.
 constexpr std::size_t kWindow = 512;
 constexpr int kMostIdle = 7;
 

@@ -35,7 +35,7 @@ struct Frames {
   int count;
 };
 
-/// Computes the two perpendicular directions from each normal.
+/// Computes the two directions that are perpendicular to each normal.
 void FindFrames(Frames& frames) {
   for (int i = 0; i < frames.count; ++i) {
     const Direction n{frames.normal.x[i], frames.normal.y[i], frames.normal.z[i]};

@@ -68,8 +68,8 @@ struct PlainSurface {
     return {reflection_of(m.base.x[i], metallic), reflection_of(m.base.y[i], metallic),
             reflection_of(m.base.z[i], metallic)};
   }
-  /// Returns the share of light that reaches the diffuse part of a channel. It is `own`, the share that the channel
-  /// does not mirror.
+  /// Returns the share of light that reaches the diffuse part of a channel. This is the share that the channel does not
+  /// mirror, `own`.
   static inline float below(const FragmentBatch& /*batch*/, int /*i*/, float own, float /*least*/) { return own; }
 };
 

@@ -77,7 +77,8 @@ class ScanPicture {
   }
 
  private:
-  /// Prepares textures and normals for the visible primitives, and the index for rays behind see-through ones.
+  /// Prepares the textures and normals of the visible primitives. If primitives are see-through, also prepares the
+  /// index for rays that go on behind them.
   void make_ready(bool wants_normals) {
     PreparedScene& scene = request_.scene;
     const Execution& execution = request_.execution;

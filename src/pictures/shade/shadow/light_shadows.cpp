@@ -53,7 +53,7 @@ bool are_equal(const View& a, const View& b) {
 
 /// Checks the picture that callers made for key_light_view(). \throws Error bad_argument.
 void check_light(const Visible& seen_by_light) {
-  constexpr const char* who = "shade: what the light sees";
+  constexpr const char* who = "shade: seen_by_light";
   check_planes(seen_by_light, who);
   const View& view = seen_by_light.view;
   if (view.width == view.height && view.width >= 4 * ShadowGrid::block && view.width % ShadowGrid::block == 0 &&

@@ -29,7 +29,8 @@ struct LightExtent {
   [[nodiscard]] bool is_empty() const { return !(low.x <= high.x); }
 };
 
-/// Returns the size at which a texel is about as small as a pixel. Small pictures would not show more.
+/// Returns the side length, in texels, of a map whose texels are about as small as the pixels of the picture. The
+/// picture would not show smaller texels.
 int texels_for(const View& picture) {
   const int wanted = std::max(picture.width, picture.height) * 8 / 5;
   return std::clamp((wanted + 63) / 64 * 64, kLeastSize, kMostSize);

@@ -80,8 +80,9 @@ struct ShadowGrid {
 
   int size = 0;                 ///< texels per side, a multiple of `block`; 0: everything is lit
   const float* keys = nullptr;  ///< row by row; greater is nearer to the light
-  /// The greatest and the least key in the window that begins at each block, by rows of blocks. A filter that begins in
-  /// the block stays within the window. Most points are nearer than all keys of the window, or farther.
+  /// The greatest and the least key in each block's window, by rows of blocks. The window begins at the block, and
+  /// contains every filter that begins in the block. Most points need no filter, because they are nearer than all keys
+  /// of the window, or farther.
   const float *nearest = nullptr, *farthest = nullptr;
   glm::vec3 to_light{0};                     ///< for spots, opposite to their axis
   glm::vec3 texel_x{0}, texel_y{0}, key{0};  ///< change of texel x, texel y and key per unit step in the world

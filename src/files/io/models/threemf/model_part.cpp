@@ -351,8 +351,8 @@ class ModelPartReader : public XmlPart {
     if (vertices_.size() >= no_index) source().fail_limit(place(), "too many vertices");
     vertices_.emplace_back(tags.number("x"), tags.number("y"), tags.number("z"));
   }
-  /// Ends the list of a mesh's vertices. They stay doubles until all are known, which determines the best origin for
-  /// floats.
+  /// Ends the list of a mesh's vertices and converts the vertices to floats. They are doubles until then, because the
+  /// best origin for the floats depends on all vertices.
   void end_vertices() {
     Mesh& mesh = this->mesh();
     if (!mesh.positions.empty()) fail("a second list of vertices in one mesh");
