@@ -27,7 +27,8 @@ inline constexpr int kBlocksAcross = kTileSize / 4;
 inline constexpr int kRankBits = 20;
 inline constexpr std::uint32_t kMostOfPixel = (1u << kRankBits) - 1;
 
-/// A tile that holds more is divided. At 28 bytes a fragment, and up to 16 for the sorted lists, the limit is 14 MB.
+/// The most fragments of a tile; a tile that holds more is divided. This limits Arrived to 5 MB; its sorted lists need
+/// 8 bytes a slot.
 inline constexpr std::size_t kMostOfTile = std::size_t(1) << 18;
 /// The most fragments that one step of gathering may add before the room is checked again.
 inline constexpr std::size_t kMostAtOnce = kTilePixels + 64;

@@ -95,8 +95,8 @@ class OutlineClipper {
 
   [[nodiscard]] std::size_t count() const { return parts_.size(); }
   [[nodiscard]] Outline operator[](std::size_t i) const { return {corners_.data() + parts_[i].first, parts_[i].count}; }
-  /// is_changed() returns whether something was removed since begin() or forget_changes().
   void forget_changes() { is_changed_ = false; }
+  /// Whether something was removed since begin() or forget_changes().
   [[nodiscard]] bool is_changed() const { return is_changed_; }
 
  private:

@@ -220,11 +220,11 @@ class LightPacket {
     }
   }
 
-  /// Sixteen triangles in the sheared plane. `beside` has a mask of triangles for each vector of rays: those that it
-  /// may meet.
+  /// Sixteen triangles in the sheared plane. `may_meet` has a mask for each vector of rays: the triangles that it may
+  /// meet.
   struct Sheared {
     alignas(64) float u[3][kRayLanes], v[3][kRayLanes], d[3][kRayLanes], reach[kRayLanes];
-    std::uint32_t beside[kLightRays / kQueryLanes];
+    std::uint32_t may_meet[kLightRays / kQueryLanes];
   };
 
   void MeetLeaf(const RayLeaf& leaf) {
@@ -263,7 +263,7 @@ class LightPacket {
       const QM beside_u = hn::Or(hn::Gt(low_u, hn::Set(d, b.high_u)), hn::Lt(high_u, hn::Set(d, b.low_u)));
       const QM beside_v = hn::Or(hn::Gt(low_v, hn::Set(d, b.high_v)), hn::Lt(high_v, hn::Set(d, b.low_v)));
       const QM outside = hn::Or(hn::Or(beside_u, beside_v), hn::Lt(high_d, hn::Set(d, b.low_d)));
-      any |= to.beside[i] = ~QueryBits(outside) & used;
+      any |= to.may_meet[i] = ~QueryBits(outside) & used;
     }
     return any;
   }
@@ -313,7 +313,7 @@ class LightPacket {
     const std::size_t lane = first_lane + index;
     const Outline outline = OutlineOf(sheared, lane);
     for (std::size_t block = 0; block < block_count_; ++block) {
-      if ((sheared.beside[block] >> index & 1) == 0) continue;
+      if ((sheared.may_meet[block] >> index & 1) == 0) continue;
       const std::size_t first = block * kQueryLanes;
       const Answer answer = MeetRays(outline, leaf.id[lane], first);
       for (std::uint32_t bits = QueryBits(answer.met); bits != 0; bits &= bits - 1)
