@@ -9,35 +9,29 @@
 
 namespace frontmost {
 
-/// Bounds of a leaf, for building nodes.
-struct LeafBox {
-  float low[3];
-  std::uint32_t leaf;
-  float high[3];
-  std::uint32_t unused;
-};
-[[nodiscard]] inline Box as_box(const LeafBox& b) {
-  return {{b.low[0], b.low[1], b.low[2]}, {b.high[0], b.high[1], b.high[2]}};
-}
-
 /// The bounds of the leaf's triangles; unused lanes do not count.
-[[nodiscard]] LeafBox box_of(const RayLeaf& leaf, std::uint32_t number);
+[[nodiscard]] Box box_of(const RayLeaf& leaf);
 
 /// The tree of the surfaces.
 [[nodiscard]] RayTree make_tree(const Surfaces& surfaces, const Execution& execution);
 
-/// Whether two vertices are the same. No ray meets such a triangle; Surfaces makes vertices the same to mark a triangle
-/// that is not finite.
-inline bool is_degenerate(const ClusterSet& set, std::size_t t) {
-  return set.i0[t] == set.i1[t] || set.i1[t] == set.i2[t] || set.i2[t] == set.i0[t];
+/// Calls visit(t) for the triangles of a cluster of which no two vertices are the same. No ray meets another one;
+/// Surfaces makes vertices the same to mark a triangle that is not finite.
+template <class Visit>
+void visit_triangles(const ClusterSet& set, const Cluster& cluster, const Visit& visit) {
+  for (std::size_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t)
+    if (set.i0[t] != set.i1[t] && set.i1[t] != set.i2[t] && set.i2[t] != set.i0[t]) visit(t);
 }
 
-/// Sets the vertices of triangle `t` in a lane. `positions` are the vertices of its cluster, by axis.
-inline void set_corners(const ClusterSet& set, std::size_t t, const float* const (&positions)[3], RayLeaf& leaf,
-                        std::size_t lane) {
-  const std::uint8_t corners[3] = {set.i0[t], set.i1[t], set.i2[t]};
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t axis = 0; axis < 3; ++axis) leaf.corner[k][axis][lane] = positions[axis][corners[k]];
+/// Sets the vertices of triangle `t` of a cluster in a lane.
+inline void set_corners(const ClusterSet& set, const Cluster& cluster, std::size_t t, RayLeaf& leaf, std::size_t lane) {
+  const std::size_t corners[3] = {set.i0[t], set.i1[t], set.i2[t]};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t v = cluster.first_vertex + corners[k];
+    leaf.corner[k][0][lane] = set.x[v];
+    leaf.corner[k][1][lane] = set.y[v];
+    leaf.corner[k][2][lane] = set.z[v];
+  }
 }
 
 }  // namespace frontmost

@@ -18,7 +18,7 @@
 #include <cstring>
 
 #include "base/highway-inl.h"
-#include "base/wasm_lanes-inl.h"
+#include "base/lanes-inl.h"
 #include "hwy/cache_control.h"
 #include "raycast/tile/tile_kernel.h"
 #include "view/facing-inl.h"
@@ -27,6 +27,8 @@ HWY_BEFORE_NAMESPACE();
 namespace frontmost::raycast_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using frontmost::HWY_NAMESPACE::BitsOf;
+using frontmost::HWY_NAMESPACE::ForEachBit;
 using view_detail::HWY_NAMESPACE::Kept;
 
 // At most as many lanes as a leaf, a node and a block have entries.
@@ -52,20 +54,6 @@ constexpr std::size_t kBlockPixels = kBlock * kBlock;
 constexpr float kPixel = kSubPixels;
 /// Half a unit in the last place of a float, relative.
 constexpr float kHalfUlp = 0x1p-24f;
-
-/// A bit for each lane that is set.
-template <class D>
-HWY_INLINE std::uint32_t BitsOf(D d, hn::Mask<D> mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, mask, bytes);
-  return std::uint32_t(bytes[0]) | std::uint32_t(bytes[1]) << 8;
-}
-
-/// Calls `body(lane)` for every bit.
-template <class Bits, class Body>
-HWY_INLINE void ForEachBit(Bits bits, Body&& body) {
-  for (; bits != 0; bits &= bits - 1) body(std::size_t(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits)));
-}
 
 /// The tile's place; distances are from the image's centre in 1/256 pixel.
 struct TilePlace {

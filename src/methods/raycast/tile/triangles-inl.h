@@ -55,12 +55,7 @@ struct Rect {
 struct SingleCorners {
   float x[3], y[3], d[3];
 
-  [[nodiscard]] bool operator==(const SingleCorners& other) const {
-    bool same = true;
-    for (int k = 0; k < 3 && same; ++k) same = x[k] == other.x[k] && y[k] == other.y[k] && d[k] == other.d[k];
-    return same;
-  }
-
+  [[nodiscard]] bool operator==(const SingleCorners&) const = default;
   [[nodiscard]] std::array<SampleCorner, 3> all() const {
     std::array<SampleCorner, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) corners[k] = {x[k], y[k], d[k], true};
@@ -139,7 +134,7 @@ class LargeRayTriangles {
       // The key at the middle of the block, plus the change to its nearest sample. No key is greater than the vertices'
       // keys.
       const VF nearest = hn::Min(hn::Add(start, hn::Add(hn::Mul(u, gx), hn::Mul(v, gy))), high);
-      hidden |= std::uint64_t(BitsOf(d, hn::Lt(nearest, hn::Load(d, buffer_.farthest() + i)))) << i;
+      hidden |= BitsOf(d, hn::Lt(nearest, hn::Load(d, buffer_.farthest() + i))) << i;
     }
     return hidden;
   }
@@ -217,8 +212,8 @@ class LargeRayTriangles {
         most = k == 0 ? a : hn::Min(most, a);
         least = k == 0 ? b : hn::Min(least, b);
       }
-      classes.outside |= std::uint64_t(BitsOf(d, hn::Lt(most, zero))) << i;
-      classes.full |= std::uint64_t(BitsOf(d, hn::Gt(least, zero))) << i;
+      classes.outside |= BitsOf(d, hn::Lt(most, zero)) << i;
+      classes.full |= BitsOf(d, hn::Gt(least, zero)) << i;
     }
     return classes;
   }
