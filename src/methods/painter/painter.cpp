@@ -4,7 +4,7 @@
 //
 //   members --push--> work, the next on top      sort: pieces that may have an order    -> paint and part
 //                       |          ^             part: a cycle, cut in two by a plane   -> part and sort
-//                       +---run----+             paint: pieces in their order           -> the result
+//                       +----------+             paint: pieces in their order           -> the result
 //
 // Parting stops once groups are small enough to be sorted again: a plane that parts a cycle mostly leaves pieces that
 // have an order, and every further plane would cut pieces that need no cut.
@@ -93,16 +93,16 @@ Plane plane_at(const View& view, double distance) {
   return {view.eye() + view.forward() * distance, Leg{view.up()}, Leg{view.right()}};
 }
 
-/// Cuts away everything outside the near and far planes. \returns no_index if nothing remains.
-std::uint32_t clip(Pieces& pieces, std::uint32_t piece, std::uint32_t near_plane, const Plane& near,
-                   std::uint32_t far_plane, const Plane* far) {
-  const Sides at_near = pieces.sides(piece, near);
+/// Cuts away everything outside the near and far planes; no_index: there is no far plane. \returns no_index if nothing
+/// remains.
+std::uint32_t clip(Pieces& pieces, std::uint32_t piece, std::uint32_t near, std::uint32_t far) {
+  const Sides at_near = pieces.sides(piece, pieces.plane(near));
   if (!at_near.front) return no_index;
-  if (at_near.both()) piece = pieces.cut(piece, near_plane).front;
-  if (!far) return piece;
-  const Sides at_far = pieces.sides(piece, *far);
+  if (at_near.both()) pieces.cut(piece, near);
+  if (far == no_index) return piece;
+  const Sides at_far = pieces.sides(piece, pieces.plane(far));
   if (!at_far.back) return no_index;
-  return at_far.both() ? pieces.cut(piece, far_plane).back : piece;
+  return at_far.both() ? pieces.cut(piece, far) : piece;
 }
 
 /// The triangles kept of a part of consecutive ids, in the order of their ids.
@@ -149,12 +149,10 @@ std::vector<std::uint32_t> gather(const Surfaces& surfaces, const View& view, Pi
   std::vector<std::uint32_t> members(pieces.size());
   for (std::uint32_t i = 0; i < members.size(); ++i) members[i] = i;
 
+  const std::uint32_t near = pieces.add_plane(plane_at(view, pieces.sight().near()));
   const bool has_far = view.projection.clip.far < std::numeric_limits<double>::infinity();
-  const Plane near = plane_at(view, pieces.sight().near());
-  const Plane far = has_far ? plane_at(view, pieces.sight().far()) : near;
-  const std::uint32_t near_plane = pieces.add_plane(near), far_plane = pieces.add_plane(far);
-  for (const std::uint32_t i : crossing)
-    members[i] = clip(pieces, i, near_plane, near, far_plane, has_far ? &far : nullptr);
+  const std::uint32_t far = has_far ? pieces.add_plane(plane_at(view, pieces.sight().far())) : no_index;
+  for (const std::uint32_t i : crossing) members[i] = clip(pieces, i, near, far);
   members.erase(std::remove(members.begin(), members.end(), no_index), members.end());
   return members;
 }
@@ -316,7 +314,11 @@ class Orderer {
       const Item item = std::move(work_.back());
       work_.pop_back();
       poll_.count();
-      run(item);
+      switch (item.work) {
+        case Work::paint: order_.insert(order_.end(), item.members.begin(), item.members.end()); break;
+        case Work::sort: sort(item.members); break;
+        case Work::part: part_by_plane(item); break;
+      }
     }
     return std::move(order_);
   }
@@ -335,17 +337,10 @@ class Orderer {
     work_.push_back({work, std::move(members), few});
   }
 
-  void run(const Item& item) {
-    switch (item.work) {
-      case Work::paint: order_.insert(order_.end(), item.members.begin(), item.members.end()); break;
-      case Work::sort: sort(item.members); break;
-      case Work::part: part_by_plane(item); break;
-    }
-  }
-
   void part_by_plane(const Item& item) {
     Partition partition = part(pieces_, item.members, steps_, poll_);
-    check_limits();
+    if (steps_.cuts > options_.most_cuts) refuse_more_cuts();
+    if (pieces_.size() > options_.most_polygons) refuse_more_polygons_than(options_.most_polygons);
     push(std::move(partition.before), item.few);
     work_.push_back({Work::paint, std::move(partition.within)});
     push(std::move(partition.behind), item.few);
@@ -362,11 +357,6 @@ class Orderer {
     const auto count = double(members.size());
     if (0.5 * count * count <= double(options_.most_cuts)) return;
     if (least_cuts(pieces_, members, poll_) > double(options_.most_cuts)) refuse_more_cuts();
-  }
-
-  void check_limits() const {
-    if (steps_.cuts > options_.most_cuts) refuse_more_cuts();
-    if (pieces_.size() > options_.most_polygons) refuse_more_polygons_than(options_.most_polygons);
   }
 
   void sort(const std::vector<std::uint32_t>& members) {
@@ -441,7 +431,7 @@ PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOpti
   }
   report_progress(execution, "painter", 0.2);
   if (options.method == PaintMethod::farthest) {
-    sort_by_farthest(pieces, members, execution);
+    sort_by_depth(pieces, members, &PolygonExtent::farthest, execution);
   } else if (options.method == PaintMethod::centroid) {
     sort_by_centroid(pieces, members);
   } else {

@@ -197,12 +197,12 @@ class Finder {
                      high = glm::max(side.from, side.to) + 2 * OutlineClipper::thin;
     const PieceGrid& grid = screen_.grid();
     const PieceGrid::Range all = grid.range({glm::vec2(low), glm::vec2(high), 0, 0});
-    for (int y = all.first_y; y <= all.last_y; ++y) {
-      const PieceGrid::Box row = grid.box(all.first_x, y);
+    for (int y = all.first.y; y <= all.last.y; ++y) {
+      const PieceGrid::Box row = grid.box(all.first.x, y);
       const auto [row_low, row_high] =
           part_of(side, row.low.y - 2 * OutlineClipper::thin, row.high.y + 2 * OutlineClipper::thin);
       const PieceGrid::Range cells = grid.range({{float(row_low), 0}, {float(row_high), 0}, 0, 0});
-      for (int x = cells.first_x; x <= cells.last_x; ++x) mark_near(side, low, high, screen_.cell(x, y));
+      for (int x = cells.first.x; x <= cells.last.x; ++x) mark_near(side, low, high, screen_.cell(x, y));
     }
   }
 

@@ -51,28 +51,6 @@ inline constexpr double shortest_side = 1e-9;
   return true;
 }
 
-/// Outlines one after another in one block of memory.
-class OutlineList {
- public:
-  [[nodiscard]] std::size_t count() const { return ends_.size(); }
-  [[nodiscard]] Outline operator[](std::size_t i) const {
-    const std::size_t begin = i == 0 ? 0 : ends_[i - 1];
-    return {corners_.data() + begin, ends_[i] - begin};
-  }
-  void clear() {
-    corners_.clear();
-    ends_.clear();
-  }
-  void add(Outline outline) {
-    corners_.insert(corners_.end(), outline.begin(), outline.end());
-    ends_.push_back(corners_.size());
-  }
-
- private:
-  std::vector<PaintCorner> corners_;
-  std::vector<std::size_t> ends_;
-};
-
 /// Clips convex outlines: counter-clockwise to the eye, z affine over the screen. Covers must not be flat. Not for
 /// several threads at once.
 class OutlineClipper {

@@ -75,7 +75,7 @@ class ScreenPolygons {
   [[nodiscard]] std::span<const std::uint32_t> cell(int x, int y) const { return grid_.cell(grid_.number(x, y)); }
   [[nodiscard]] std::span<const std::uint32_t> cell_at(const glm::dvec2& at) const {
     const PieceGrid::Range cells = grid_.range({glm::vec2(at), glm::vec2(at), 0, 0});
-    return cell(cells.first_x, cells.first_y);
+    return cell(cells.first.x, cells.first.y);
   }
   [[nodiscard]] glm::dvec2 size() const { return size_; }
 
@@ -96,8 +96,8 @@ class ScreenPolygons {
     std::uint32_t group, corner_count;
     bool is_occluder;
   };
-  template <class Describe, class Copy>
-  void take(const std::vector<PolygonExtent>& extents, const Describe& describe, const Copy& copy);
+  template <class ExtentOf, class Describe, class Copy>
+  void take(std::size_t count, const ExtentOf& extent_of, const Describe& describe, const Copy& copy);
 
   const glm::dvec2 size_;
   PieceGrid grid_;

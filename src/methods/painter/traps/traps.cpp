@@ -127,7 +127,7 @@ class NearbyOccluders {
     box.low -= float(reach);
     box.high += float(reach);
     const PieceGrid::Range cells = screen_.grid().range(box);
-    is_listed_ = (cells.last_x - cells.first_x + 1) * (cells.last_y - cells.first_y + 1) <= kMostCells;
+    is_listed_ = cells.count() <= kMostCells;
     if (is_listed_) list(box);
   }
   /// Whether another polygon that has an area and hides nothing beyond it shares this side.
@@ -170,8 +170,8 @@ class NearbyOccluders {
     hiders_.clear();
     const std::uint32_t first_place = screen_.first_place(slot_);
     const PieceGrid::Range cells = screen_.grid().range(box);
-    for (int y = cells.first_y; y <= cells.last_y; ++y)
-      for (int x = cells.first_x; x <= cells.last_x; ++x) {
+    for (int y = cells.first.y; y <= cells.last.y; ++y)
+      for (int x = cells.first.x; x <= cells.last.x; ++x) {
         const std::span<const std::uint32_t> cell = screen_.cell(x, y);
         std::size_t count = 0;
         for (std::size_t i = cell.size(); i-- > 0 && count < kMostHiders && screen_.place(cell[i]) >= first_place;) {
