@@ -68,19 +68,6 @@ struct FrameInput : Picture {
   std::span<const TriangleRecord> records;  ///< vertices from the image's top left
 };
 
-/// One tile, and the records and clusters that may be seen in it.
-struct TileJob : Tile {
-  /// Nearest first.
-  struct Items {
-    std::span<const std::uint32_t> records, clusters;
-
-    [[nodiscard]] bool is_empty() const { return records.empty() && clusters.empty(); }
-  };
-  Items solid, cutouts;
-
-  [[nodiscard]] bool is_empty() const { return solid.is_empty() && cutouts.is_empty(); }
-};
-
 /// Draws a tile and writes it to the output planes.
 void draw_tile(const FrameInput& frame, const TileJob& job, TileScratch& scratch, Isa isa);
 

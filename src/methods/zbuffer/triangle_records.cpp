@@ -103,10 +103,7 @@ void append_polygon(const PlaceTarget& target, const ClippedPolygon& polygon, Pr
 
 PixelRect pixel_rect(const TriangleRecord& r, int width, int height) {
   // Samples lie within [0, 256) of a pixel, so only pixels between the outermost vertices can be covered.
-  const auto [x_min, x_max] = std::minmax({r.x[0], r.x[1], r.x[2]});
-  const auto [y_min, y_max] = std::minmax({r.y[0], r.y[1], r.y[2]});
-  return {std::max(x_min >> 8, 0), std::max(y_min >> 8, 0), std::min(x_max >> 8, width - 1),
-          std::min(y_max >> 8, height - 1)};
+  return sampled_rect(r, glm::ivec2(0), glm::ivec2(kSubPixels - 1), width, height);
 }
 
 PixelRect sampled_rect(const TriangleRecord& r, const glm::ivec2& low, const glm::ivec2& high, int width, int height) {

@@ -34,9 +34,8 @@ constexpr std::size_t kSlices = 32;
 }  // namespace
 
 TileJob FramePlan::job(std::size_t tile, const View& view) const {
-  const PartedList records = records_.of(tile);
   const PartedList clusters(cluster_lists_.of(tile), [&](std::uint32_t cluster) { return cluster >= first_cutout_; });
-  return {Tile(tile, view), {records.solid, clusters.solid}, {records.cutouts, clusters.cutouts}};
+  return {{tile, view}, records_.of(tile), clusters};
 }
 
 void FramePlan::make(const ClusterSet& set, const PlaceTarget& target, const Execution& execution,

@@ -44,12 +44,7 @@ class TileGatherer {
     const auto listed = frame_.plan.singles(job_.tile);
     const std::size_t count = listed ? listed->size() : singles.size();
     for (std::size_t i = 0; i < count; ++i) {
-      ScreenTriangle t = singles[listed ? (*listed)[i] : i];
-      for (int k = 0; k < 3; ++k) {
-        t.x[k] -= job_.pixels.x * kSubPixels;
-        t.y[k] -= job_.pixels.y * kSubPixels;
-      }
-      large_.Draw(t);
+      DrawLarge(singles[listed ? (*listed)[i] : i]);
       if (!sink_.HasRoom()) return false;
     }
     return true;
@@ -125,25 +120,22 @@ class TileGatherer {
   }
 
   void DrawLargeLanes(const Cluster& cluster, std::size_t at, MI large) {
-    const ClusterSet& set = frame_.plan.set();
-    const ScreenClusters& screen = frame_.plan.screen();
-    const ScreenTransform& t = frame_.plan.transform();
     for (std::uint64_t left = BitsOf(DI(), large); left != 0; left &= left - 1) {
       const std::size_t i = at + hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
-      const std::uint8_t numbers[3] = {set.i0[i], set.i1[i], set.i2[i]};
-      ScreenTriangle triangle;
-      triangle.id = set.id[i];
-      for (int k = 0; k < 3; ++k) {
-        const std::size_t v = cluster.first_vertex + numbers[k];
-        triangle.x[k] = screen.x[v] + t.centre_x - job_.pixels.x * kSubPixels;
-        triangle.y[k] = screen.y[v] + t.centre_y - job_.pixels.y * kSubPixels;
-        triangle.key[k] = screen.key[v];
-      }
+      ScreenTriangle triangle = frame_.plan.snapped(cluster, i - cluster.first_triangle);
       if (!orient(triangle, frame_.plan.facing())) continue;
       // A vector of large triangles may add more fragments than there is room for at once.
       if (!sink_.HasRoom()) return;
-      large_.Draw(triangle);
+      DrawLarge(triangle);
     }
+  }
+
+  void DrawLarge(ScreenTriangle triangle) {
+    for (int k = 0; k < 3; ++k) {
+      triangle.x[k] -= job_.pixels.x * kSubPixels;
+      triangle.y[k] -= job_.pixels.y * kSubPixels;
+    }
+    large_.Draw(triangle);
   }
 
   const GatherInput& frame_;

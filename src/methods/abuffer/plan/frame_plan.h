@@ -105,6 +105,8 @@ class FragmentPlan {
   }
   /// Precondition: for_each() visits this number.
   [[nodiscard]] ScreenTriangle triangle(const TriangleNumber& number) const;
+  /// A triangle of a cluster whose vertices are snapped, not oriented yet.
+  [[nodiscard]] ScreenTriangle snapped(const Cluster& cluster, std::size_t triangle) const;
   /// Whether a texture may cut holes into the primitive.
   [[nodiscard]] bool may_have_holes(PrimitiveId id) const { return set().cutouts && set().cutouts->has(id); }
   /// The plan of the same frame without some triangles. Precondition: `hidden` has no duplicates.
@@ -125,7 +127,6 @@ class FragmentPlan {
   void take_apart(const Execution& execution);
   void append_clipped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const;
   void append_snapped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const;
-  [[nodiscard]] ScreenTriangle snapped(const Cluster& cluster, std::size_t triangle) const;
   /// Makes the triangle's area positive. \returns false if the triangle covers nothing of the picture.
   [[nodiscard]] bool is_drawn(ScreenTriangle& triangle) const;
   /// `left_out` marks clusters whose triangles are among the singles; it may be empty.

@@ -241,13 +241,8 @@ class DirectFrame {
                           pixels};
     const BatchFrame frame{picture, nearest_first_, records_.records};
     draw_tiles(records_, view, execution_, tile_scratches_, [&](std::size_t tile, TileScratch& scratch) {
-      const PartedList records = records_.of(tile);
       const PartedList batches(batch_lists_.of(tile), [&](std::uint32_t batch) { return batch >= first_cutout_; });
-      const BatchJob job{Tile(tile, view),
-                         {records.solid, batches.solid},
-                         {records.cutouts, batches.cutouts},
-                         is_drawn_[tile] != 0,
-                         is_last,
+      const BatchJob job{TileJob({tile, view}, records_.of(tile), batches), is_drawn_[tile] != 0, is_last,
                          &farthest_[tile * BlockBounds::count]};
       const bool goes_out = is_last && (pixels || !job.is_drawn);
       if (job.is_empty() && !goes_out) return;

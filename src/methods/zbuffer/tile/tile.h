@@ -117,6 +117,21 @@ struct PartedList {
   }
 };
 
+/// One tile, and what may be seen in it. Groups of triangles are clusters, or batches.
+struct TileJob : Tile {
+  /// Nearest first.
+  struct Items {
+    std::span<const std::uint32_t> records, groups;
+
+    [[nodiscard]] bool is_empty() const { return records.empty() && groups.empty(); }
+  };
+  Items solid, cutouts;
+
+  TileJob(const Tile& tile, const PartedList& records, const PartedList& groups)
+      : Tile(tile), solid{records.solid, groups.solid}, cutouts{records.cutouts, groups.cutouts} {}
+  [[nodiscard]] bool is_empty() const { return solid.is_empty() && cutouts.is_empty(); }
+};
+
 /// A list of numbers for every tile of a range, one after another in one array:
 ///
 ///    begin    tile 0: 0    tile 1: 3    tile 2: 3    tile 3: 7 ...
