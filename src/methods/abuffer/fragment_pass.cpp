@@ -139,7 +139,7 @@ class CopyFinder {
       }
       if (plan_.may_have_holes(c.id)) continue;  // other triangles are seen through the holes
       ++kept;
-      is_hidden = rule_.is_opaque && rule_.is_opaque(c.id);
+      is_hidden = rule_.opacities && rule_.opacities->is_opaque(c.id);
     }
   }
 
@@ -419,7 +419,7 @@ FragmentPass::FragmentPass(const Surfaces& surfaces, const View& view, const Abu
     : opacity_(options.opacity),
       frame_(surfaces, view, options, execution),
       opacities_(surfaces, options.opacity, execution),
-      copies_(copy_rule(opacities_)) {}
+      copies_{&opacities_} {}
 
 PixelLists FragmentPass::lists_of(const Rectangle& pixels, const GatherScratch& fragments, float negligible) const {
   Lister lister(frame_.pattern(), fragments, opacities_, negligible);

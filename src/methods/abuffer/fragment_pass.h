@@ -18,15 +18,6 @@
 
 namespace frontmost::abuffer_detail {
 
-/// The number of copies to keep among triangles with the same vertices on the screen. At every sample their order is
-/// that of the ids.
-struct CopyRule {
-  /// Whether nothing is seen through the primitive anywhere, so that it hides copies of higher ids. Empty: true of
-  /// none.
-  std::function<bool(PrimitiveId)> is_opaque;
-  std::size_t most = std::size_t(-1);  ///< never keep more than these, opaque or not
-};
-
 /// The most fragments that a function goes through, as `most_fragments` says.
 [[nodiscard]] std::uint64_t most_gathered_fragments(const View& view, std::uint64_t triangles);
 
@@ -47,10 +38,12 @@ class Opacities {
   std::vector<float> values_;  // empty: all have all_. Negative: opacity 1, but a texture may cut holes
 };
 
-/// A rule that keeps, of coincident triangles, those up to the first opaque one. Refers to the opacities.
-[[nodiscard]] inline CopyRule copy_rule(const Opacities& opacities) {
-  return {[&opacities](PrimitiveId id) { return opacities.is_opaque(id); }};
-}
+/// The number of copies to keep among triangles with the same vertices on the screen. At every sample their order is
+/// that of the ids.
+struct CopyRule {
+  const Opacities* opacities = nullptr;  ///< an opaque primitive hides copies of higher ids; null: none is opaque
+  std::size_t most = std::size_t(-1);    ///< never keep more than these, opaque or not
+};
 
 /// A view prepared for gathering and for visits tile by tile.
 class PreparedFrame {

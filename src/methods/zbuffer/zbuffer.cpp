@@ -173,14 +173,7 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
   const std::size_t stream_from = std::size_t(state_->prepare_planes(view) ? 2 : 32) << 20;
   const bool streams = view.sample_count() * (sizeof(PrimitiveId) + sizeof(float)) >= stream_from;
   Visible& visible = state_->visible;
-  const Picture picture{view,
-                        sample_offsets(view.samples),
-                        visible.primitives.data(),
-                        visible.keys.data(),
-                        streams,
-                        set.cutouts.get(),
-                        ScreenRays(view),
-                        nullptr};
+  const Picture picture(visible, streams, set.cutouts.get());
   const FrameInput frame{picture, set, transform, target.facing, plan.culled(), plan.records().records};
   std::atomic<std::size_t> drawn{0};
   draw_tiles(plan.records(), view, execution, state_->scratches, [&](std::size_t tile, TileScratch& scratch) {

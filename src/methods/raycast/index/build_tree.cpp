@@ -15,7 +15,7 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "raycast/index/build.h"
+#include "raycast/index/ray_tree.h"
 
 namespace frontmost {
 

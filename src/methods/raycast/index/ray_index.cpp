@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "raycast/index/build.h"
+#include "raycast/index/ray_tree.h"
 
 namespace frontmost {
 namespace {

@@ -60,11 +60,21 @@ struct Picture {
   std::span<const glm::ivec2> samples;  ///< offsets within a pixel
   PrimitiveId* primitives;              ///< planes, [sample][y][x]
   float* keys;
-  bool streams;                         ///< write planes past the cache: they are too large to stay in it
-  const Cutouts* cutouts;               ///< null where no triangle has holes
-  ScreenRays rays;                      ///< rays of the view, which find the holes
-  const PixelPlanes* pixels = nullptr;  ///< if not null, takes the final result; the planes then hold intermediate
-                                        ///< results
+  bool streams;               ///< write planes past the cache: they are too large to stay in it
+  const Cutouts* cutouts;     ///< null where no triangle has holes
+  ScreenRays rays;            ///< rays of the view, which find the holes
+  const PixelPlanes* pixels;  ///< if not null, takes the final result; the planes then hold intermediate
+                              ///< results
+
+  Picture(Visible& planes, bool is_streamed, const Cutouts* holes, const PixelPlanes* result = nullptr)
+      : view(planes.view),
+        samples(sample_offsets(view.samples)),
+        primitives(planes.primitives.data()),
+        keys(planes.keys.data()),
+        streams(is_streamed),
+        cutouts(holes),
+        rays(view),
+        pixels(result) {}
 };
 
 /// The pixels of one tile.
