@@ -194,18 +194,6 @@ void pass_holes(const RayTree& tree, Visible& visible, const Execution& executio
 struct RayCaster::State {
   Pool<RayTileScratch> scratches;
   Visible visible;
-
-  /// Makes planes for the view, or keeps the last ones if they fit. \returns true if their memory was used before.
-  bool prepare_planes(const View& view) {
-    const bool fits = visible.primitives.size() == view.sample_count();
-    // If memory suffices for one plane only, neither may stay, as `fits` looks at one alone.
-    if (!fits) {
-      visible = {};
-      visible = {view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(view.sample_count())};
-    }
-    visible.view = view;
-    return fits;
-  }
 };
 
 RayCaster::RayCaster() : state_(std::make_unique<State>()) {}
@@ -218,8 +206,14 @@ const Visible& RayCaster::draw(const RayIndex& index, const View& view, const Ex
   const IeeeScope ieee;
   const RayTree& tree = ray_tree(index);
   const ScreenTransform transform(view);
-  const bool is_used = state_->prepare_planes(view);
   Visible& visible = state_->visible;
+  const bool is_used = visible.primitives.size() == view.sample_count();
+  // If memory suffices for one plane only, neither may stay, as `is_used` looks at one alone.
+  if (!is_used) {
+    visible = {};
+    visible = {view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(view.sample_count())};
+  }
+  visible.view = view;
   const RayTileInput frame{tree,
                            transform,
                            view,

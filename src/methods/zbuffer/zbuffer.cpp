@@ -34,8 +34,7 @@ constexpr std::size_t kSlices = 32;
 }  // namespace
 
 TileJob FramePlan::job(std::size_t tile, const View& view) const {
-  const PartedList clusters(cluster_lists_.of(tile), [&](std::uint32_t cluster) { return cluster >= first_cutout_; });
-  return {{tile, view}, records_.of(tile), clusters};
+  return {{tile, view}, records_.of(tile), {cluster_lists_.of(tile), first_cutout_}};
 }
 
 void FramePlan::make(const ClusterSet& set, const PlaceTarget& target, const Execution& execution,

@@ -15,12 +15,6 @@
 namespace frontmost::abuffer_detail {
 namespace {
 
-void add(SamplePattern& pattern, std::int32_t x, std::int32_t y) {
-  const auto i = std::size_t(pattern.count++);
-  pattern.x[i] = x;
-  pattern.y[i] = y;
-}
-
 template <class T>
 void enlarge(Buffer<T>& buffer, std::size_t used, std::size_t size) {
   Buffer<T> larger(size);
@@ -47,12 +41,15 @@ SamplePattern sample_pattern(const View& view, int grid) {
     throw Error(ErrorCode::bad_argument, "abuffer: grid", "must be 0, 2, 4 or 8, not " + std::to_string(grid));
   SamplePattern pattern;
   pattern.count = 0;
+  const auto add = [&](std::int32_t x, std::int32_t y) {
+    pattern.x[std::size_t(pattern.count)] = x;
+    pattern.y[std::size_t(pattern.count++)] = y;
+  };
   if (grid == 0)
-    for (const glm::ivec2& s : sample_offsets(view.samples))
-      add(pattern, s.x / SamplePattern::unit, s.y / SamplePattern::unit);
+    for (const glm::ivec2& s : sample_offsets(view.samples)) add(s.x / SamplePattern::unit, s.y / SamplePattern::unit);
   const int spacing = grid ? SamplePattern::unit / grid : 0;
   for (int y = 0; y < grid; ++y)
-    for (int x = 0; x < grid; ++x) add(pattern, x * spacing + spacing / 2, y * spacing + spacing / 2);
+    for (int x = 0; x < grid; ++x) add(x * spacing + spacing / 2, y * spacing + spacing / 2);
   // Reach of the samples: triangles that lie between the samples of pixels touch no pixel.
   const auto xs = std::minmax_element(pattern.x.begin(), pattern.x.begin() + pattern.count);
   const auto ys = std::minmax_element(pattern.y.begin(), pattern.y.begin() + pattern.count);

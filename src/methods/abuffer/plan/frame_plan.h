@@ -123,7 +123,6 @@ class FragmentPlan {
     ScreenClusters screen;
   };
   explicit FragmentPlan(std::shared_ptr<Frame> frame) : frame_(std::move(frame)) {}
-  void transform_all(const Execution& execution);
   void take_apart(const Execution& execution);
   void append_clipped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const;
   void append_snapped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const;

@@ -170,9 +170,11 @@ class Finder {
   bool find_open_sides() {
     std::size_t sides = 0;
     for (std::size_t slot = 0; slot < screen_.count(); ++slot) {
-      state_[slot] = is_there(slot) && is_in_picture(slot) ? State::unknown : State::crossed;
-      if (!is_there(slot)) continue;
       const Outline outline = screen_.outline(slot);
+      // The grid's cells do not list open sides beyond the picture.
+      const bool is_in_picture = is_in_box(outline, glm::dvec2(0), screen_.size());
+      state_[slot] = is_there(slot) && is_in_picture ? State::unknown : State::crossed;
+      if (!is_there(slot)) continue;
       const std::size_t first = screen_.first_corner(slot);
       sides += outline.size();
       for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -182,14 +184,6 @@ class Finder {
       }
     }
     return double(open_.size()) <= kMostOpen * double(sides);
-  }
-
-  /// Whether the polygon lies in the picture: the grid's cells do not list open sides beyond.
-  [[nodiscard]] bool is_in_picture(std::size_t slot) const {
-    const Outline outline = screen_.outline(slot);
-    return std::all_of(outline.begin(), outline.end(), [&](const PaintCorner& corner) {
-      return corner.at.x >= 0 && corner.at.y >= 0 && corner.at.x <= screen_.size().x && corner.at.y <= screen_.size().y;
-    });
   }
 
   void mark_near(const OpenSide& side) {

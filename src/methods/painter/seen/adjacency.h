@@ -120,7 +120,7 @@ class OccluderUnion {
   /// Grows from the slot `first`, which hides a point of the outline. hiders.may_hide(slot) says whether a polygon is
   /// an occluder of the outline. hiders.at(place) gives the slot of an occluder at a place, or no_index.
   template <class Hiders>
-  Found spread(std::uint32_t first, const Hiders& hiders) {
+  Found spread(std::uint32_t first, Hiders& hiders) {
     if (++turn_ == 0) {
       std::fill(asked_.begin(), asked_.end(), 0);
       turn_ = 1;
@@ -166,7 +166,7 @@ class OccluderUnion {
   /// Looks for occluders beyond a side of found_[number] without a neighbour, step by step: meshes that were cut have
   /// sides that lie beside two others.
   template <class Hiders>
-  Found step_along(const glm::dvec2& a, const glm::dvec2& b, std::size_t number, const Hiders& hiders) {
+  Found step_along(const glm::dvec2& a, const glm::dvec2& b, std::size_t number, Hiders& hiders) {
     // Polygons hide points up to OutlineClipper::thin beside them: points this far out are certainly not on the side.
     const glm::dvec2 way = b - a, out = glm::dvec2(-way.y, way.x) * (2 * OutlineClipper::thin / glm::length(way));
     const glm::dvec2 from = a + out;

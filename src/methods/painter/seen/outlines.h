@@ -7,6 +7,7 @@
 // stays visible.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -49,6 +50,13 @@ inline constexpr double shortest_side = 1e-9;
     if (turn > 0 && turn * turn > beside * beside * glm::dot(way, way)) return false;
   }
   return true;
+}
+
+/// Whether all corners are within a box, or on its border.
+[[nodiscard]] inline bool is_in_box(Outline outline, const glm::dvec2& low, const glm::dvec2& high) {
+  return std::all_of(outline.begin(), outline.end(), [&](const PaintCorner& corner) {
+    return corner.at.x >= low.x && corner.at.y >= low.y && corner.at.x <= high.x && corner.at.y <= high.y;
+  });
 }
 
 /// Clips convex outlines: counter-clockwise to the eye, z affine over the screen. Covers must not be flat. Not for

@@ -90,7 +90,7 @@ void ScreenPolygons::take(std::size_t count, const ExtentOf& extent_of, const De
   std::vector<std::size_t> far_slots;
   for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
     copy(slots_[slot].place, corners_.data() + slots_[slot].first_corner);
-    if (!is_within_reach(outline(slot))) far_slots.push_back(slot);
+    if (!is_in_box(outline(slot), glm::dvec2(-kReach), size_ + kReach)) far_slots.push_back(slot);
   }
   if (!far_slots.empty()) cut_at_reach(far_slots);
   for (std::size_t slot = 0; slot < slots_.size(); ++slot)
@@ -151,13 +151,6 @@ void ScreenPolygons::make_room() {
     corners += slot.corner_count;
   }
   corners_ = Buffer<PaintCorner>(corners);
-}
-
-bool ScreenPolygons::is_within_reach(Outline outline) const {
-  return std::all_of(outline.begin(), outline.end(), [&](const PaintCorner& corner) {
-    const glm::dvec2 at(corner.at);
-    return glm::all(glm::greaterThanEqual(at, glm::dvec2(-kReach))) && glm::all(glm::lessThanEqual(at, size_ + kReach));
-  });
 }
 
 void ScreenPolygons::cut_at_reach(const std::vector<std::size_t>& far_slots) {

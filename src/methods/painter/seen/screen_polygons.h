@@ -88,7 +88,6 @@ class ScreenPolygons {
   };
   /// Makes room for the corners of all slots.
   void make_room();
-  [[nodiscard]] bool is_within_reach(Outline outline) const;
   /// Cuts outlines that reach so far beyond the picture that doubles lose places in it.
   void cut_at_reach(const std::vector<std::size_t>& far_slots);
   /// A polygon's data other than its corners. Consecutive polygons with the same group number are one group.

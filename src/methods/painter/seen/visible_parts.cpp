@@ -41,28 +41,53 @@ class OcclusionClipper {
   /// Whether the polygon in a slot is wholly hidden. Also false if the answer would take long. Most polygons are not
   /// hidden, and their middles tell.
   [[nodiscard]] bool is_hidden(std::size_t slot) {
+    slot_ = slot;
     cutter_.begin(screen_.outline(slot));
     cutter_.keep_within(glm::dvec2(0), screen_.size());
     if (cutter_.count() == 0) return false;
     const Outline outline = cutter_[0];
     glm::dvec2 middle(0);
     for (const PaintCorner& corner : outline) middle += glm::dvec2(corner.at) / double(outline.size());
-    const std::uint32_t hider = hider_at(slot, middle);
+    const std::uint32_t hider = at(middle);
     if (hider == no_index) return false;
     // The hider may have been found for a point next to the middle.
     if (is_within(screen_.outline(hider), middle, 0)) {
       union_.set(outline);
-      const OccluderUnion::Found found = union_.spread(hider, Hiders{*this, slot});
+      const OccluderUnion::Found found = union_.spread(hider, *this);
       if (found != OccluderUnion::Found::unknown) return found == OccluderUnion::Found::hidden;
     }
     const PolygonExtent& extent = screen_.extent(slot);
     const PieceGrid::Range cells = screen_.grid().range(extent);
-    return cells.count() <= kFewCells && take_covers(slot, extent, cells);
+    return cells.count() <= kFewCells && take_covers(extent, cells);
+  }
+
+  // The questions that OccluderUnion asks.
+
+  /// Whether a polygon may hide things behind or beside the polygon of is_hidden().
+  [[nodiscard]] bool may_hide(std::uint32_t other) {
+    poll_.count();
+    return screen_.place(other) >= screen_.first_place(slot_) && other != slot_ && hides(other);
+  }
+  /// The slot of a polygon that hides a point, or points next to it; no_index: none.
+  [[nodiscard]] std::uint32_t at(const glm::dvec2& place) {
+    const std::uint32_t first_place = screen_.first_place(slot_);
+    const std::span<const std::uint32_t> cell = screen_.cell_at(place);
+    for (std::size_t i = cell.size(); i-- > 0 && screen_.place(cell[i]) >= first_place;) {
+      const std::uint32_t other = cell[i];
+      if (other == slot_) continue;
+      poll_.count();
+      const PolygonExtent& e = screen_.extent(other);
+      if (place.x >= e.low.x && place.x <= e.high.x && place.y >= e.low.y && place.y <= e.high.y &&
+          is_within(screen_.outline(other), place, OutlineClipper::thin) && hides(other))
+        return other;
+    }
+    return no_index;
   }
 
   /// Calls see(outline) for the visible parts of the polygon in a slot.
   template <class See>
   void clip(std::size_t slot, const See& see) {
+    slot_ = slot;
     const PolygonExtent& extent = screen_.extent(slot);
     if (!(extent.low.x < extent.high.x && extent.low.y < extent.high.y)) return;
     const PieceGrid::Range cells = screen_.grid().range(extent);
@@ -70,11 +95,11 @@ class OcclusionClipper {
     cutter_.keep_within(glm::dvec2(0), screen_.size());
     if (cutter_.count() == 0) return;
     if (cells.count() <= kFewCells) {
-      if (is_all_seen_at_once(slot, extent, cells, see)) see(cutter_[0]);
+      if (is_all_seen_at_once(extent, cells, see)) see(cutter_[0]);
       return;
     }
     const Corners whole(cutter_[0].begin(), cutter_[0].end());
-    if (is_all_seen(slot, whole, cells, see)) see(whole);
+    if (is_all_seen(whole, cells, see)) see(whole);
   }
 
  private:
@@ -83,10 +108,10 @@ class OcclusionClipper {
   /// Clips the part of a polygon that lies in some cells, and calls see() for the visible parts. \returns true if all
   /// of it is visible; see() is not called then.
   template <class See>
-  bool is_all_seen(std::size_t slot, const Corners& outline, const PieceGrid::Range& cells, const See& see) {
+  bool is_all_seen(const Corners& outline, const PieceGrid::Range& cells, const See& see) {
     if (cells.count() <= kFewCells) {
       cutter_.begin(outline);
-      return is_all_seen_at_once(slot, box_of(outline), cells, see);
+      return is_all_seen_at_once(box_of(outline), cells, see);
     }
     // Halves along the longer axis.
     const glm::ivec2 count = cells.last - cells.first + 1;
@@ -98,8 +123,8 @@ class OcclusionClipper {
     low_end[axis] = high_begin[axis] = screen_.grid().box(high.first.x, high.first.y).low[axis];
     const Corners low_part = part_within(outline, glm::dvec2(0), low_end),
                   high_part = part_within(outline, high_begin, screen_.size());
-    const bool sees_low = low_part.empty() || is_all_seen(slot, low_part, low, see);
-    const bool sees_high = high_part.empty() || is_all_seen(slot, high_part, high, see);
+    const bool sees_low = low_part.empty() || is_all_seen(low_part, low, see);
+    const bool sees_high = high_part.empty() || is_all_seen(high_part, high, see);
     if (sees_low && sees_high) return true;
     if (sees_low && !low_part.empty()) see(low_part);
     if (sees_high && !high_part.empty()) see(high_part);
@@ -107,10 +132,10 @@ class OcclusionClipper {
   }
   /// is_all_seen() for the outline in the cutter, if it lies in few cells.
   template <class See>
-  bool is_all_seen_at_once(std::size_t slot, const PolygonExtent& own, const PieceGrid::Range& cells, const See& see) {
+  bool is_all_seen_at_once(const PolygonExtent& own, const PieceGrid::Range& cells, const See& see) {
     cutter_.forget_changes();
     const Corners whole(cutter_[0].begin(), cutter_[0].end());
-    take_covers(slot, own, cells);
+    take_covers(own, cells);
     if (!cutter_.is_changed()) return true;
     for (std::size_t i = 0; i < cutter_.count(); ++i)
       if (is_narrow(cutter_[i], kNarrowest)) {
@@ -125,35 +150,8 @@ class OcclusionClipper {
     cutter_.keep_within(low, high);
     return cutter_.count() == 0 ? Corners() : Corners(cutter_[0].begin(), cutter_[0].end());
   }
-  /// Polygons that may hide things behind or beside the polygon in a slot.
-  struct Hiders {
-    OcclusionClipper& clipper;
-    std::size_t slot;
-
-    [[nodiscard]] bool may_hide(std::uint32_t other) const {
-      clipper.poll_.count();
-      const ScreenPolygons& screen = clipper.screen_;
-      return screen.place(other) >= screen.first_place(slot) && other != slot && clipper.may_hide(slot, other);
-    }
-    [[nodiscard]] std::uint32_t at(const glm::dvec2& place) const { return clipper.hider_at(slot, place); }
-  };
-  /// The slot of a polygon that hides a point, or points next to it; no_index: none.
-  [[nodiscard]] std::uint32_t hider_at(std::size_t slot, const glm::dvec2& at) {
-    const std::uint32_t first_place = screen_.first_place(slot);
-    const std::span<const std::uint32_t> cell = screen_.cell_at(at);
-    for (std::size_t i = cell.size(); i-- > 0 && screen_.place(cell[i]) >= first_place;) {
-      const std::uint32_t other = cell[i];
-      if (other == slot) continue;
-      poll_.count();
-      const PolygonExtent& e = screen_.extent(other);
-      if (at.x >= e.low.x && at.x <= e.high.x && at.y >= e.low.y && at.y <= e.high.y &&
-          is_within(screen_.outline(other), at, OutlineClipper::thin) && may_hide(slot, other))
-        return other;
-    }
-    return no_index;
-  }
   /// Subtracts the later polygons in some cells from the outline in the cutter. \returns true if nothing is left.
-  bool take_covers(std::size_t slot, const PolygonExtent& own, const PieceGrid::Range& cells) {
+  bool take_covers(const PolygonExtent& own, const PieceGrid::Range& cells) {
     const bool is_one_cell = cells.first.x == cells.last.x && cells.first.y == cells.last.y;
     for (int y = cells.first.y; y <= cells.last.y; ++y)
       for (int x = cells.first.x; x <= cells.last.x; ++x) {
@@ -161,11 +159,11 @@ class OcclusionClipper {
         std::size_t count = 0;
         for (std::size_t i = cell.size(); i-- > 0 && count < kMostCovers;) {
           const std::uint32_t other = cell[i];
-          if (screen_.place(other) <= screen_.place(slot)) break;
+          if (screen_.place(other) <= screen_.place(slot_)) break;
           poll_.count();
           const PolygonExtent& e = screen_.extent(other);
           if (is_apart(e, own) || (!is_one_cell && !is_first_meeting(cells, e, x, y))) continue;
-          if (!may_hide(slot, other)) continue;
+          if (!hides(other)) continue;
           ++count;
           const Cover cover{screen_.outline(other), glm::dvec2(e.low), glm::dvec2(e.high)};
           poll_.count(cutter_.count());
@@ -174,8 +172,8 @@ class OcclusionClipper {
       }
     return false;
   }
-  [[nodiscard]] bool may_hide(std::size_t slot, std::size_t cover) const {
-    return screen_.is_occluder(cover) && (!is_behind_ || is_behind_(screen_.place(slot), screen_.place(cover)));
+  [[nodiscard]] bool hides(std::size_t cover) const {
+    return screen_.is_occluder(cover) && (!is_behind_ || is_behind_(screen_.place(slot_), screen_.place(cover)));
   }
   /// Boxes that overlap meet in several cells. The first of these is the one in which the later box begins, on each
   /// axis.
@@ -189,6 +187,7 @@ class OcclusionClipper {
   const IsBehind is_behind_;
   OccluderUnion union_;
   OutlineClipper cutter_;
+  std::size_t slot_ = 0;  ///< of the polygon that is asked about
 };
 
 /// Whether one piece is surely before another wherever they overlap on the screen.

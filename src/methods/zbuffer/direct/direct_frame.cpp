@@ -225,9 +225,8 @@ class DirectFrame {
     const Picture picture(visible_, streams, cutouts_, pixels);
     const BatchFrame frame{picture, nearest_first_, records_.records};
     draw_tiles(records_, view, execution_, tile_scratches_, [&](std::size_t tile, TileScratch& scratch) {
-      const PartedList batches(batch_lists_.of(tile), [&](std::uint32_t batch) { return batch >= first_cutout_; });
-      const BatchJob job{TileJob({tile, view}, records_.of(tile), batches), is_drawn_[tile] != 0, is_last,
-                         &farthest_[tile * BlockBounds::count]};
+      const BatchJob job{TileJob({tile, view}, records_.of(tile), {batch_lists_.of(tile), first_cutout_}),
+                         is_drawn_[tile] != 0, is_last, &farthest_[tile * BlockBounds::count]};
       const bool goes_out = is_last && (pixels || !job.is_drawn);
       if (job.is_empty() && !goes_out) return;
       draw_batches(frame, job, scratch, execution_.isa);

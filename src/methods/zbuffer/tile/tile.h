@@ -115,13 +115,13 @@ struct TileRect {
   [[nodiscard]] bool holds(int column, int row) const { return x0 <= column && column <= x1 && y0 <= row && row <= y1; }
 };
 
-/// Splits a list in which all cutouts stand behind the solid items.
+/// Splits a list in which all cutouts, numbered from `first_cutout` on, stand behind the solid items.
 struct PartedList {
   std::span<const std::uint32_t> solid, cutouts;
 
-  template <class IsCutout>
-  PartedList(std::span<const std::uint32_t> list, const IsCutout& is_cutout) {
-    const auto first = std::partition_point(list.begin(), list.end(), [&](std::uint32_t i) { return !is_cutout(i); });
+  PartedList(std::span<const std::uint32_t> list, std::size_t first_cutout) {
+    const auto first =
+        std::partition_point(list.begin(), list.end(), [&](std::uint32_t i) { return i < first_cutout; });
     solid = list.first(std::size_t(first - list.begin()));
     cutouts = list.subspan(solid.size());
   }
