@@ -55,7 +55,8 @@ class Gatherer {
     const double slack = kMargin * std::max(std::abs(nearest), std::abs(farthest));
     if (farthest + slack < sight_.near() || nearest - slack > sight_.far()) return Place::outside;
     const bool is_crossing = nearest - slack < sight_.near() || farthest + slack > sight_.far();
-    extent = is_crossing ? anywhere() : box.extent();
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    extent = is_crossing ? PolygonExtent{glm::vec2(-infinite), glm::vec2(infinite), -infinite, infinite} : box.extent();
     extent.low = glm::max(extent.low, glm::vec2(0));
     extent.high = glm::min(extent.high, glm::vec2(view_.width, view_.height));
     if (!(extent.low.x < extent.high.x && extent.low.y < extent.high.y) || !turn_to_eye(face)) return Place::outside;
@@ -63,11 +64,6 @@ class Gatherer {
   }
 
  private:
-  static PolygonExtent anywhere() {
-    const float infinite = std::numeric_limits<float>::infinity();
-    return {glm::vec2(-infinite), glm::vec2(infinite), -infinite, infinite};
-  }
-
   /// Makes a face counter-clockwise to the eye. \returns false if the face is not visible at all.
   bool turn_to_eye(Face& face) const {
     const auto& c = face.corners;
@@ -308,7 +304,9 @@ class Orderer {
 
   [[nodiscard]] std::vector<std::uint32_t> order(std::vector<std::uint32_t> members) {
     all_ = members.size();
-    foresee_cuts(members);
+    // Throws early the error that would come after all cuts: sorting would compare every two pieces.
+    const double pairs = 0.5 * double(all_) * double(all_), most_cuts = double(options_.most_cuts);
+    if (pairs > most_cuts && least_cuts(pieces_, members, poll_) > most_cuts) refuse_more_cuts();
     push(std::move(members), options_.method == PaintMethod::bsp ? 0 : all_);
     while (!work_.empty()) {
       const Item item = std::move(work_.back());
@@ -349,14 +347,6 @@ class Orderer {
   [[noreturn]] void refuse_more_cuts() const {
     throw Error(ErrorCode::limit_exceeded, "painter",
                 "more than " + std::to_string(options_.most_cuts) + " cuts: too many triangles intersect");
-  }
-
-  /// Throws early the error that would come after all cuts. Called before sorting, which would compare every two
-  /// pieces.
-  void foresee_cuts(const std::vector<std::uint32_t>& members) {
-    const auto count = double(members.size());
-    if (0.5 * count * count <= double(options_.most_cuts)) return;
-    if (least_cuts(pieces_, members, poll_) > double(options_.most_cuts)) refuse_more_cuts();
   }
 
   void sort(const std::vector<std::uint32_t>& members) {

@@ -76,10 +76,13 @@ class HolePasser {
       const auto [enter, child] = waiting_.back();
       waiting_.pop_back();
       if (is_behind(enter)) continue;
-      if (child & kLeafBit)
-        meet_leaf(tree_.leaf(child), place);
-      else
+      if (!(child & kLeafBit)) {
         look_into(tree_.nodes[child]);
+        continue;
+      }
+      const RayLeaf& leaf = tree_.leaf(child);
+      for (std::size_t lane = 0; lane < kRayLanes && leaf.id[lane] != no_primitive; ++lane)
+        meet(make_triangle(transform_, leaf.corners_of(lane)), leaf.id[lane], place);
     }
     return nearest_;
   }
@@ -127,11 +130,6 @@ class HolePasser {
     }
     if (!(enter <= leave) || is_behind(enter)) return std::nullopt;
     return enter;
-  }
-
-  void meet_leaf(const RayLeaf& leaf, const SamplePlace& place) {
-    for (std::size_t lane = 0; lane < kRayLanes && leaf.id[lane] != no_primitive; ++lane)
-      meet(make_triangle(transform_, leaf.corners_of(lane)), leaf.id[lane], place);
   }
 
   void meet(const SampleTriangle& triangle, PrimitiveId id, const SamplePlace& place) {

@@ -308,9 +308,9 @@ class Cull {
   RowTerms d_row = MakeRow(t.d_row, t.d_offset, rest);
 };
 
-void CullRange(const CullInput& input, const ClusterRange& range, CullResult& result) {
+void CullRange(const CullInput& input, std::size_t begin, std::size_t end, CullResult& result) {
   const Cull cull(input);
-  for (std::size_t i = range.begin; i < range.end; i += hn::Lanes(DF())) cull.Group(i, result);
+  for (std::size_t i = begin; i < end; i += hn::Lanes(DF())) cull.Group(i, result);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -322,8 +322,8 @@ namespace frontmost::zbuffer_detail {
 
 FRONTMOST_KERNELS(CullRange);
 
-void cull_clusters(const CullInput& input, Isa isa, const ClusterRange& range, CullResult& result) {
-  kernel_for(CullRangeKernels, isa)(input, range, result);
+void cull_clusters(const CullInput& input, Isa isa, std::size_t begin, std::size_t end, CullResult& result) {
+  kernel_for(CullRangeKernels, isa)(input, begin, end, result);
 }
 
 }  // namespace frontmost::zbuffer_detail

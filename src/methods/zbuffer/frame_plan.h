@@ -50,14 +50,10 @@ struct CullInput {
   const View& view;
 };
 
-/// Clusters [begin, end); `begin` is a multiple of 16.
-struct ClusterRange {
-  std::size_t begin, end;
-};
-
-/// Decides the fate of each cluster, and never culls a cluster that a sample sees. Each bound from a box corner is
-/// padded by the greatest rounding error of a vertex inside the box.
-void cull_clusters(const CullInput& input, Isa isa, const ClusterRange& range, CullResult& result);
+/// Decides the fate of each cluster of [begin, end), and never culls a cluster that a sample sees. Each bound from a
+/// box corner is padded by the greatest rounding error of a vertex inside the box. Precondition: `begin` is a multiple
+/// of 16.
+void cull_clusters(const CullInput& input, Isa isa, std::size_t begin, std::size_t end, CullResult& result);
 
 /// The input that all tiles of a frame share. Borrows everything.
 struct FrameInput : Picture {

@@ -65,8 +65,6 @@ bool comes_before(const TriangleRecord& a, const TriangleRecord& b) {
   return std::tuple_cat(place_of(a), std::tie(a.id)) < std::tuple_cat(place_of(b), std::tie(b.id));
 }
 
-bool is_at_one_place(const TriangleRecord& a, const TriangleRecord& b) { return place_of(a) == place_of(b); }
-
 }  // namespace
 
 PlaceTarget::PlaceTarget(const ScreenTransform& t, const View& v, const MaterialSides* sides, Isa i)
@@ -135,7 +133,8 @@ void RecordLists::plan(const View& view, const Cutouts* cutouts, std::size_t mos
   std::sort(first_cutout, records.end(), comes_before);
   // The lower id hides a copy of itself everywhere, unless it has holes. A few bytes of glTF make a million copies of
   // one triangle.
-  first_cutout = records.erase(std::unique(records.begin(), first_cutout, is_at_one_place), first_cutout);
+  const auto is_copy = [](const TriangleRecord& a, const TriangleRecord& b) { return place_of(a) == place_of(b); };
+  first_cutout = records.erase(std::unique(records.begin(), first_cutout, is_copy), first_cutout);
   first_cutout_ = std::size_t(first_cutout - records.begin());
   split_into_rounds(view, most_items);
 }

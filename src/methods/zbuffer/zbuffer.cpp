@@ -55,9 +55,8 @@ void FramePlan::make(const ClusterSet& set, const PlaceTarget& target, const Exe
     cones = frames_by_facing_++ < kFramesWithout ? set.cones.made() : &set.cones.get(set, execution);
   }
   const CullInput input{set.boxes, cones, target.transform, view};
-  parallel_for(execution, set.clusters.size(), kCullGrain, [&](std::size_t begin, std::size_t end) {
-    cull_clusters(input, execution.isa, {begin, end}, culled_);
-  });
+  parallel_for(execution, set.clusters.size(), kCullGrain,
+               [&](std::size_t begin, std::size_t end) { cull_clusters(input, execution.isa, begin, end, culled_); });
   first_cutout_ = set.first_cutout;
   choose_apart(set.clusters.size());
   take_apart(set, target, execution);

@@ -22,12 +22,6 @@ void enlarge(Buffer<T>& buffer, std::size_t used, std::size_t size) {
   buffer.swap(larger);
 }
 
-/// A pixel's place in its tile: the inverse of pixel_number().
-glm::ivec2 place_of(std::uint32_t pixel) {
-  const int group = int(pixel / kGroup), lane = int(pixel % kGroup);
-  return {group % kBlocksAcross * 4 + lane % 4, group / kBlocksAcross * 4 + lane / 4};
-}
-
 }  // namespace
 
 std::vector<glm::ivec2> SamplePattern::positions() const {
@@ -98,7 +92,10 @@ void cut_fragments(const GatherInput& frame, const Rectangle& pixels, GatherScra
     // Fragments arrive triangle by triangle, so the plane is set up once for all pixels of a triangle.
     if (id != last) cutout.emplace((*cutouts)[id], rays);
     last = id;
-    const glm::ivec2 pixel = glm::ivec2(pixels.x, pixels.y) + place_of(arrived.place[i] >> kRankBits);
+    // The inverse of pixel_number().
+    const int number = int(arrived.place[i] >> kRankBits), group = number / int(kGroup), lane = number % int(kGroup);
+    const glm::ivec2 pixel(pixels.x + group % kBlocksAcross * 4 + lane % 4,
+                           pixels.y + group / kBlocksAcross * 4 + lane / 4);
     std::uint64_t mask = arrived.mask(i);
     for (std::uint64_t left = mask; left != 0; left &= left - 1) {
       const glm::ivec2 at = pixel * kSubPixels + samples[std::size_t(std::countr_zero(left))];

@@ -10,6 +10,8 @@
 
 #include "abuffer/gather/gather_kernel.h"
 
+#include <optional>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "abuffer/gather/gather_kernel.cpp"
 #include "base/highway-inl.h"
@@ -108,30 +110,23 @@ class LargeFragments {
   }
 
   void SetUpPlane(const ScreenTriangle& t) {
-    const KeyPlane plane(t);
+    KeyPlane& plane = plane_.emplace(t);
     id_ = t.id;
-    x0_ = plane.x0;
-    y0_ = plane.y0;
-    k0_ = plane.k0;
-    gx_ = plane.gx;
-    gy_ = plane.gy;
-    low_ = plane.k_min;
-    high_ = plane.k_max;
-    is_steep_ = plane.is_steep;
-    if (is_steep_) {
+    if (plane.is_steep) {
       steep_ = SteepKeys(t);
-      gx_ = float(steep_.gx());
-      gy_ = float(steep_.gy());
+      plane.gx = float(steep_.gx());
+      plane.gy = float(steep_.gy());
     }
-    const float slope = std::abs(gx_) + std::abs(gy_);
+    const float slope = std::abs(plane.gx) + std::abs(plane.gy);
     const auto [x_min, x_max] = std::minmax({t.x[0], t.x[1], t.x[2]});
     const auto [y_min, y_max] = std::minmax({t.y[0], t.y[1], t.y[2]});
     // Keys of steep triangles are accurate to a rounding; the rounding of their gradients over a pixel remains.
-    const float reach_x = is_steep_ ? kHalfPixel : float(x_max - x_min) + 2 * kSubPixels;
-    const float reach_y = is_steep_ ? kHalfPixel : float(y_max - y_min) + 2 * kSubPixels;
-    slack_ = (high_ + (reach_x * std::abs(gx_) + reach_y * std::abs(gy_))) * kKeyRounding + kLeastRounding;
+    const float reach_x = plane.is_steep ? kHalfPixel : float(x_max - x_min) + 2 * kSubPixels;
+    const float reach_y = plane.is_steep ? kHalfPixel : float(y_max - y_min) + 2 * kSubPixels;
+    slack_ =
+        (plane.k_max + (reach_x * std::abs(plane.gx) + reach_y * std::abs(plane.gy))) * kKeyRounding + kLeastRounding;
     // Even in steep triangles, no key leaves the range of the vertices' keys.
-    half_ = std::min(slope * kHalfPixel, high_ - low_) + slack_;
+    half_ = std::min(slope * kHalfPixel, plane.k_max - plane.k_min) + slack_;
     triangle_ = std::uint32_t(sink_.triangles.count);
   }
 
@@ -139,18 +134,18 @@ class LargeFragments {
     LocalTriangles& t = sink_.triangles;
     t.reserve(1);
     const std::size_t n = t.count++;
-    t.x0[n] = x0_;
-    t.y0[n] = y0_;
-    t.k0[n] = k0_;
-    t.gx[n] = gx_;
-    t.gy[n] = gy_;
-    t.low[n] = low_;
-    t.high[n] = high_;
+    t.x0[n] = plane_->x0;
+    t.y0[n] = plane_->y0;
+    t.k0[n] = plane_->k0;
+    t.gx[n] = plane_->gx;
+    t.gy[n] = plane_->gy;
+    t.low[n] = plane_->k_min;
+    t.high[n] = plane_->k_max;
     t.slack[n] = slack_;
     t.half[n] = half_;
     t.id[n] = id_;
-    t.steep[n] = is_steep_ ? std::uint32_t(t.steep_keys.size()) : no_index;
-    if (is_steep_) t.steep_keys.push_back(steep_);
+    t.steep[n] = plane_->is_steep ? std::uint32_t(t.steep_keys.size()) : no_index;
+    if (plane_->is_steep) t.steep_keys.push_back(steep_);
   }
 
   /// Whether edge functions stay below 2^28 all over the tile: true up to 128 pixels of width and height.
@@ -263,18 +258,18 @@ class LargeFragments {
   [[nodiscard]] HWY_INLINE VF KeysOf(std::int32_t bx, std::int32_t by, std::int32_t first) const {
     const DF d;
     constexpr std::int32_t size = 4 * kSubPixels, half = kSubPixels / 2;
-    if (is_steep_) {
+    if (plane_->is_steep) {
       const VI x = hn::ConvertTo(DI(), hn::Add(hn::Load(d, centre_x_ + first), hn::Set(d, float(bx * size + half))));
       const VI y = hn::ConvertTo(DI(), hn::Add(hn::Load(d, centre_y_ + first), hn::Set(d, float(by * size + half))));
       view_detail::HWY_NAMESPACE::SteepColumns columns;
       columns.Set(steep_, x);
       return columns.At(steep_, y);
     }
-    const VF dx = hn::Add(hn::Load(d, centre_x_ + first), hn::Set(d, float(bx * size + half - x0_)));
-    const VF dy = hn::Add(hn::Load(d, centre_y_ + first), hn::Set(d, float(by * size + half - y0_)));
-    VF key = hn::Add(hn::Set(d, k0_), hn::Mul(dx, hn::Set(d, gx_)));
-    key = hn::Add(key, hn::Mul(dy, hn::Set(d, gy_)));
-    return hn::Min(hn::Max(key, hn::Set(d, low_)), hn::Set(d, high_));
+    const VF dx = hn::Add(hn::Load(d, centre_x_ + first), hn::Set(d, float(bx * size + half - plane_->x0)));
+    const VF dy = hn::Add(hn::Load(d, centre_y_ + first), hn::Set(d, float(by * size + half - plane_->y0)));
+    VF key = hn::Add(hn::Set(d, plane_->k0), hn::Mul(dx, hn::Set(d, plane_->gx)));
+    key = hn::Add(key, hn::Mul(dy, hn::Set(d, plane_->gy)));
+    return hn::Min(hn::Max(key, hn::Set(d, plane_->k_min)), hn::Set(d, plane_->k_max));
   }
 
   /// Appends a vector of pixels that are covered wholly.
@@ -316,9 +311,8 @@ class LargeFragments {
   Edge edge_[3];
   SampleSteps steps_;
   std::uint32_t id_, triangle_;
-  std::int32_t x0_, y0_;
-  float k0_, gx_, gy_, low_, high_, slack_, half_;
-  bool is_steep_;
+  std::optional<KeyPlane> plane_;  ///< with the gradients of steep_ if it is steep
+  float slack_, half_;
   SteepKeys steep_;
 };
 

@@ -115,12 +115,12 @@ class OccluderUnion {
     open,     ///< but at open_at()
     unknown,  ///< there are too many occluders
   };
-  /// Selects the outline to test.
-  void set(Outline outline) { outline_.set(outline); }
-  /// Grows from the slot `first`, which hides a point of the outline. hiders.may_hide(slot) says whether a polygon is
-  /// an occluder of the outline. hiders.at(place) gives the slot of an occluder at a place, or no_index.
+  /// Tests an outline. Grows from the slot `first`, which hides a point of the outline. hiders.may_hide(slot) says
+  /// whether a polygon is an occluder of the outline. hiders.at(place) gives the slot of an occluder at a place, or
+  /// no_index.
   template <class Hiders>
-  Found spread(std::uint32_t first, Hiders& hiders) {
+  Found spread(Outline outline, std::uint32_t first, Hiders& hiders) {
+    outline_.set(outline);
     if (++turn_ == 0) {
       std::fill(asked_.begin(), asked_.end(), 0);
       turn_ = 1;

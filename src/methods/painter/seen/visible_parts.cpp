@@ -52,8 +52,7 @@ class OcclusionClipper {
     if (hider == no_index) return false;
     // The hider may have been found for a point next to the middle.
     if (is_within(screen_.outline(hider), middle, 0)) {
-      union_.set(outline);
-      const OccluderUnion::Found found = union_.spread(hider, *this);
+      const OccluderUnion::Found found = union_.spread(outline, hider, *this);
       if (found != OccluderUnion::Found::unknown) return found == OccluderUnion::Found::hidden;
     }
     const PolygonExtent& extent = screen_.extent(slot);

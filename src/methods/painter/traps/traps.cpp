@@ -85,12 +85,6 @@ void write_trap(const TrapList& list, const Trap& trap, const glm::dvec2& from, 
   turn_around();
 }
 
-/// Whether the strips of two consecutive sides go around the corner between them: the end of the first coincides with
-/// the beginning of the second.
-bool go_around(const Trap& first, const Trap& second, const glm::dvec2& corner) {
-  return second.at_from.reach > 0 && first.polygon == second.polygon && is_at(corner, second.from);
-}
-
 /// A polygon in more cells of the grid may have thousands of others around it: each outline then has a list of its own.
 constexpr int kMostCells = 64;
 /// The most later polygons of a cell, from the front-most on, that are tried as covers of a polygon's surroundings: a
@@ -467,8 +461,8 @@ void write_outline(const TrapList& list, std::span<const TrappedCorner> outline,
     const std::size_t end = corners.size();
     if (trap) write_trap(list, *trap, from, to, corners);
     const bool is_written = corners.size() > end;
-    // The corner lies within both strips.
-    if (is_written && before && go_around(*before, *trap, from))
+    // Both strips go around the corner, which lies within them: the end of the first is the beginning of the second.
+    if (is_written && before && trap->at_from.reach > 0 && before->polygon == trap->polygon && is_at(from, trap->from))
       corners.erase(corners.begin() + std::ptrdiff_t(end) - 1, corners.begin() + std::ptrdiff_t(end) + 1);
     before = is_written ? trap : nullptr;
   }

@@ -120,16 +120,6 @@ bool is_copy(const RayTree& tree, std::size_t place) {
   return one.id[a] < again.id[b] && (tree.sides->is_double(one.id[a]) || !tree.sides->is_double(again.id[b]));
 }
 
-std::size_t count_copies(const RayTree& tree, const Execution& execution) {
-  std::atomic<std::size_t> count{0};
-  parallel_for(execution, tree.triangle_count, kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
-    std::size_t here = 0;
-    for (std::size_t i = std::max<std::size_t>(begin, 1); i < end; ++i) here += is_copy(tree, i);
-    count += here;
-  });
-  return count;
-}
-
 /// Fills tree.leaves in the surfaces' spatial order.
 void fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execution) {
   const ClusterSet& set = cluster_set(surfaces, execution);
@@ -162,7 +152,12 @@ void fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execu
 std::shared_ptr<RayTree> take_copies(RayTree& tree, const Execution& execution) {
   // Copies with holes may be open where the original is not.
   if (tree.cutouts || tree.triangle_count <= kFew) return nullptr;
-  const std::size_t count = count_copies(tree, execution);
+  std::atomic<std::size_t> count{0};
+  parallel_for(execution, tree.triangle_count, kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
+    std::size_t here = 0;
+    for (std::size_t i = std::max<std::size_t>(begin, 1); i < end; ++i) here += is_copy(tree, i);
+    count += here;
+  });
   if (count <= kFew) return nullptr;
   const auto copies = std::make_shared<RayTree>();
   copies->triangle_count = std::uint32_t(count);

@@ -17,16 +17,14 @@
 namespace frontmost {
 namespace {
 
-std::size_t byte_count(const RayLinks& links) {
-  return (links.above_node.size() + links.above_leaf.size()) * sizeof(std::uint32_t) +
-         (links.leaves_of_instances ? links.leaves_of_instances->byte_count() : 0);
-}
-
 std::size_t byte_count(const RayTree& tree) {
-  return sizeof(RayTree) + tree.nodes.size() * sizeof(RayNode) + tree.leaves.size() * sizeof(RayLeaf) +
-         (tree.cutouts ? tree.cutouts->byte_count() : 0) +
-         (tree.sides ? tree.sides->bits.size() * sizeof(std::uint32_t) : 0) +
-         (tree.copies ? byte_count(*tree.copies) : 0) + (tree.links ? byte_count(*tree.links) : 0);
+  std::size_t bytes = sizeof(RayTree) + tree.nodes.size() * sizeof(RayNode) + tree.leaves.size() * sizeof(RayLeaf);
+  if (tree.cutouts) bytes += tree.cutouts->byte_count();
+  if (tree.sides) bytes += tree.sides->bits.size() * sizeof(std::uint32_t);
+  if (tree.copies) bytes += byte_count(*tree.copies);
+  if (tree.links) bytes += (tree.links->above_node.size() + tree.links->above_leaf.size()) * sizeof(std::uint32_t);
+  if (tree.links && tree.links->leaves_of_instances) bytes += tree.links->leaves_of_instances->byte_count();
+  return bytes;
 }
 
 /// The bounds of a node's children.

@@ -163,22 +163,21 @@ class DirectFrame {
       const auto scratch = scratches_.borrow([] { return std::make_unique<DirectScratch>(); });
       for (std::size_t i = begin; i < end; ++i) {
         const BatchSource& source = sources_[std::uint32_t(chosen[i])];
-        batches_[i].small.clear();
-        batches_[i].records.clear();
+        DirectBatch& batch = batches_[i];
+        batch.small.clear();
+        batch.records.clear();
         for (std::size_t range = source.begin; range < source.end; ++range)
-          place_range(scene_.ranges[range], *scratch, batches_[i]);
-        if (cutouts_) extract_cutouts(batches_[i]);
-        list_tiles(batches_[i].small, *scratch);
-        if (cutouts_) list_tiles(*batches_[i].cutouts, *scratch);
+          place_range(scene_.ranges[range], *scratch, batch);
+        if (cutouts_) {
+          if (!batch.cutouts) batch.cutouts.emplace();
+          batch.cutouts->clear();
+          batch.small.extract([&](PrimitiveId id) { return cutouts_->has(id); }, *batch.cutouts);
+          list_tiles(*batch.cutouts, *scratch);
+        }
+        list_tiles(batch.small, *scratch);
       }
     });
     sort_out(chosen.size());
-  }
-
-  void extract_cutouts(DirectBatch& batch) const {
-    if (!batch.cutouts) batch.cutouts.emplace();
-    batch.cutouts->clear();
-    batch.small.extract([&](PrimitiveId id) { return cutouts_->has(id); }, *batch.cutouts);
   }
 
   static void list_tiles(TriangleBatch& batch, DirectScratch& scratch) {
