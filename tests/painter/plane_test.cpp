@@ -65,11 +65,11 @@ TEST(PaintPlane, TheSideOfAMeetingIsExact) {
       std::vector<Plane> planes;
       for (const ThreePoints& p : points) planes.push_back(Plane::through(p[0], p[1], p[2]));
       const int expected = exact_side(points);
-      EXPECT_EQ(planes[3].side_of_meeting({&planes[0], &planes[1], &planes[2]}), expected) << kind << " " << i;
+      EXPECT_EQ(planes[3].side_of_meeting({planes[0], planes[1], planes[2]}), expected) << kind << " " << i;
       const int twice = determinant<Twice>(points).certain_sign();
       EXPECT_TRUE(twice == 2 || twice == determinant<Expansion>(points).sign());
       // A plane's own points are on it.
-      EXPECT_EQ(planes[0].side_of_meeting({&planes[0], &planes[1], &planes[2]}), 0);
+      EXPECT_EQ(planes[0].side_of_meeting({planes[0], planes[1], planes[2]}), 0);
       ++asked;
       zeros += expected == 0;
       left_open += twice == 2;
@@ -90,7 +90,7 @@ TEST(PaintPlane, MeetingsAtTinyAnglesAreFoundAsNearAsDoublesAre) {
       const glm::dvec3 a(8, 0, 8 + up), b(0, 8, 8 - down);
       planes.push_back({point + double(k + 1) * a - b, Leg{a}, Leg{b}});
     }
-    const std::array<const Plane*, 3> three{&planes[0], &planes[1], &planes[2]};
+    const std::array<Plane, 3> three{planes[0], planes[1], planes[2]};
     const Approximate quick = Plane::meeting(three), found = Plane::closest_meeting(three, 1e-9);
     EXPECT_LT(found.error, 1e-9);
     EXPECT_LE(glm::length(found.at - point), found.error);

@@ -123,10 +123,10 @@ class SpreadTest : public testing::Test {
   OccluderUnion::Found spread(const Laid& laid, const OutlinePoints& outline, std::uint32_t missing = no_index) {
     const PaintOrder asked = order_of({outline});
     OccluderUnion spreader(laid.screen, laid.adjacency);
-    spreader.set(asked.corners);
     asks_ = 0;
     const AllBut hiders{laid, missing, &asks_};
-    const OccluderUnion::Found found = spreader.spread(hiders.at(outline[0] * 0.9 + outline[2] * 0.1), hiders);
+    const std::uint32_t first = hiders.at(outline[0] * 0.9 + outline[2] * 0.1);
+    const OccluderUnion::Found found = spreader.spread(asked.corners, first, hiders);
     open_at_ = spreader.open_at();
     return found;
   }

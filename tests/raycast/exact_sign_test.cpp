@@ -2,7 +2,7 @@
 // Signs of determinants, against 128-bit integers.
 #include <gtest/gtest.h>
 
-#include "raycast/query/query_rule.h"
+#include "raycast/query/queries.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {

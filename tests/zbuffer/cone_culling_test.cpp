@@ -52,7 +52,7 @@ std::vector<ClusterFate> fates(const Surfaces& surfaces, const View& view, bool 
   result.resize(set.clusters.size());
   const ScreenTransform transform(view);
   const CullInput input{set.boxes, with_cones ? &set.cones.get(set, {}) : nullptr, transform, view};
-  cull_clusters(input, isa, {0, set.clusters.size()}, result);
+  cull_clusters(input, isa, 0, set.clusters.size(), result);
   std::vector<ClusterFate> fates;
   for (std::size_t i = 0; i < set.clusters.size(); ++i) fates.push_back(result.fate_of(i));
   return fates;

@@ -104,8 +104,8 @@ class Overlaps {
   template <class Look>
   bool any_cell(std::size_t i, const Look& look) const {
     const painter_detail::PieceGrid::Range cells = grid_.range(extents_[i]);
-    for (int y = cells.first_y; y <= cells.last_y; ++y)
-      for (int x = cells.first_x; x <= cells.last_x; ++x)
+    for (int y = cells.first.y; y <= cells.last.y; ++y)
+      for (int x = cells.first.x; x <= cells.last.x; ++x)
         if (look(grid_.cell(grid_.number(x, y)))) return true;
     return false;
   }

@@ -101,9 +101,8 @@ std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, 
   // Layers are Visibles, which have the view's samples, so the options' grid is left out.
   const PreparedFrame frame(surfaces, view, {0, options.opacity}, execution);
   const Opacities opacities(surfaces, options.opacity, execution);
-  CopyRule copies = copy_rule(opacities);
-  // A triangle behind `count` coincident copies is in no layer.
-  copies.most = std::size_t(count);
+  // A coincident triangle with `count` copies before it everywhere is in no layer.
+  const CopyRule copies{&opacities, std::size_t(count)};
   std::vector<Visible> layers;
   for (int k = 0; k < count; ++k) layers.push_back(nothing_visible(view));
   const auto visit = [&](const Rectangle& pixels, const GatherScratch* fragments) {

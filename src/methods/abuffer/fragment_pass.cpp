@@ -139,7 +139,7 @@ class CopyFinder {
       }
       if (plan_.may_have_holes(c.id)) continue;  // other triangles are seen through the holes
       ++kept;
-      is_hidden = rule_.is_opaque && rule_.is_opaque(c.id);
+      is_hidden = rule_.opacities && rule_.opacities->is_opaque(c.id);
     }
   }
 
@@ -209,35 +209,29 @@ float limited_transmission(const Material& m) {
   return std::min(m.transmission.factor, 1.0f) * (m.metallic > 0 ? 1 - std::min(m.metallic, 1.0f) : 1.0f);
 }
 
-/// Visits the tiles of a frame on one thread.
-class TileVisitor {
- public:
-  TileVisitor(GatherScratch& scratch, const PreparedFrame::Visit& visit) : scratch_(scratch), visit_(visit) {}
+/// Visits a rectangle. \returns false if it has too many fragments at once; then nothing is visited.
+bool visit_whole(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch,
+                 const PreparedFrame::Visit& visit) {
+  const Gathered gathered = gather_tile(frame, job, scratch);
+  if (gathered == Gathered::too_much) return false;
+  visit(job.pixels, gathered == Gathered::something ? &scratch : nullptr);
+  return true;
+}
 
-  /// \returns false if the rectangle has too many fragments at once; then nothing is visited.
-  [[nodiscard]] bool visit_whole(const GatherInput& frame, const GatherJob& job) {
-    const Gathered gathered = gather_tile(frame, job, scratch_);
-    if (gathered == Gathered::too_much) return false;
-    visit_(job.pixels, gathered == Gathered::something ? &scratch_ : nullptr);
-    return true;
-  }
-
-  /// Visits the rectangle, or its parts.
-  void visit_in_parts(const GatherInput& frame, const GatherJob& job) {
-    if (visit_whole(frame, job)) return;
-    // Parts consist of whole groups of 4 x 4 pixels, as long as the rectangle is larger than a group.
-    const Rectangle& r = job.pixels;
-    const auto half = [](int size) { return size > 4 ? (size / 2 + 3) / 4 * 4 : (size + 1) / 2; };
-    const int w = half(r.width), h = half(r.height);
-    for (int y = 0; y < r.height; y += h)
-      for (int x = 0; x < r.width; x += w)
-        visit_in_parts(frame, {{r.x + x, r.y + y, std::min(w, r.width - x), std::min(h, r.height - y)}, job.tile});
-  }
-
- private:
-  GatherScratch& scratch_;
-  const PreparedFrame::Visit& visit_;
-};
+/// Visits the rectangle, or its parts.
+void visit_in_parts(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch,
+                    const PreparedFrame::Visit& visit) {
+  if (visit_whole(frame, job, scratch, visit)) return;
+  // Parts are whole groups of pixels as long as there are groups.
+  const Rectangle& r = job.pixels;
+  const auto half = [](int size) { return size > 4 ? (size / 2 + 3) / 4 * 4 : (size + 1) / 2; };
+  const int w = half(r.width), h = half(r.height);
+  for (int y = 0; y < r.height; y += h)
+    for (int x = 0; x < r.width; x += w) {
+      const Rectangle part{r.x + x, r.y + y, std::min(w, r.width - x), std::min(h, r.height - y)};
+      visit_in_parts(frame, {part, job.tile}, scratch, visit);
+    }
+}
 
 /// A share of light that is far below the rounding of a sum of floats.
 constexpr float kNegligible = 0x1p-40f;
@@ -400,9 +394,8 @@ void PreparedFrame::visit_tiles(const CopyRule& copies, const Visit& visit, cons
       const GatherJob job{plan_.tile(tile), tile};
       if (leave_out && leave_out(job.pixels)) continue;
       const auto scratch = scratches.borrow([] { return std::make_unique<GatherScratch>(); });
-      TileVisitor visitor(*scratch, visit);
-      if (visitor.visit_whole({plan_, pattern_, execution.isa}, job)) continue;
-      visitor.visit_in_parts({crowded.thinned(), pattern_, execution.isa}, job);
+      if (!visit_whole({plan_, pattern_, execution.isa}, job, *scratch, visit))
+        visit_in_parts({crowded.thinned(), pattern_, execution.isa}, job, *scratch, visit);
     }
     report_progress(execution, "visible", double(done += end - begin) / double(tiles));
   });
@@ -426,7 +419,7 @@ FragmentPass::FragmentPass(const Surfaces& surfaces, const View& view, const Abu
     : opacity_(options.opacity),
       frame_(surfaces, view, options, execution),
       opacities_(surfaces, options.opacity, execution),
-      copies_(copy_rule(opacities_)) {}
+      copies_{&opacities_} {}
 
 PixelLists FragmentPass::lists_of(const Rectangle& pixels, const GatherScratch& fragments, float negligible) const {
   Lister lister(frame_.pattern(), fragments, opacities_, negligible);

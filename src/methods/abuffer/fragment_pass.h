@@ -18,16 +18,7 @@
 
 namespace frontmost::abuffer_detail {
 
-/// Says how many copies to keep. Copies are triangles with the same vertices on the screen; at every sample they are in
-/// the order of their ids.
-struct CopyRule {
-  /// Returns whether nothing is seen through the primitive anywhere, so that it hides its copies with higher ids. Empty
-  /// if no primitive is opaque.
-  std::function<bool(PrimitiveId)> is_opaque;
-  std::size_t most = std::size_t(-1);  ///< never keep more copies than this, opaque or not
-};
-
-/// Returns how many fragments a pass may have at most, as `most_fragments` says.
+/// The most fragments that a function goes through, as `most_fragments` says.
 [[nodiscard]] std::uint64_t most_gathered_fragments(const View& view, std::uint64_t triangles);
 
 /// The opacity of each primitive: how much of the background its material hides, before any texture. A see-through
@@ -48,10 +39,12 @@ class Opacities {
                                // let more through
 };
 
-/// Returns the rule that keeps coincident triangles up to the first opaque one. Refers to `opacities`.
-[[nodiscard]] inline CopyRule copy_rule(const Opacities& opacities) {
-  return {[&opacities](PrimitiveId id) { return opacities.is_opaque(id); }};
-}
+/// The number of copies to keep among triangles with the same vertices on the screen. At every sample their order is
+/// that of the ids.
+struct CopyRule {
+  const Opacities* opacities = nullptr;  ///< an opaque primitive hides copies of higher ids; null: none is opaque
+  std::size_t most = std::size_t(-1);    ///< never keep more than these, opaque or not
+};
 
 /// A view prepared for gathering and for visits tile by tile.
 class PreparedFrame {

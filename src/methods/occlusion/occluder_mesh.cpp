@@ -178,15 +178,6 @@ class PartWriter {
   std::vector<std::uint32_t> number_;  ///< by vertex: its latest index in the output
 };
 
-/// Returns, by triangle and side, the triangle across the side, if it is the only one there and has the same winding.
-std::vector<glm::uvec3> neighbours_of(const OccluderMesh& mesh, const Execution& execution) {
-  const EdgeNeighbours edges(mesh.triangles, mesh.positions.size(), execution);
-  std::vector<glm::uvec3> neighbours(mesh.triangles.size());
-  for (std::size_t t = 0; t < neighbours.size(); ++t)
-    neighbours[t] = {edges.across(t, 0), edges.across(t, 1), edges.across(t, 2)};
-  return neighbours;
-}
-
 }  // namespace
 
 OccluderMesh occluder_mesh(const PlacedScene& placed, std::uint32_t instance, ObjectUnit unit,
@@ -202,10 +193,13 @@ OccluderMesh occluder_mesh(const PlacedScene& placed, std::uint32_t instance, Ob
   std::vector<std::vector<std::uint32_t>> touching_parts;
   if (unit == ObjectUnit::clusters) touching_parts = touching(mesh.positions.size(), seen, out.parts.size());
   PartWriter(mesh.positions, seen, out).write(touching_parts);
-  out.neighbours = neighbours_of(out, execution);
+  const EdgeNeighbours edges(out.triangles, out.positions.size(), execution);
+  out.neighbours.resize(out.triangles.size());
   for (OccluderPart& part : out.parts)
-    for (std::uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t)
-      for (int side = 0; side < 3; ++side) part.is_closed = part.is_closed && out.neighbours[t][side] != no_index;
+    for (std::uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t) {
+      out.neighbours[t] = {edges.across(t, 0), edges.across(t, 1), edges.across(t, 2)};
+      part.is_closed = part.is_closed && !glm::any(glm::equal(out.neighbours[t], glm::uvec3(no_index)));
+    }
   return out;
 }
 

@@ -111,9 +111,6 @@ bool is_dense(const OccluderPart& part, const CellRect& rect) {
   return 2 * std::size_t(part.triangle_count) > cells + 64;
 }
 
-/// Returns whether every cell of an object has ends, so that the object covers nothing.
-bool is_tiny(const CellRect& rect) { return rect.x1 - rect.x0 <= 2 || rect.y1 - rect.y0 <= 2; }
-
 }  // namespace
 
 /// An object that reaches far into depth, such as the walls around the eye. As a whole it would cover nothing before
@@ -323,7 +320,11 @@ class Sweep::Run {
     memory.boxes.resize(scene.tree.item_count());
     memory.next_test.resize(scene.tree.item_count());
     if (!memory.boxes.empty()) find_ranges();
-    clear_lists();
+    const std::size_t ranges = std::size_t(range_of_.count()) + 1;
+    memory.first_test.assign(ranges, no_index);
+    memory.first_event.assign(ranges, no_index);
+    memory.events.clear();
+    memory.solid.clear();
     std::fill(sights.begin(), sights.end(), ObjectSight::outside);
     cover.begin(view.grid.columns, view.grid.rows);
     memory.scratch.reached.begin(view.grid.columns, view.grid.rows);
@@ -362,14 +363,6 @@ class Sweep::Run {
     range_of_ = DistanceRanges(t.orthographic, least, std::min(all.farthest, t.far));
     const int twice = t.orthographic ? range_of_.count() / 8 : range_of_(2 * least) - range_of_(least);
     slab_length_ = std::max(1, twice / kSlabsOfDouble);
-  }
-
-  void clear_lists() {
-    const std::size_t ranges = std::size_t(range_of_.count()) + 1;
-    memory_.first_test.assign(ranges, no_index);
-    memory_.first_event.assign(ranges, no_index);
-    memory_.events.clear();
-    memory_.solid.clear();
   }
 
   /// Queues items, none of which is nearer than `distance`.
@@ -414,7 +407,8 @@ class Sweep::Run {
 
   /// Tests an object, whose box is not covered, by its own triangles. Schedules its cover if it may be seen.
   bool may_be_seen(std::uint32_t item, const ScreenBox& box) {
-    if (is_tiny(box.rect)) return true;
+    // Every cell of a tiny object has ends, so it covers nothing.
+    if (box.rect.x1 - box.rect.x0 <= 2 || box.rect.y1 - box.rect.y0 <= 2) return true;
     const HidingObject it = occluder(item);
     if (it.part.triangle_count == 0 || is_dense(it.part, box.rect)) return true;
     const LongObject::Slabs slabs{range_of_(box.nearest), range_of_(box.farthest), slab_length_};

@@ -4,7 +4,7 @@
 //
 //   members --push--> work, the next on top      sort: pieces that may have an order    -> paint and part
 //                       |          ^             part: a cycle, cut in two by a plane   -> part and sort
-//                       +---run----+             paint: pieces in their order           -> the result
+//                       +----------+             paint: pieces in their order           -> the result
 //
 // Parting stops once groups are small enough to be sorted again, because a plane that parts a cycle mostly leaves
 // pieces that have an order. Every further plane would cut pieces that need no cut.
@@ -56,7 +56,8 @@ class Gatherer {
     const double slack = kMargin * std::max(std::abs(nearest), std::abs(farthest));
     if (farthest + slack < sight_.near() || nearest - slack > sight_.far()) return Place::outside;
     const bool is_crossing = nearest - slack < sight_.near() || farthest + slack > sight_.far();
-    extent = is_crossing ? anywhere() : box.extent();
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    extent = is_crossing ? PolygonExtent{glm::vec2(-infinite), glm::vec2(infinite), -infinite, infinite} : box.extent();
     extent.low = glm::max(extent.low, glm::vec2(0));
     extent.high = glm::min(extent.high, glm::vec2(view_.width, view_.height));
     if (!(extent.low.x < extent.high.x && extent.low.y < extent.high.y) || !turn_to_eye(face)) return Place::outside;
@@ -64,11 +65,6 @@ class Gatherer {
   }
 
  private:
-  static PolygonExtent anywhere() {
-    const float infinite = std::numeric_limits<float>::infinity();
-    return {glm::vec2(-infinite), glm::vec2(infinite), -infinite, infinite};
-  }
-
   /// Makes a face counter-clockwise to the eye. \returns false if the face is not visible at all.
   bool turn_to_eye(Face& face) const {
     const auto& c = face.corners;
@@ -94,16 +90,16 @@ Plane plane_at(const View& view, double distance) {
   return {view.eye() + view.forward() * distance, Leg{view.up()}, Leg{view.right()}};
 }
 
-/// Cuts away everything outside the near and far planes. \returns the remaining piece, or no_index if nothing remains.
-std::uint32_t clip(Pieces& pieces, std::uint32_t piece, std::uint32_t near_plane, const Plane& near,
-                   std::uint32_t far_plane, const Plane* far) {
-  const Sides at_near = pieces.sides(piece, near);
+/// Cuts away everything outside the near and far planes; no_index: there is no far plane. \returns no_index if nothing
+/// remains.
+std::uint32_t clip(Pieces& pieces, std::uint32_t piece, std::uint32_t near, std::uint32_t far) {
+  const Sides at_near = pieces.sides(piece, pieces.plane(near));
   if (!at_near.front) return no_index;
-  if (at_near.both()) piece = pieces.cut(piece, near_plane).front;
-  if (!far) return piece;
-  const Sides at_far = pieces.sides(piece, *far);
+  if (at_near.both()) pieces.cut(piece, near);
+  if (far == no_index) return piece;
+  const Sides at_far = pieces.sides(piece, pieces.plane(far));
   if (!at_far.back) return no_index;
-  return at_far.both() ? pieces.cut(piece, far_plane).back : piece;
+  return at_far.both() ? pieces.cut(piece, far) : piece;
 }
 
 /// The triangles that are kept of a part of consecutive ids, in the order of their ids.
@@ -151,12 +147,10 @@ std::vector<std::uint32_t> gather(const Surfaces& surfaces, const View& view, Pi
   std::vector<std::uint32_t> members(pieces.size());
   for (std::uint32_t i = 0; i < members.size(); ++i) members[i] = i;
 
+  const std::uint32_t near = pieces.add_plane(plane_at(view, pieces.sight().near()));
   const bool has_far = view.projection.clip.far < std::numeric_limits<double>::infinity();
-  const Plane near = plane_at(view, pieces.sight().near());
-  const Plane far = has_far ? plane_at(view, pieces.sight().far()) : near;
-  const std::uint32_t near_plane = pieces.add_plane(near), far_plane = pieces.add_plane(far);
-  for (const std::uint32_t i : crossing)
-    members[i] = clip(pieces, i, near_plane, near, far_plane, has_far ? &far : nullptr);
+  const std::uint32_t far = has_far ? pieces.add_plane(plane_at(view, pieces.sight().far())) : no_index;
+  for (const std::uint32_t i : crossing) members[i] = clip(pieces, i, near, far);
   members.erase(std::remove(members.begin(), members.end(), no_index), members.end());
   return members;
 }
@@ -313,13 +307,19 @@ class Orderer {
 
   [[nodiscard]] std::vector<std::uint32_t> order(std::vector<std::uint32_t> members) {
     all_ = members.size();
-    foresee_cuts(members);
+    // Throws early the error that would come after all cuts: sorting would compare every two pieces.
+    const double pairs = 0.5 * double(all_) * double(all_), most_cuts = double(options_.most_cuts);
+    if (pairs > most_cuts && least_cuts(pieces_, members, poll_) > most_cuts) refuse_more_cuts();
     push(std::move(members), options_.method == PaintMethod::bsp ? 0 : all_);
     while (!work_.empty()) {
       const Item item = std::move(work_.back());
       work_.pop_back();
       poll_.count();
-      run(item);
+      switch (item.work) {
+        case Work::paint: order_.insert(order_.end(), item.members.begin(), item.members.end()); break;
+        case Work::sort: sort(item.members); break;
+        case Work::part: part_by_plane(item); break;
+      }
     }
     return std::move(order_);
   }
@@ -338,17 +338,10 @@ class Orderer {
     work_.push_back({work, std::move(members), few});
   }
 
-  void run(const Item& item) {
-    switch (item.work) {
-      case Work::paint: order_.insert(order_.end(), item.members.begin(), item.members.end()); break;
-      case Work::sort: sort(item.members); break;
-      case Work::part: part_by_plane(item); break;
-    }
-  }
-
   void part_by_plane(const Item& item) {
     Partition partition = part(pieces_, item.members, steps_, poll_);
-    check_limits();
+    if (steps_.cuts > options_.most_cuts) refuse_more_cuts();
+    if (pieces_.size() > options_.most_polygons) refuse_more_polygons_than(options_.most_polygons);
     push(std::move(partition.before), item.few);
     work_.push_back({Work::paint, std::move(partition.within)});
     push(std::move(partition.behind), item.few);
@@ -357,18 +350,6 @@ class Orderer {
   [[noreturn]] void refuse_more_cuts() const {
     throw Error(ErrorCode::limit_exceeded, "painter",
                 "more than " + std::to_string(options_.most_cuts) + " cuts: too many triangles intersect");
-  }
-
-  /// Refuses a list that needs too many cuts. This is done before sorting, which would compare every two pieces.
-  void foresee_cuts(const std::vector<std::uint32_t>& members) {
-    const auto count = double(members.size());
-    if (0.5 * count * count <= double(options_.most_cuts)) return;
-    if (least_cuts(pieces_, members, poll_) > double(options_.most_cuts)) refuse_more_cuts();
-  }
-
-  void check_limits() const {
-    if (steps_.cuts > options_.most_cuts) refuse_more_cuts();
-    if (pieces_.size() > options_.most_polygons) refuse_more_polygons_than(options_.most_polygons);
   }
 
   void sort(const std::vector<std::uint32_t>& members) {
@@ -443,7 +424,7 @@ PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOpti
   }
   report_progress(execution, "painter", 0.2);
   if (options.method == PaintMethod::farthest) {
-    sort_by_farthest(pieces, members, execution);
+    sort_by_depth(pieces, members, &PolygonExtent::farthest, execution);
   } else if (options.method == PaintMethod::centroid) {
     sort_by_centroid(pieces, members);
   } else {

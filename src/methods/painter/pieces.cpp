@@ -88,8 +88,7 @@ int Pieces::side_of_corner(const Face& face, const PieceCorner& corner, const Pl
   const Bounded height = plane.height(corner.at, corner.error);
   if (height.value > height.error) return 1;
   if (height.value < -height.error) return -1;
-  const std::array<Plane, 3> meeting = planes_of(face, corner);
-  return plane.side_of_meeting({&meeting[0], &meeting[1], &meeting[2]});
+  return plane.side_of_meeting(planes_of(face, corner));
 }
 
 Sides Pieces::sides(std::uint32_t piece, const Plane& plane) const {
@@ -149,19 +148,18 @@ PieceCorner Pieces::crossing(const Face& face, const PieceShape& shape, std::siz
   corner.error = length * (span > 2 * doubt ? 2 * doubt / span : 1.0) + std::max(from->error, to->error) +
                  kRounding * (size + length);
   const std::array<Plane, 3> planes = planes_of(face, corner);
-  const Approximate meeting = Plane::meeting({&planes[0], &planes[1], &planes[2]});
   const auto take_better = [&](const Approximate& found) {
     if (!(found.error < corner.error)) return;
     corner.at = found.at;
     corner.error = found.error;
   };
-  take_better(meeting);
+  take_better(Plane::meeting(planes));
   const double allowed = kCornerError * (size + length);
-  if (corner.error > allowed) take_better(Plane::closest_meeting({&planes[0], &planes[1], &planes[2]}, allowed));
+  if (corner.error > allowed) take_better(Plane::closest_meeting(planes, allowed));
   return corner;
 }
 
-Pieces::Halves Pieces::cut(std::uint32_t piece, std::uint32_t plane) {
+std::uint32_t Pieces::cut(std::uint32_t piece, std::uint32_t plane) {
   const PieceShape whole = shape_of(piece);
   const std::size_t count = whole.corners.size();
   const std::uint32_t cut = PieceShape::first_cut + plane;
@@ -197,7 +195,7 @@ Pieces::Halves Pieces::cut(std::uint32_t piece, std::uint32_t plane) {
   }
   face.shape = back_shape;
   add(back_extent, face);
-  return {piece, size() - 1};
+  return size() - 1;
 }
 
 PolygonExtent Pieces::extent_of(const PieceShape& half, const PolygonExtent& whole) const {

@@ -103,16 +103,15 @@ class Pieces {
     return {p, {q, p}, sight};
   }
 
-  struct Halves {
-    std::uint32_t front, back;
-  };
   /// Stores a plane to cut by. \returns its number.
   std::uint32_t add_plane(const Plane& plane) {
     planes_.push_back(plane);
     return std::uint32_t(planes_.size() - 1);
   }
-  /// Cuts a piece; the front half keeps the number. Precondition: sides() of that plane has both().
-  Halves cut(std::uint32_t piece, std::uint32_t plane);
+  [[nodiscard]] const Plane& plane(std::uint32_t number) const { return planes_[number]; }
+  /// Cuts a piece, whose number the front half keeps. \returns the number of the back half. Precondition: sides() of
+  /// that plane has both().
+  std::uint32_t cut(std::uint32_t piece, std::uint32_t plane);
 
  private:
   [[nodiscard]] int side_of_corner(const Face& face, const PieceCorner& corner, const Plane& plane) const;

@@ -44,9 +44,10 @@ struct Groups {
 [[nodiscard]] Groups depth_sort(const Pieces& pieces, const std::vector<std::uint32_t>& members, bool is_all,
                                 PaintSteps& steps, Poll& poll);
 
-/// Sorts pieces by their nearest, or by their farthest, points: the farthest first, then by id.
-void sort_by_nearest(const Pieces& pieces, std::vector<std::uint32_t>& members, const Execution& execution);
-void sort_by_farthest(const Pieces& pieces, std::vector<std::uint32_t>& members, const Execution& execution);
+/// Sorts by the nearest, or the farthest, depth of each piece, the greatest first; equal depths by id, the greatest
+/// first, then by number.
+void sort_by_depth(const Pieces& pieces, std::vector<std::uint32_t>& members, float PolygonExtent::*depth,
+                   const Execution& execution);
 
 /// Pieces behind, within and in front of a plane, as the eye sees it. They are to be painted in this order; `within` is
 /// in order already.

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <vector>
 
 #include "frontmost/raycast.h"
@@ -58,10 +59,11 @@ struct PixelPlace {
   return turn_by(camera.elevations[std::size_t(y)]);
 }
 
-[[nodiscard]] inline glm::dvec3 direction_of(const Panorama& camera, const PixelPlace& at) {
+/// The direction of a camera whose columns are azimuths and whose rows are elevations.
+template <class Turned>
+[[nodiscard]] glm::dvec3 direction_of(const Turned& camera, const PixelPlace& at) {
   return direction_at(azimuth_of(camera, at.x, at.offset.x), elevation_of(camera, at.y, at.offset.y));
 }
-
 [[nodiscard]] inline glm::dvec3 direction_of(const Fisheye& camera, const PixelPlace& at) {
   const double right = at.x + at.offset.x / 256.0 - camera.width * 0.5;
   const double up = camera.height * 0.5 - at.y - at.offset.y / 256.0;
@@ -75,51 +77,34 @@ struct PixelPlace {
   return {angle.y * right / from_middle, angle.y * up / from_middle, -angle.x};
 }
 
-[[nodiscard]] inline glm::dvec3 direction_of(const Lidar& camera, const PixelPlace& at) {
-  return direction_at(azimuth_of(camera, at.x, 0), elevation_of(camera, at.y, 0));
-}
-
 [[nodiscard]] inline glm::dvec3 direction_of(const RayPattern& camera, const PixelPlace& at) {
   return camera.directions[std::size_t(at.x)];
 }
 
-/// Directions of all pixels of a grid, at one position within each pixel.
+/// Directions of all pixels of a grid, at one place within each pixel. Azimuths of columns and elevations of rows are
+/// computed once: the same bits, in a tenth of the time.
 template <class Model>
 class GridDirections {
  public:
-  GridDirections(const Model& model, const glm::ivec2& offset) : model_(model), offset_(offset) {}
-  [[nodiscard]] glm::dvec3 at(int x, int y) const { return direction_of(model_, {x, y, offset_}); }
-
- private:
-  const Model& model_;
-  glm::ivec2 offset_;
-};
-
-/// Directions for grids whose columns are azimuths and whose rows are elevations. Each azimuth and each elevation is
-/// computed once, which gives the same bits in a tenth of the time.
-template <class Model>
-class TurnedDirections {
- public:
-  TurnedDirections(const Model& model, const glm::ivec2& offset) {
-    const glm::ivec2 grid = grid_of({model});
-    for (int x = 0; x < grid.x; ++x) azimuths_.push_back(azimuth_of(model, x, offset.x));
-    for (int y = 0; y < grid.y; ++y) elevations_.push_back(elevation_of(model, y, offset.y));
+  GridDirections(const Model& model, const glm::ivec2& offset) : model_(model), offset_(offset) {
+    if constexpr (is_turned) {
+      const glm::ivec2 grid = grid_of({model});
+      for (int x = 0; x < grid.x; ++x) azimuths_.push_back(azimuth_of(model, x, offset.x));
+      for (int y = 0; y < grid.y; ++y) elevations_.push_back(elevation_of(model, y, offset.y));
+    }
   }
   [[nodiscard]] glm::dvec3 at(int x, int y) const {
-    return direction_at(azimuths_[std::size_t(x)], elevations_[std::size_t(y)]);
+    if constexpr (is_turned)
+      return direction_at(azimuths_[std::size_t(x)], elevations_[std::size_t(y)]);
+    else
+      return direction_of(model_, {x, y, offset_});
   }
 
  private:
+  static constexpr bool is_turned = std::is_same_v<Model, Panorama> || std::is_same_v<Model, Lidar>;
+  const Model& model_;
+  glm::ivec2 offset_;
   std::vector<glm::dvec2> azimuths_, elevations_;
-};
-
-template <>
-class GridDirections<Panorama> : public TurnedDirections<Panorama> {
-  using TurnedDirections::TurnedDirections;
-};
-template <>
-class GridDirections<Lidar> : public TurnedDirections<Lidar> {
-  using TurnedDirections::TurnedDirections;
 };
 
 /// A camera's pose, split into rotation and origin.

@@ -77,10 +77,13 @@ class HolePasser {
       const auto [enter, child] = waiting_.back();
       waiting_.pop_back();
       if (is_behind(enter)) continue;
-      if (child & kLeafBit)
-        meet_leaf(tree_.leaf(child), place);
-      else
+      if (!(child & kLeafBit)) {
         look_into(tree_.nodes[child]);
+        continue;
+      }
+      const RayLeaf& leaf = tree_.leaf(child);
+      for (std::size_t lane = 0; lane < kRayLanes && leaf.id[lane] != no_primitive; ++lane)
+        meet(make_triangle(transform_, leaf.corners_of(lane)), leaf.id[lane], place);
     }
     return nearest_;
   }
@@ -131,11 +134,6 @@ class HolePasser {
     }
     if (!(enter <= leave) || is_behind(enter)) return std::nullopt;
     return enter;
-  }
-
-  void meet_leaf(const RayLeaf& leaf, const SamplePlace& place) {
-    for (std::size_t lane = 0; lane < kRayLanes && leaf.id[lane] != no_primitive; ++lane)
-      meet(make_triangle(transform_, leaf.corners_of(lane)), leaf.id[lane], place);
   }
 
   void meet(const SampleTriangle& triangle, PrimitiveId id, const SamplePlace& place) {
@@ -199,18 +197,6 @@ void pass_holes(const RayTree& tree, Visible& visible, const Execution& executio
 struct RayCaster::State {
   Pool<RayTileScratch> scratches;
   Visible visible;
-
-  /// Makes planes for the view, or keeps the last ones if they fit. \returns true if their memory was used before.
-  bool prepare_planes(const View& view) {
-    const bool fits = visible.primitives.size() == view.sample_count();
-    // If memory suffices for one plane only, neither may stay, because `fits` tests one plane alone.
-    if (!fits) {
-      visible = {};
-      visible = {view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(view.sample_count())};
-    }
-    visible.view = view;
-    return fits;
-  }
 };
 
 RayCaster::RayCaster() : state_(std::make_unique<State>()) {}
@@ -223,8 +209,14 @@ const Visible& RayCaster::draw(const RayIndex& index, const View& view, const Ex
   const IeeeScope ieee;
   const RayTree& tree = ray_tree(index);
   const ScreenTransform transform(view);
-  const bool is_used = state_->prepare_planes(view);
   Visible& visible = state_->visible;
+  const bool is_used = visible.primitives.size() == view.sample_count();
+  // If memory suffices for one plane only, neither may stay, as `is_used` looks at one alone.
+  if (!is_used) {
+    visible = {};
+    visible = {view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(view.sample_count())};
+  }
+  visible.view = view;
   const RayTileInput frame{tree,
                            transform,
                            view,

@@ -171,16 +171,6 @@ class ScanCaster {
   int across_;  ///< packets side by side
 };
 
-/// A scan with room for the answers. \throws Error as validate(camera) does.
-RangeScan prepare_scan(const RayCamera& camera) {
-  validate(camera);
-  RangeScan result{camera, grid_of(camera).x, grid_of(camera).y, {}, {}};
-  const std::size_t count = result.index(0, 0, camera.samples);
-  result.primitives = Buffer<PrimitiveId>(count);
-  result.ranges = Buffer<float>(count);
-  return result;
-}
-
 /// Removes hits beyond the camera's limits of range.
 void keep_in_range(RangeScan& scan, const Execution& execution) {
   const double nearest = scan.camera.nearest, farthest = scan.camera.farthest;
@@ -233,7 +223,11 @@ Ray ray_of(const RayCamera& camera, int x, int y, int sample) {
 }
 
 RangeScan scan(const RayIndex& index, const RayCamera& camera, const Execution& execution) {
-  RangeScan result = prepare_scan(camera);
+  validate(camera);
+  const glm::ivec2 grid = grid_of(camera);
+  RangeScan result{camera, grid.x, grid.y, {}, {}};
+  result.primitives = Buffer<PrimitiveId>(result.index(0, 0, camera.samples));
+  result.ranges = Buffer<float>(result.primitives.size());
   const auto cast = [&](const auto& model) {
     for (int sample = 0; sample < camera.samples; ++sample)
       ScanCaster(ray_tree(index), model, sample, result).cast(execution);

@@ -47,20 +47,17 @@ struct CullVector {
   VF x, y, z;
 };
 
-struct Reach {
-  VF ax, ay, az;  // the greatest |position - eye| over the box, by axis
-};
-
 HWY_INLINE VF Row(const RowTerms& row, VF dx, VF dy, VF dz) {
   const DF d;
   const VF x = hn::Mul(hn::Set(d, row.a), dx), y = hn::Mul(hn::Set(d, row.b), dy), z = hn::Mul(hn::Set(d, row.c), dz);
   return hn::Add(hn::Add(hn::Add(x, y), z), hn::Set(d, row.offset));
 }
 
-HWY_INLINE VF Margin(const RowTerms& row, const Reach& reach) {
+/// `reach` is the greatest |position - eye| over the box, by axis.
+HWY_INLINE VF Margin(const RowTerms& row, const CullVector& reach) {
   const DF d;
-  const VF x = hn::Mul(hn::Abs(hn::Set(d, row.a)), reach.ax), y = hn::Mul(hn::Abs(hn::Set(d, row.b)), reach.ay);
-  const VF z = hn::Mul(hn::Abs(hn::Set(d, row.c)), reach.az), w = hn::Set(d, row.offset_terms);
+  const VF x = hn::Mul(hn::Abs(hn::Set(d, row.a)), reach.x), y = hn::Mul(hn::Abs(hn::Set(d, row.b)), reach.y);
+  const VF z = hn::Mul(hn::Abs(hn::Set(d, row.c)), reach.z), w = hn::Set(d, row.offset_terms);
   return hn::Mul(hn::Set(d, kRoundingBound), hn::Add(hn::Add(x, y), hn::Add(z, w)));
 }
 
@@ -110,34 +107,6 @@ struct Rays {
   VF needed;             // a triangle with a greater altitude * sine is not turned over
 };
 
-class FacingCull {
- public:
-  FacingCull(const ConeArrays& cones, Culling culling)
-      : cones_(cones), sign_(culling == Culling::front ? -1.0f : 1.0f) {}
-
-  /// Returns the clusters whose triangles all face away and are culled. NaN compares false, which keeps the cluster.
-  [[nodiscard]] HWY_INLINE MF TurnedAway(std::size_t i, const Rays& rays) const {
-    const DF d;
-    const VF sign = hn::Set(d, sign_), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-    const VF x = hn::Mul(hn::Load(d, cones_.x.data() + i), sign);
-    const VF y = hn::Mul(hn::Load(d, cones_.y.data() + i), sign);
-    const VF z = hn::Mul(hn::Load(d, cones_.z.data() + i), sign);
-    const VF along_x = hn::Min(hn::Mul(x, rays.low.x), hn::Mul(x, rays.high.x));
-    const VF along_y = hn::Min(hn::Mul(y, rays.low.y), hn::Mul(y, rays.high.y));
-    const VF along_z = hn::Min(hn::Mul(z, rays.low.z), hn::Mul(z, rays.high.z));
-    const VF m = hn::Div(hn::Add(hn::Add(along_x, along_y), along_z), rays.farthest);
-    const VF cosine = hn::Load(d, cones_.cosine.data() + i);
-    const VF lean = hn::Mul(hn::Sub(one, hn::Mul(cosine, cosine)), hn::Sub(one, hn::Mul(m, m)));
-    const VF sine = hn::Sub(hn::Mul(cosine, m), hn::Sqrt(hn::Max(lean, zero)));
-    const VF certain = hn::Mul(hn::Sub(sine, hn::Set(d, kFacingRounding)), hn::Load(d, cones_.altitude.data() + i));
-    return hn::And(hn::Gt(m, zero), hn::Gt(certain, rays.needed));
-  }
-
- private:
-  const ConeArrays& cones_;
-  float sign_;
-};
-
 class Cull {
  public:
   explicit Cull(const CullInput& input)
@@ -163,7 +132,7 @@ class Cull {
     if (cones != nullptr) {
       const VF error = hn::Sqrt(hn::Add(hn::Mul(pad.x, pad.x), hn::Mul(pad.y, pad.y)));
       const Rays rays = t.orthographic ? ParallelRays(error) : RaysFromEye(from_eye, error, e.farthest);
-      outside = hn::Or(outside, hn::And(whole, FacingCull(*cones, view.culling).TurnedAway(i, rays)));
+      outside = hn::Or(outside, hn::And(whole, TurnedAway(i, rays)));
     }
     StorePlace(i, e, pad, out);
     StoreFates(i, outside, whole, out);
@@ -199,8 +168,8 @@ class Cull {
   }
 
   [[nodiscard]] HWY_INLINE Margins MarginsOf(const Offsets& o) const {
-    const Reach reach{hn::Max(hn::Abs(o.x[0]), hn::Abs(o.x[1])), hn::Max(hn::Abs(o.y[0]), hn::Abs(o.y[1])),
-                      hn::Max(hn::Abs(o.z[0]), hn::Abs(o.z[1]))};
+    const CullVector reach{hn::Max(hn::Abs(o.x[0]), hn::Abs(o.x[1])), hn::Max(hn::Abs(o.y[0]), hn::Abs(o.y[1])),
+                           hn::Max(hn::Abs(o.z[0]), hn::Abs(o.z[1]))};
     const VF depth = Margin(d_row, reach);
     return {Margin(x_row, reach), Margin(y_row, reach), depth, t.orthographic ? hn::Zero(DF()) : depth};
   }
@@ -273,7 +242,26 @@ class Cull {
     return hn::And(between, hn::And(hn::Lt(hn::Add(x_most, pad.x), guard), hn::Lt(hn::Add(y_most, pad.y), guard)));
   }
 
-  /// Stores the pixel rectangle and the nearest key, which is the key of the nearest distance with a margin for
+  /// Clusters of which no triangle faces the visible side. NaN compares false, which keeps the cluster.
+  [[nodiscard]] HWY_INLINE MF TurnedAway(std::size_t i, const Rays& rays) const {
+    const DF d;
+    const VF sign = hn::Set(d, view.culling == Culling::front ? -1.0f : 1.0f), one = hn::Set(d, 1.0f),
+             zero = hn::Zero(d);
+    const VF x = hn::Mul(hn::Load(d, cones->x.data() + i), sign);
+    const VF y = hn::Mul(hn::Load(d, cones->y.data() + i), sign);
+    const VF z = hn::Mul(hn::Load(d, cones->z.data() + i), sign);
+    const VF along_x = hn::Min(hn::Mul(x, rays.low.x), hn::Mul(x, rays.high.x));
+    const VF along_y = hn::Min(hn::Mul(y, rays.low.y), hn::Mul(y, rays.high.y));
+    const VF along_z = hn::Min(hn::Mul(z, rays.low.z), hn::Mul(z, rays.high.z));
+    const VF m = hn::Div(hn::Add(hn::Add(along_x, along_y), along_z), rays.farthest);
+    const VF cosine = hn::Load(d, cones->cosine.data() + i);
+    const VF lean = hn::Mul(hn::Sub(one, hn::Mul(cosine, cosine)), hn::Sub(one, hn::Mul(m, m)));
+    const VF sine = hn::Sub(hn::Mul(cosine, m), hn::Sqrt(hn::Max(lean, zero)));
+    const VF certain = hn::Mul(hn::Sub(sine, hn::Set(d, kFacingRounding)), hn::Load(d, cones->altitude.data() + i));
+    return hn::And(hn::Gt(m, zero), hn::Gt(certain, rays.needed));
+  }
+
+  /// Stores the pixel rectangle and the nearest key. No key is greater than that of the nearest distance, but for
   /// rounding.
   HWY_INLINE void StorePlace(std::size_t i, const Extent& e, const Pads& pad, CullResult& out) const {
     const DF d;
@@ -328,9 +316,9 @@ class Cull {
   RowTerms d_row = MakeRow(t.d_row, t.d_offset, rest);
 };
 
-void CullRange(const CullInput& input, const ClusterRange& range, CullResult& result) {
+void CullRange(const CullInput& input, std::size_t begin, std::size_t end, CullResult& result) {
   const Cull cull(input);
-  for (std::size_t i = range.begin; i < range.end; i += hn::Lanes(DF())) cull.Group(i, result);
+  for (std::size_t i = begin; i < end; i += hn::Lanes(DF())) cull.Group(i, result);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -342,8 +330,8 @@ namespace frontmost::zbuffer_detail {
 
 FRONTMOST_KERNELS(CullRange);
 
-void cull_clusters(const CullInput& input, Isa isa, const ClusterRange& range, CullResult& result) {
-  kernel_for(CullRangeKernels, isa)(input, range, result);
+void cull_clusters(const CullInput& input, Isa isa, std::size_t begin, std::size_t end, CullResult& result) {
+  kernel_for(CullRangeKernels, isa)(input, begin, end, result);
 }
 
 }  // namespace frontmost::zbuffer_detail

@@ -50,14 +50,10 @@ struct CullInput {
   const View& view;
 };
 
-/// Clusters [begin, end); `begin` is a multiple of 16.
-struct ClusterRange {
-  std::size_t begin, end;
-};
-
-/// Decides the fate of each cluster, and never culls a cluster that a sample sees. Each bound from a box corner is
-/// padded by the greatest rounding error of a vertex inside the box.
-void cull_clusters(const CullInput& input, Isa isa, const ClusterRange& range, CullResult& result);
+/// Decides the fate of each cluster of [begin, end), and never culls a cluster that a sample sees. Each bound from a
+/// box corner is padded by the greatest rounding error of a vertex inside the box. Precondition: `begin` is a multiple
+/// of 16.
+void cull_clusters(const CullInput& input, Isa isa, std::size_t begin, std::size_t end, CullResult& result);
 
 /// The input that all tiles of a frame share. Borrows everything.
 struct FrameInput : Picture {
@@ -66,19 +62,6 @@ struct FrameInput : Picture {
   const FacingRule& facing;
   const CullResult& culled;
   std::span<const TriangleRecord> records;  ///< vertices from the image's top left
-};
-
-/// One tile, and the records and clusters that may be seen in it.
-struct TileJob : Tile {
-  /// Indices of records and of clusters, nearest first.
-  struct Items {
-    std::span<const std::uint32_t> records, clusters;
-
-    [[nodiscard]] bool is_empty() const { return records.empty() && clusters.empty(); }
-  };
-  Items solid, cutouts;
-
-  [[nodiscard]] bool is_empty() const { return solid.is_empty() && cutouts.is_empty(); }
 };
 
 /// Draws a tile and writes it to the output planes.

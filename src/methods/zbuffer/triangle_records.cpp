@@ -65,8 +65,6 @@ bool comes_before(const TriangleRecord& a, const TriangleRecord& b) {
   return std::tuple_cat(place_of(a), std::tie(a.id)) < std::tuple_cat(place_of(b), std::tie(b.id));
 }
 
-bool is_at_one_place(const TriangleRecord& a, const TriangleRecord& b) { return place_of(a) == place_of(b); }
-
 }  // namespace
 
 PlaceTarget::PlaceTarget(const ScreenTransform& t, const View& v, const MaterialSides* sides, Isa i)
@@ -103,10 +101,7 @@ void append_polygon(const PlaceTarget& target, const ClippedPolygon& polygon, Pr
 
 PixelRect pixel_rect(const TriangleRecord& r, int width, int height) {
   // Samples lie within [0, 256) of a pixel, so only pixels between the outermost vertices can be covered.
-  const auto [x_min, x_max] = std::minmax({r.x[0], r.x[1], r.x[2]});
-  const auto [y_min, y_max] = std::minmax({r.y[0], r.y[1], r.y[2]});
-  return {std::max(x_min >> 8, 0), std::max(y_min >> 8, 0), std::min(x_max >> 8, width - 1),
-          std::min(y_max >> 8, height - 1)};
+  return sampled_rect(r, glm::ivec2(0), glm::ivec2(kSubPixels - 1), width, height);
 }
 
 PixelRect sampled_rect(const TriangleRecord& r, const glm::ivec2& low, const glm::ivec2& high, int width, int height) {
@@ -137,9 +132,10 @@ void RecordLists::plan(const View& view, const Cutouts* cutouts, std::size_t mos
   // hide.
   std::sort(records.begin(), first_cutout, comes_before);
   std::sort(first_cutout, records.end(), comes_before);
-  // A solid triangle hides all its copies with higher ids. Copies matter because a few bytes of glTF make a million
-  // copies of one triangle.
-  first_cutout = records.erase(std::unique(records.begin(), first_cutout, is_at_one_place), first_cutout);
+  // The lower id hides a copy of itself everywhere, unless it has holes. A few bytes of glTF make a million copies of
+  // one triangle.
+  const auto is_copy = [](const TriangleRecord& a, const TriangleRecord& b) { return place_of(a) == place_of(b); };
+  first_cutout = records.erase(std::unique(records.begin(), first_cutout, is_copy), first_cutout);
   first_cutout_ = std::size_t(first_cutout - records.begin());
   split_into_rounds(view, most_items);
 }

@@ -156,9 +156,7 @@ class RecordLists {
   /// Lists the records that may be seen in each tile of a round, and drops the lists of the round before.
   void list(const TileRange& round, const View& view);
   /// Precondition: `tile` belongs to the round listed last.
-  [[nodiscard]] PartedList of(std::size_t tile) const {
-    return {lists_.of(tile), [&](std::uint32_t i) { return i >= first_cutout_; }};
-  }
+  [[nodiscard]] PartedList of(std::size_t tile) const { return {lists_.of(tile), first_cutout_}; }
 
  private:
   void split_into_rounds(const View& view, std::size_t most_items);

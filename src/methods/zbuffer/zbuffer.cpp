@@ -35,9 +35,7 @@ constexpr std::size_t kSlices = 32;
 }  // namespace
 
 TileJob FramePlan::job(std::size_t tile, const View& view) const {
-  const PartedList records = records_.of(tile);
-  const PartedList clusters(cluster_lists_.of(tile), [&](std::uint32_t cluster) { return cluster >= first_cutout_; });
-  return {Tile(tile, view), {records.solid, clusters.solid}, {records.cutouts, clusters.cutouts}};
+  return {{tile, view}, records_.of(tile), {cluster_lists_.of(tile), first_cutout_}};
 }
 
 void FramePlan::make(const ClusterSet& set, const PlaceTarget& target, const Execution& execution,
@@ -59,9 +57,8 @@ void FramePlan::make(const ClusterSet& set, const PlaceTarget& target, const Exe
     cones = frames_by_facing_++ < kFramesWithout ? set.cones.made() : &set.cones.get(set, execution);
   }
   const CullInput input{set.boxes, cones, target.transform, view};
-  parallel_for(execution, set.clusters.size(), kCullGrain, [&](std::size_t begin, std::size_t end) {
-    cull_clusters(input, execution.isa, {begin, end}, culled_);
-  });
+  parallel_for(execution, set.clusters.size(), kCullGrain,
+               [&](std::size_t begin, std::size_t end) { cull_clusters(input, execution.isa, begin, end, culled_); });
   first_cutout_ = set.first_cutout;
   choose_apart(set.clusters.size());
   take_apart(set, target, execution);
@@ -177,14 +174,7 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
   const std::size_t stream_from = std::size_t(state_->prepare_planes(view) ? 2 : 32) << 20;
   const bool streams = view.sample_count() * (sizeof(PrimitiveId) + sizeof(float)) >= stream_from;
   Visible& visible = state_->visible;
-  const Picture picture{view,
-                        sample_offsets(view.samples),
-                        visible.primitives.data(),
-                        visible.keys.data(),
-                        streams,
-                        set.cutouts.get(),
-                        ScreenRays(view),
-                        nullptr};
+  const Picture picture(visible, streams, set.cutouts.get());
   const FrameInput frame{picture, set, transform, target.facing, plan.culled(), plan.records().records};
   std::atomic<std::size_t> drawn{0};
   draw_tiles(plan.records(), view, execution, state_->scratches, [&](std::size_t tile, TileScratch& scratch) {

@@ -15,23 +15,11 @@
 namespace frontmost::abuffer_detail {
 namespace {
 
-void add(SamplePattern& pattern, std::int32_t x, std::int32_t y) {
-  const auto i = std::size_t(pattern.count++);
-  pattern.x[i] = x;
-  pattern.y[i] = y;
-}
-
 template <class T>
 void enlarge(Buffer<T>& buffer, std::size_t used, std::size_t size) {
   Buffer<T> larger(size);
   std::copy_n(buffer.data(), used, larger.data());
   buffer.swap(larger);
-}
-
-/// A pixel's place in its tile: the inverse of pixel_number().
-glm::ivec2 place_of(std::uint32_t pixel) {
-  const int group = int(pixel / kGroup), lane = int(pixel % kGroup);
-  return {group % kBlocksAcross * 4 + lane % 4, group / kBlocksAcross * 4 + lane / 4};
 }
 
 }  // namespace
@@ -47,14 +35,16 @@ SamplePattern sample_pattern(const View& view, int grid) {
     throw Error(ErrorCode::bad_argument, "abuffer: grid", "must be 0, 2, 4 or 8, not " + std::to_string(grid));
   SamplePattern pattern;
   pattern.count = 0;
+  const auto add = [&](std::int32_t x, std::int32_t y) {
+    pattern.x[std::size_t(pattern.count)] = x;
+    pattern.y[std::size_t(pattern.count++)] = y;
+  };
   if (grid == 0)
-    for (const glm::ivec2& s : sample_offsets(view.samples))
-      add(pattern, s.x / SamplePattern::unit, s.y / SamplePattern::unit);
+    for (const glm::ivec2& s : sample_offsets(view.samples)) add(s.x / SamplePattern::unit, s.y / SamplePattern::unit);
   const int spacing = grid ? SamplePattern::unit / grid : 0;
   for (int y = 0; y < grid; ++y)
-    for (int x = 0; x < grid; ++x) add(pattern, x * spacing + spacing / 2, y * spacing + spacing / 2);
-  // The range of the samples in a pixel: a triangle that lies between the samples of neighbouring pixels touches no
-  // pixel.
+    for (int x = 0; x < grid; ++x) add(x * spacing + spacing / 2, y * spacing + spacing / 2);
+  // Reach of the samples: triangles that lie between the samples of pixels touch no pixel.
   const auto xs = std::minmax_element(pattern.x.begin(), pattern.x.begin() + pattern.count);
   const auto ys = std::minmax_element(pattern.y.begin(), pattern.y.begin() + pattern.count);
   pattern.low_x = *xs.first;
@@ -103,7 +93,10 @@ void cut_fragments(const GatherInput& frame, const Rectangle& pixels, GatherScra
     // Fragments arrive triangle by triangle, so the plane is set up once for all pixels of a triangle.
     if (id != last) cutout.emplace((*cutouts)[id], rays);
     last = id;
-    const glm::ivec2 pixel = glm::ivec2(pixels.x, pixels.y) + place_of(arrived.place[i] >> kRankBits);
+    // The inverse of pixel_number().
+    const int number = int(arrived.place[i] >> kRankBits), group = number / int(kGroup), lane = number % int(kGroup);
+    const glm::ivec2 pixel(pixels.x + group % kBlocksAcross * 4 + lane % 4,
+                           pixels.y + group / kBlocksAcross * 4 + lane / 4);
     std::uint64_t mask = arrived.mask(i);
     for (std::uint64_t left = mask; left != 0; left &= left - 1) {
       const glm::ivec2 at = pixel * kSubPixels + samples[std::size_t(std::countr_zero(left))];

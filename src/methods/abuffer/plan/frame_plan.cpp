@@ -94,18 +94,6 @@ FragmentPlan::FragmentPlan(const Surfaces& surfaces, const View& view, const Exe
                                          tiles_along(view.width),
                                          tiles_along(view.height),
                                          {}});
-  transform_all(execution);
-  take_apart(execution);
-  make_lists({});
-}
-
-Rectangle FragmentPlan::tile(std::size_t number) const {
-  const int x = int(number % std::size_t(frame_->tiles_x)) * kTileSize,
-            y = int(number / std::size_t(frame_->tiles_x)) * kTileSize;
-  return {x, y, std::min(kTileSize, view().width - x), std::min(kTileSize, view().height - y)};
-}
-
-void FragmentPlan::transform_all(const Execution& execution) {
   constexpr std::size_t kGrain = 256;
   const std::size_t vertices = set().x.size(), clusters = set().clusters.size();
   ScreenClusters& screen = frame_->screen;
@@ -114,6 +102,14 @@ void FragmentPlan::transform_all(const Execution& execution) {
   parallel_for(execution, clusters, kGrain, [&](std::size_t begin, std::size_t end) {
     transform_clusters(set(), transform(), execution.isa, begin, end, screen);
   });
+  take_apart(execution);
+  make_lists({});
+}
+
+Rectangle FragmentPlan::tile(std::size_t number) const {
+  const int x = int(number % std::size_t(frame_->tiles_x)) * kTileSize,
+            y = int(number / std::size_t(frame_->tiles_x)) * kTileSize;
+  return {x, y, std::min(kTileSize, view().width - x), std::min(kTileSize, view().height - y)};
 }
 
 void FragmentPlan::take_apart(const Execution& execution) {

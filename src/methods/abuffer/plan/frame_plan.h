@@ -107,7 +107,9 @@ class FragmentPlan {
   }
   /// Precondition: for_each() visits this number.
   [[nodiscard]] ScreenTriangle triangle(const TriangleNumber& number) const;
-  /// Returns whether a texture may cut holes into the primitive.
+  /// A triangle of a cluster whose vertices are snapped, not oriented yet.
+  [[nodiscard]] ScreenTriangle snapped(const Cluster& cluster, std::size_t triangle) const;
+  /// Whether a texture may cut holes into the primitive.
   [[nodiscard]] bool may_have_holes(PrimitiveId id) const { return set().cutouts && set().cutouts->has(id); }
   /// Returns the plan of the same frame without some triangles. Precondition: `hidden` has no duplicates.
   [[nodiscard]] FragmentPlan without(std::span<const TriangleNumber> hidden) const;
@@ -123,11 +125,9 @@ class FragmentPlan {
     ScreenClusters screen;
   };
   explicit FragmentPlan(std::shared_ptr<Frame> frame) : frame_(std::move(frame)) {}
-  void transform_all(const Execution& execution);
   void take_apart(const Execution& execution);
   void append_clipped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const;
   void append_snapped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const;
-  [[nodiscard]] ScreenTriangle snapped(const Cluster& cluster, std::size_t triangle) const;
   /// Makes the triangle's area positive. \returns false if the triangle covers nothing of the picture.
   [[nodiscard]] bool is_drawn(ScreenTriangle& triangle) const;
   /// `left_out` marks clusters whose triangles are among the singles; it may be empty.

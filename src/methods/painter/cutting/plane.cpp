@@ -36,11 +36,10 @@ Bounded Plane::least_height(const glm::dvec3& centre, const std::array<glm::dvec
   return least;
 }
 
-/// Applies Cramer's rule relative to a point of the first plane. The same sums, taken of absolute values, bound the
-/// rounding: three normals and a distance, each wrong by at most kRounding of its own terms, and a dozen roundings
-/// more.
-Approximate Plane::meeting(const std::array<const Plane*, 3>& planes) {
-  const Plane &a = *planes[0], &b = *planes[1], &c = *planes[2];
+/// Cramer's rule about a point of the first plane. The same sums of absolute values bound the rounding: three normals
+/// and a distance, each wrong by at most kRounding of its own terms, and a dozen roundings more.
+Approximate Plane::meeting(const std::array<Plane, 3>& planes) {
+  const Plane &a = planes[0], &b = planes[1], &c = planes[2];
   const auto size = [](const Plane& plane) { return plane.normal_.error / kRounding; };
   const auto cross_size = [](const glm::dvec3& p, const glm::dvec3& q) {
     return glm::dvec3(p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x);
@@ -63,6 +62,13 @@ Approximate Plane::meeting(const std::array<const Plane*, 3>& planes) {
   return {a.anchor_ + from_a, bound.x + bound.y + bound.z};
 }
 
+template <class Number>
+LongPlane<Number> Plane::in_full(const Plane& other) const {
+  LongPlane<Number> plane{cross_of(difference_of<Number>(u_.to, u_.from), difference_of<Number>(v_.to, v_.from)), {}};
+  plane.d = dot_of(plane.n, difference_of<Number>(anchor_, other.anchor_));
+  return plane;
+}
+
 namespace {
 
 int sign_of(const Twice& number) { return number.certain_sign(); }
@@ -77,8 +83,9 @@ struct Meeting {
   LongVector<Number> times;
   Number determinant;
 
-  explicit Meeting(const std::array<LongPlane<Number>, 3>& planes) {
-    const auto& [a, b, c] = planes;
+  explicit Meeting(const std::array<Plane, 3>& planes) {
+    const LongPlane<Number> a = planes[0].in_full<Number>(planes[0]), b = planes[1].in_full<Number>(planes[0]),
+                            c = planes[2].in_full<Number>(planes[0]);
     const LongVector<Number> bc = cross_of(b.n, c.n), ca = cross_of(c.n, a.n), ab = cross_of(a.n, b.n);
     determinant = dot_of(a.n, bc);
     for (std::size_t axis = 0; axis < 3; ++axis) times[axis] = b.d * ca[axis] + c.d * ab[axis];
@@ -96,35 +103,24 @@ Bounded quotient(const Bounded& above, const Bounded& below) {
 }  // namespace
 
 template <class Number>
-LongPlane<Number> Plane::in_full(const glm::dvec3& centre) const {
-  LongPlane<Number> plane{cross_of(difference_of<Number>(u_.to, u_.from), difference_of<Number>(v_.to, v_.from)), {}};
-  plane.d = dot_of(plane.n, difference_of<Number>(anchor_, centre));
-  return plane;
-}
-
-template <class Number>
-int Plane::sign_of_meeting(const std::array<const Plane*, 3>& planes) const {
-  const glm::dvec3& centre = planes[0]->anchor_;
-  const Meeting<Number> meeting(
-      {planes[0]->in_full<Number>(centre), planes[1]->in_full<Number>(centre), planes[2]->in_full<Number>(centre)});
-  const LongPlane<Number> asked = in_full<Number>(centre);
+int Plane::sign_of_meeting(const std::array<Plane, 3>& planes) const {
+  const Meeting<Number> meeting(planes);
+  const LongPlane<Number> asked = in_full<Number>(planes[0]);
   const int height = sign_of(dot_of(asked.n, meeting.times) - asked.d * meeting.determinant),
             determinant = sign_of(meeting.determinant);
   return height == 2 || determinant == 2 ? 2 : height * determinant;
 }
 
-int Plane::side_of_meeting(const std::array<const Plane*, 3>& planes) const {
-  if (std::any_of(planes.begin(), planes.end(), [&](const Plane* plane) { return is_same(*plane); })) return 0;
+int Plane::side_of_meeting(const std::array<Plane, 3>& planes) const {
+  if (std::any_of(planes.begin(), planes.end(), [&](const Plane& plane) { return is_same(plane); })) return 0;
   const int twice = sign_of_meeting<Twice>(planes);
   return twice != 2 ? twice : sign_of_meeting<Expansion>(planes);
 }
 
 template <class Number>
-Approximate Plane::long_meeting(const std::array<const Plane*, 3>& planes) {
-  const glm::dvec3& centre = planes[0]->anchor_;
-  const Meeting<Number> meeting(
-      {planes[0]->in_full<Number>(centre), planes[1]->in_full<Number>(centre), planes[2]->in_full<Number>(centre)});
-  Approximate point{centre, 0};
+Approximate Plane::long_meeting(const std::array<Plane, 3>& planes) {
+  const Meeting<Number> meeting(planes);
+  Approximate point{planes[0].anchor_, 0};
   for (int axis = 0; axis < 3; ++axis) {
     const Bounded from_centre = quotient(bounded_of(meeting.times[std::size_t(axis)]), bounded_of(meeting.determinant));
     point.at[axis] += from_centre.value;
@@ -133,7 +129,7 @@ Approximate Plane::long_meeting(const std::array<const Plane*, 3>& planes) {
   return point;
 }
 
-Approximate Plane::closest_meeting(const std::array<const Plane*, 3>& planes, double error) {
+Approximate Plane::closest_meeting(const std::array<Plane, 3>& planes, double error) {
   const Approximate twice = long_meeting<Twice>(planes);
   return twice.error <= error ? twice : long_meeting<Expansion>(planes);
 }

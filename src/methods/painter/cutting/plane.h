@@ -37,11 +37,8 @@ class Twice {
     return {value_.high + value_.low,
             is_within_range ? size_ * 1.6e-28 : std::numeric_limits<double>::infinity()};  // 2^-92
   }
-  /// Returns the sign, or 2 if the error leaves it open.
-  [[nodiscard]] int certain_sign() const {
-    const Bounded rounded = bounded();
-    return rounded.value > rounded.error ? 1 : rounded.value < -rounded.error ? -1 : 2;
-  }
+  /// The sign, or 2 if the error leaves it open.
+  [[nodiscard]] int certain_sign() const { return frontmost::certain_sign(bounded()); }
 
   friend Twice operator+(const Twice& a, const Twice& b) {
     return {detail::sum(a.value_, b.value_), a.size_ + b.size_};
@@ -112,12 +109,15 @@ class Plane {
                                      double error) const;
 
   /// The point where three planes meet.
-  [[nodiscard]] static Approximate meeting(const std::array<const Plane*, 3>& planes);
+  [[nodiscard]] static Approximate meeting(const std::array<Plane, 3>& planes);
   /// The point where three planes meet, to within `error` or as near as doubles are, whatever the angles. Slow.
   /// Precondition: the planes meet in one point.
-  [[nodiscard]] static Approximate closest_meeting(const std::array<const Plane*, 3>& planes, double error);
+  [[nodiscard]] static Approximate closest_meeting(const std::array<Plane, 3>& planes, double error);
   /// The side of the point where three planes meet, exactly. Precondition: the planes meet in one point.
-  [[nodiscard]] int side_of_meeting(const std::array<const Plane*, 3>& planes) const;
+  [[nodiscard]] int side_of_meeting(const std::array<Plane, 3>& planes) const;
+  /// The plane in numbers of this kind, relative to the anchor of another plane.
+  template <class Number>
+  [[nodiscard]] LongPlane<Number> in_full(const Plane& other) const;
 
  private:
   [[nodiscard]] int side_by_hand(const glm::dvec3& x) const;
@@ -126,14 +126,11 @@ class Plane {
     const auto is_same_leg = [](const Leg& a, const Leg& b) { return a.to == b.to && a.from == b.from; };
     return anchor_ == other.anchor_ && is_same_leg(u_, other.u_) && is_same_leg(v_, other.v_);
   }
-  /// Returns the plane in numbers of this kind, relative to `centre`.
+  /// side_of_meeting(), or 2 if numbers of this kind leave it open.
   template <class Number>
-  [[nodiscard]] LongPlane<Number> in_full(const glm::dvec3& centre) const;
-  /// Returns side_of_meeting(), or 2 if numbers of this kind leave it open.
+  [[nodiscard]] int sign_of_meeting(const std::array<Plane, 3>& planes) const;
   template <class Number>
-  [[nodiscard]] int sign_of_meeting(const std::array<const Plane*, 3>& planes) const;
-  template <class Number>
-  [[nodiscard]] static Approximate long_meeting(const std::array<const Plane*, 3>& planes);
+  [[nodiscard]] static Approximate long_meeting(const std::array<Plane, 3>& planes);
 
   glm::dvec3 anchor_;
   Leg u_, v_;

@@ -28,34 +28,7 @@ std::uint32_t falling_key(float depth) {
   return bits >> 31 ? bits : ~bits & 0x7fffffff;
 }
 
-/// Sorts by a depth of each piece, the greatest first; equal depths by id, the greatest first, then by number. Bits of
-/// depths are turned into integers, so a radix sort of (depth, piece) needs no comparison. Runs of equal depths are
-/// short in most scenes.
-template <class Depth>
-void sort_by_depth(const Pieces& pieces, std::vector<std::uint32_t>& members, const Depth& depth,
-                   const Execution& execution) {
-  constexpr std::size_t few = 2048;  // counting digits does not pay for fewer pieces
-  Buffer<std::uint64_t> items(members.size());
-  for (std::size_t i = 0; i < items.size(); ++i)
-    items[i] = std::uint64_t(falling_key(depth(members[i]))) << 32 | members[i];
-  if (items.size() < few) {
-    std::sort(items.begin(), items.end());
-  } else {
-    items = radix_sort(std::move(items), 32, execution);
-  }
-  const auto is_before = [&](std::uint64_t a, std::uint64_t b) {
-    const PrimitiveId id_a = pieces.face(std::uint32_t(a)).id, id_b = pieces.face(std::uint32_t(b)).id;
-    return id_a != id_b ? id_a > id_b : std::uint32_t(a) < std::uint32_t(b);
-  };
-  for (std::size_t begin = 0, end; begin < items.size(); begin = end) {
-    for (end = begin + 1; end < items.size() && items[end] >> 32 == items[begin] >> 32;) ++end;
-    if (end > begin + 1) std::sort(items.begin() + begin, items.begin() + end, is_before);
-  }
-  for (std::size_t i = 0; i < items.size(); ++i) members[i] = std::uint32_t(items[i]);
-}
-
-/// Tests whether piece P covers piece Q. The tests go from the cheapest to the most expensive, and the first test that
-/// decides ends them:
+/// One piece, prepared for tests against others, from the cheapest to the dearest test, each of which may decide:
 ///
 ///    1. P lies wholly behind the plane of Q:        P does not cover Q
 ///    2. Q lies wholly in front of the plane of P:   P does not cover Q
@@ -174,15 +147,15 @@ class Search {
         lowest_(members.size(), 0),
         asked_by_(members.size(), no_index) {}
 
-  void visit_all(bool reports) {
+  Groups visit_all(bool reports) {
     groups_.pieces.reserve(members_.size());
     for (std::uint32_t i = 0; i < members_.size(); ++i) {
       if (found_[i] == kNotFound) visit(i);
       if (reports && i % kReportEvery == 0)
         report_progress(poll_.execution(), "painter", 0.2 + 0.7 * double(i) / double(members_.size()));
     }
+    return std::move(groups_);
   }
-  [[nodiscard]] Groups take() { return std::move(groups_); }
 
  private:
   static constexpr std::uint32_t kNotFound = no_index, kPainted = no_index - 1;
@@ -223,15 +196,15 @@ class Search {
     found_[member] = lowest_[member] = count_++;
     open_.push_back(member);
     const PieceGrid::Range cells = grid_.range(extents_[member]);
-    waiting_.push_back({member, cells, cells.first_x, cells.first_y, 0});
+    waiting_.push_back({member, cells, cells.first.x, cells.first.y, 0});
   }
 
   /// Returns the next piece that must be painted before w.member and was not found yet, or no_index if there are no
   /// more.
   std::uint32_t next_covered(Waiting& w) {
     std::optional<NewellTests> tests;
-    for (; w.y <= w.cells.last_y; ++w.y, w.x = w.cells.first_x)
-      for (; w.x <= w.cells.last_x; ++w.x, w.entry = 0) {
+    for (; w.y <= w.cells.last.y; ++w.y, w.x = w.cells.first.x)
+      for (; w.x <= w.cells.last.x; ++w.x, w.entry = 0) {
         const std::uint32_t next = next_in_cell(w, tests);
         if (next != no_index) return next;
       }
@@ -333,23 +306,35 @@ class Search {
 
 }  // namespace
 
-void sort_by_nearest(const Pieces& pieces, std::vector<std::uint32_t>& members, const Execution& execution) {
-  sort_by_depth(
-      pieces, members, [&](std::uint32_t piece) { return pieces.extent(piece).nearest; }, execution);
-}
-
-void sort_by_farthest(const Pieces& pieces, std::vector<std::uint32_t>& members, const Execution& execution) {
-  sort_by_depth(
-      pieces, members, [&](std::uint32_t piece) { return pieces.extent(piece).farthest; }, execution);
+/// Bits of depths are turned into integers, so a radix sort of (depth, piece) needs no comparison. Runs of equal depths
+/// are short in most scenes.
+void sort_by_depth(const Pieces& pieces, std::vector<std::uint32_t>& members, float PolygonExtent::*depth,
+                   const Execution& execution) {
+  constexpr std::size_t few = 2048;  // counting digits does not pay for less
+  Buffer<std::uint64_t> items(members.size());
+  for (std::size_t i = 0; i < items.size(); ++i)
+    items[i] = std::uint64_t(falling_key(pieces.extent(members[i]).*depth)) << 32 | members[i];
+  if (items.size() < few) {
+    std::sort(items.begin(), items.end());
+  } else {
+    items = radix_sort(std::move(items), 32, execution);
+  }
+  const auto is_before = [&](std::uint64_t a, std::uint64_t b) {
+    const PrimitiveId id_a = pieces.face(std::uint32_t(a)).id, id_b = pieces.face(std::uint32_t(b)).id;
+    return id_a != id_b ? id_a > id_b : std::uint32_t(a) < std::uint32_t(b);
+  };
+  for (std::size_t begin = 0, end; begin < items.size(); begin = end) {
+    for (end = begin + 1; end < items.size() && items[end] >> 32 == items[begin] >> 32;) ++end;
+    if (end > begin + 1) std::sort(items.begin() + begin, items.begin() + end, is_before);
+  }
+  for (std::size_t i = 0; i < items.size(); ++i) members[i] = std::uint32_t(items[i]);
 }
 
 Groups depth_sort(const Pieces& pieces, const std::vector<std::uint32_t>& members, bool is_all, PaintSteps& steps,
                   Poll& poll) {
   std::vector<std::uint32_t> sorted = members;
-  sort_by_farthest(pieces, sorted, poll.execution());
-  Search search(pieces, sorted, steps, poll);
-  search.visit_all(is_all);
-  return search.take();
+  sort_by_depth(pieces, sorted, &PolygonExtent::farthest, poll.execution());
+  return Search(pieces, sorted, steps, poll).visit_all(is_all);
 }
 
 }  // namespace frontmost::painter_detail

@@ -107,28 +107,15 @@ class SharedLine {
   double rounding_;
 };
 
-/// Pseudo-random numbers below a limit, the same in every run.
-class Picker {
- public:
-  explicit Picker(std::size_t count) : count_(count) {}
-  std::size_t next() {
-    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
-    return std::size_t(state_ >> 33) % count_;
-  }
-
- private:
-  std::size_t count_;
-  std::uint64_t state_ = 1;
-};
-
-/// Returns a low estimate of the share of a cut that falls to one pair: pairs that meet in the same line share cuts.
+/// The share of a cut that falls to one of the pairs that meet in a line, estimated low.
+template <class Pick>
 double cuts_of_pair(const Pieces& pieces, const std::vector<std::uint32_t>& members, const SharedLine& line,
-                    Picker& picker) {
+                    Pick& pick) {
   const std::size_t count = members.size();
   const bool is_all = count <= kOthers;
   std::size_t found = 0;
   for (std::size_t k = 0; k < std::min(count, kOthers); ++k)
-    found += line.may_be_in_plane_of(pieces.face(members[is_all ? k : picker.next()]));
+    found += line.may_be_in_plane_of(pieces.face(is_all ? members[k] : pick()));
   const double sharing = is_all ? double(found) : (double(found) + kUnseen) * double(count) / kOthers;
   return 2 / std::max(2.0, sharing);
 }
@@ -146,9 +133,8 @@ Partition part(Pieces& pieces, const std::vector<std::uint32_t>& members, PaintS
     const Sides sides = pieces.sides(piece, plane);
     poll.count(sides.both() ? kStepsPerCut : 1);
     if (sides.both()) {
-      const Pieces::Halves halves = pieces.cut(piece, number);
-      partition.before.push_back(halves.front);
-      partition.behind.push_back(halves.back);
+      partition.before.push_back(piece);
+      partition.behind.push_back(pieces.cut(piece, number));
       ++steps.cuts;
     } else {
       (sides.front ? partition.before : sides.back ? partition.behind : partition.within).push_back(piece);
@@ -166,14 +152,18 @@ Partition part(Pieces& pieces, const std::vector<std::uint32_t>& members, PaintS
 double least_cuts(const Pieces& pieces, const std::vector<std::uint32_t>& members, Poll& poll) {
   constexpr std::size_t tests_per_step = 8;
   const auto count = double(members.size());
-  Picker picker(members.size());
+  // Some members, the same in every run.
+  auto pick = [&, state = std::uint64_t(1)]() mutable {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return members[std::size_t(state >> 33) % members.size()];
+  };
   double sum = 0, squares = 0;
   for (std::size_t i = 0; i < kPairs; ++i) {
     poll.count(tests_per_step);
-    const std::uint32_t a = members[picker.next()], b = members[picker.next()];
+    const std::uint32_t a = pick(), b = pick();
     if (!pieces.is_whole(a) || !pieces.is_whole(b) || !pass_through(pieces.face(a), pieces.face(b))) continue;
     poll.count(std::min(members.size(), kOthers) / tests_per_step);
-    const double cuts = cuts_of_pair(pieces, members, {pieces.face(a), pieces.face(b)}, picker);
+    const double cuts = cuts_of_pair(pieces, members, {pieces.face(a), pieces.face(b)}, pick);
     sum += cuts;
     squares += cuts * cuts;
   }

@@ -40,8 +40,8 @@ PieceGrid::PieceGrid(const std::vector<PolygonExtent>& extents) {
   choose_cells(extents);
   const auto list = [&](std::size_t i, const auto& add) {
     const Range r = range(extents[i]);
-    for (int y = r.first_y; y <= r.last_y; ++y)
-      for (int x = r.first_x; x <= r.last_x; ++x) add(number(x, y), std::uint32_t(i));
+    for (int y = r.first.y; y <= r.last.y; ++y)
+      for (int x = r.first.x; x <= r.last.x; ++x) add(number(x, y), std::uint32_t(i));
   };
   cells_ = {std::size_t(columns_.x) * std::size_t(columns_.y), extents.size(), list, {.threads = 1}};
 }

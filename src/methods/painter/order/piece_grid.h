@@ -31,10 +31,11 @@ class PieceGrid {
 
   /// The cells that a box touches, from the first to the last on each axis.
   struct Range {
-    int first_x, last_x, first_y, last_y;
+    glm::ivec2 first, last;
+    [[nodiscard]] int count() const { return (last.x - first.x + 1) * (last.y - first.y + 1); }
   };
   [[nodiscard]] Range range(const PolygonExtent& extent) const {
-    return {index(extent.low.x, 0), index(extent.high.x, 0), index(extent.low.y, 1), index(extent.high.y, 1)};
+    return {{index(extent.low.x, 0), index(extent.low.y, 1)}, {index(extent.high.x, 0), index(extent.high.y, 1)}};
   }
   [[nodiscard]] std::size_t number(int x, int y) const {
     return std::size_t(y) * std::size_t(columns_[0]) + std::size_t(x);

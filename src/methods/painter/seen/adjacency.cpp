@@ -171,9 +171,11 @@ class Finder {
   bool find_open_sides() {
     std::size_t sides = 0;
     for (std::size_t slot = 0; slot < screen_.count(); ++slot) {
-      state_[slot] = is_there(slot) && is_in_picture(slot) ? State::unknown : State::crossed;
-      if (!is_there(slot)) continue;
       const Outline outline = screen_.outline(slot);
+      // The grid's cells do not list open sides beyond the picture.
+      const bool is_in_picture = is_in_box(outline, glm::dvec2(0), screen_.size());
+      state_[slot] = is_there(slot) && is_in_picture ? State::unknown : State::crossed;
+      if (!is_there(slot)) continue;
       const std::size_t first = screen_.first_corner(slot);
       sides += outline.size();
       for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -185,26 +187,17 @@ class Finder {
     return double(open_.size()) <= kMostOpen * double(sides);
   }
 
-  /// Returns whether the polygon lies wholly in the picture. The grid's cells do not list open sides outside the
-  /// picture.
-  [[nodiscard]] bool is_in_picture(std::size_t slot) const {
-    const Outline outline = screen_.outline(slot);
-    return std::all_of(outline.begin(), outline.end(), [&](const PaintCorner& corner) {
-      return corner.at.x >= 0 && corner.at.y >= 0 && corner.at.x <= screen_.size().x && corner.at.y <= screen_.size().y;
-    });
-  }
-
   void mark_near(const OpenSide& side) {
     const glm::dvec2 low = glm::min(side.from, side.to) - 2 * OutlineClipper::thin,
                      high = glm::max(side.from, side.to) + 2 * OutlineClipper::thin;
     const PieceGrid& grid = screen_.grid();
     const PieceGrid::Range all = grid.range({glm::vec2(low), glm::vec2(high), 0, 0});
-    for (int y = all.first_y; y <= all.last_y; ++y) {
-      const PieceGrid::Box row = grid.box(all.first_x, y);
+    for (int y = all.first.y; y <= all.last.y; ++y) {
+      const PieceGrid::Box row = grid.box(all.first.x, y);
       const auto [row_low, row_high] =
           part_of(side, row.low.y - 2 * OutlineClipper::thin, row.high.y + 2 * OutlineClipper::thin);
       const PieceGrid::Range cells = grid.range({{float(row_low), 0}, {float(row_high), 0}, 0, 0});
-      for (int x = cells.first_x; x <= cells.last_x; ++x) mark_near(side, low, high, screen_.cell(x, y));
+      for (int x = cells.first.x; x <= cells.last.x; ++x) mark_near(side, low, high, screen_.cell(x, y));
     }
   }
 

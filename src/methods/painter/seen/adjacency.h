@@ -115,12 +115,12 @@ class OccluderUnion {
     open,     ///< not hidden at open_at()
     unknown,  ///< there are too many occluders
   };
-  /// Selects the outline to test.
-  void set(Outline outline) { outline_.set(outline); }
-  /// Grows from the slot `first`, which hides a point of the outline. hiders.may_hide(slot) says whether a polygon is
-  /// an occluder of the outline. hiders.at(place) gives the slot of an occluder at a place, or no_index.
+  /// Tests an outline. Grows from the slot `first`, which hides a point of the outline. hiders.may_hide(slot) says
+  /// whether a polygon is an occluder of the outline. hiders.at(place) gives the slot of an occluder at a place, or
+  /// no_index.
   template <class Hiders>
-  Found spread(std::uint32_t first, const Hiders& hiders) {
+  Found spread(Outline outline, std::uint32_t first, Hiders& hiders) {
+    outline_.set(outline);
     if (++turn_ == 0) {
       std::fill(asked_.begin(), asked_.end(), 0);
       turn_ = 1;
@@ -166,9 +166,8 @@ class OccluderUnion {
   /// Looks, step by step, for occluders beyond a side of found_[number] that has no neighbour: in meshes that were cut,
   /// a side may lie beside two others.
   template <class Hiders>
-  Found step_along(const glm::dvec2& a, const glm::dvec2& b, std::size_t number, const Hiders& hiders) {
-    // Polygons hide points up to OutlineClipper::thin beside them, so points twice as far out are certainly beyond the
-    // side.
+  Found step_along(const glm::dvec2& a, const glm::dvec2& b, std::size_t number, Hiders& hiders) {
+    // Polygons hide points up to OutlineClipper::thin beside them: points this far out are certainly not on the side.
     const glm::dvec2 way = b - a, out = glm::dvec2(-way.y, way.x) * (2 * OutlineClipper::thin / glm::length(way));
     const glm::dvec2 from = a + out;
     const CoveredOutline::Crossing crossing = outline_.crossing(from, b + out);

@@ -7,6 +7,7 @@
 // which a polygon stays visible.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -52,27 +53,12 @@ inline constexpr double shortest_side = 1e-9;
   return true;
 }
 
-/// Outlines one after another in one block of memory.
-class OutlineList {
- public:
-  [[nodiscard]] std::size_t count() const { return ends_.size(); }
-  [[nodiscard]] Outline operator[](std::size_t i) const {
-    const std::size_t begin = i == 0 ? 0 : ends_[i - 1];
-    return {corners_.data() + begin, ends_[i] - begin};
-  }
-  void clear() {
-    corners_.clear();
-    ends_.clear();
-  }
-  void add(Outline outline) {
-    corners_.insert(corners_.end(), outline.begin(), outline.end());
-    ends_.push_back(corners_.size());
-  }
-
- private:
-  std::vector<PaintCorner> corners_;
-  std::vector<std::size_t> ends_;
-};
+/// Whether all corners are within a box, or on its border.
+[[nodiscard]] inline bool is_in_box(Outline outline, const glm::dvec2& low, const glm::dvec2& high) {
+  return std::all_of(outline.begin(), outline.end(), [&](const PaintCorner& corner) {
+    return corner.at.x >= low.x && corner.at.y >= low.y && corner.at.x <= high.x && corner.at.y <= high.y;
+  });
+}
 
 /// Clips convex outlines by other outlines. All are counter-clockwise to the eye, with z affine over the screen. Covers
 /// must not be flat. Not for several threads at once.

@@ -59,7 +59,7 @@ std::vector<std::uint32_t> slots_of(const std::vector<PolygonExtent>& extents, c
   std::vector<std::uint32_t> next(grid.cell_count() + 1, 0);
   for (const PolygonExtent& extent : extents) {
     const PieceGrid::Range cells = grid.range(extent);
-    slots.push_back(std::uint32_t(grid.number(cells.first_x, cells.first_y)));
+    slots.push_back(std::uint32_t(grid.number(cells.first.x, cells.first.y)));
     ++next[slots.back() + 1];
   }
   for (std::size_t cell = 1; cell < next.size(); ++cell) next[cell] += next[cell - 1];
@@ -69,11 +69,14 @@ std::vector<std::uint32_t> slots_of(const std::vector<PolygonExtent>& extents, c
 
 }  // namespace
 
-/// Takes polygons by their places: `extents` are their boxes, describe(place) returns a Description, and copy(place,
+/// Takes polygons by their places: extent_of(place) is the box, describe(place) returns a Description, and copy(place,
 /// corners) sets the corners.
-template <class Describe, class Copy>
-void ScreenPolygons::take(const std::vector<PolygonExtent>& extents, const Describe& describe, const Copy& copy) {
-  slots_ = Buffer<Slot>(extents.size());
+template <class ExtentOf, class Describe, class Copy>
+void ScreenPolygons::take(std::size_t count, const ExtentOf& extent_of, const Describe& describe, const Copy& copy) {
+  std::vector<PolygonExtent> extents;
+  extents.reserve(count);
+  for (std::size_t place = 0; place < count; ++place) extents.push_back(extent_of(place));
+  slots_ = Buffer<Slot>(count);
   grid_ = PieceGrid(extents);
   slot_of_ = slots_of(extents, grid_);
   std::uint32_t first_place = 0, group = 0;
@@ -87,7 +90,7 @@ void ScreenPolygons::take(const std::vector<PolygonExtent>& extents, const Descr
   std::vector<std::size_t> far_slots;
   for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
     copy(slots_[slot].place, corners_.data() + slots_[slot].first_corner);
-    if (!is_within_reach(outline(slot))) far_slots.push_back(slot);
+    if (!is_in_box(outline(slot), glm::dvec2(-kReach), size_ + kReach)) far_slots.push_back(slot);
   }
   if (!far_slots.empty()) cut_at_reach(far_slots);
   for (std::size_t slot = 0; slot < slots_.size(); ++slot)
@@ -97,20 +100,17 @@ void ScreenPolygons::take(const std::vector<PolygonExtent>& extents, const Descr
 
 ScreenPolygons::ScreenPolygons(const PaintOrder& order, const Occluders& occluders)
     : size_(order.view.width, order.view.height) {
-  const auto corners_of = [&](const PaintPolygon& polygon) {
-    return Outline(order.corners.data() + polygon.first_corner, polygon.corner_count);
+  const auto outline_of = [&](std::size_t place) {
+    return Outline(order.corners.data() + order.polygons[place].first_corner, order.polygons[place].corner_count);
   };
-  std::vector<PolygonExtent> extents;
-  extents.reserve(order.polygons.size());
-  for (const PaintPolygon& polygon : order.polygons) extents.push_back(extent_within(size_, corners_of(polygon)));
   take(
-      extents,
+      order.polygons.size(), [&](std::size_t place) { return extent_within(size_, outline_of(place)); },
       [&](std::size_t place) {
         const PaintPolygon& polygon = order.polygons[place];
         return Description{polygon.id, polygon.corner_count, occluders.contain(polygon.id)};
       },
       [&](std::size_t place, PaintCorner* corners) {
-        for (const PaintCorner& from : corners_of(order.polygons[place]))
+        for (const PaintCorner& from : outline_of(place))
           *corners++ = {{from.at.x, from.at.y, affine_depth(order.view, from.at.z)}, from.is_cut};
       });
 }
@@ -118,11 +118,8 @@ ScreenPolygons::ScreenPolygons(const PaintOrder& order, const Occluders& occlude
 ScreenPolygons::ScreenPolygons(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view,
                                const Occluders& occluders)
     : size_(view.width, view.height) {
-  std::vector<PolygonExtent> extents;
-  extents.reserve(members.size());
-  for (const std::uint32_t piece : members) extents.push_back(pieces.extent(piece));
   take(
-      extents,
+      members.size(), [&](std::size_t place) { return pieces.extent(members[place]); },
       [&](std::size_t place) {
         const PrimitiveId id = pieces.face(members[place]).id;
         return Description{id, pieces.corner_count(members[place]), occluders.contain(id)};
@@ -136,11 +133,8 @@ ScreenPolygons::ScreenPolygons(const Pieces& pieces, const std::vector<std::uint
 
 ScreenPolygons::ScreenPolygons(std::span<const ScreenPolygon> polygons, const View& view)
     : size_(view.width, view.height) {
-  std::vector<PolygonExtent> extents;
-  extents.reserve(polygons.size());
-  for (const ScreenPolygon& polygon : polygons) extents.push_back(extent_within(size_, polygon.corners));
   take(
-      extents,
+      polygons.size(), [&](std::size_t place) { return extent_within(size_, polygons[place].corners); },
       [&](std::size_t place) {
         const ScreenPolygon& polygon = polygons[place];
         return Description{polygon.group, std::uint32_t(polygon.corners.size()), polygon.is_occluder};
@@ -157,13 +151,6 @@ void ScreenPolygons::make_room() {
     corners += slot.corner_count;
   }
   corners_ = Buffer<PaintCorner>(corners);
-}
-
-bool ScreenPolygons::is_within_reach(Outline outline) const {
-  return std::all_of(outline.begin(), outline.end(), [&](const PaintCorner& corner) {
-    const glm::dvec2 at(corner.at);
-    return glm::all(glm::greaterThanEqual(at, glm::dvec2(-kReach))) && glm::all(glm::lessThanEqual(at, size_ + kReach));
-  });
 }
 
 void ScreenPolygons::cut_at_reach(const std::vector<std::size_t>& far_slots) {

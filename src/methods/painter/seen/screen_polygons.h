@@ -75,7 +75,7 @@ class ScreenPolygons {
   [[nodiscard]] std::span<const std::uint32_t> cell(int x, int y) const { return grid_.cell(grid_.number(x, y)); }
   [[nodiscard]] std::span<const std::uint32_t> cell_at(const glm::dvec2& at) const {
     const PieceGrid::Range cells = grid_.range({glm::vec2(at), glm::vec2(at), 0, 0});
-    return cell(cells.first_x, cells.first_y);
+    return cell(cells.first.x, cells.first.y);
   }
   [[nodiscard]] glm::dvec2 size() const { return size_; }
 
@@ -88,16 +88,15 @@ class ScreenPolygons {
   };
   /// Makes room for the corners of all slots.
   void make_room();
-  [[nodiscard]] bool is_within_reach(Outline outline) const;
-  /// Cuts outlines that reach so far beyond the picture that doubles lose precision in it.
+  /// Cuts outlines that reach so far beyond the picture that doubles lose places in it.
   void cut_at_reach(const std::vector<std::size_t>& far_slots);
   /// A polygon's data other than its corners. Consecutive polygons with the same group number are one group.
   struct Description {
     std::uint32_t group, corner_count;
     bool is_occluder;
   };
-  template <class Describe, class Copy>
-  void take(const std::vector<PolygonExtent>& extents, const Describe& describe, const Copy& copy);
+  template <class ExtentOf, class Describe, class Copy>
+  void take(std::size_t count, const ExtentOf& extent_of, const Describe& describe, const Copy& copy);
 
   const glm::dvec2 size_;
   PieceGrid grid_;

@@ -27,28 +27,6 @@ constexpr double kNarrowest = 1.0 / 16;
 /// stack of n planes that each leave a sliver of the next takes n * n steps.
 constexpr std::size_t kMostCovers = 4096;
 
-/// The cells in two halves along the longer axis.
-struct Halves {
-  int axis;
-  PieceGrid::Range low, high;
-};
-Halves halve(const PieceGrid::Range& cells) {
-  const int columns = cells.last_x - cells.first_x + 1, rows = cells.last_y - cells.first_y + 1;
-  Halves halves{columns >= rows ? 0 : 1, cells, cells};
-  if (halves.axis == 0) {
-    halves.low.last_x = cells.first_x + columns / 2 - 1;
-    halves.high.first_x = halves.low.last_x + 1;
-  } else {
-    halves.low.last_y = cells.first_y + rows / 2 - 1;
-    halves.high.first_y = halves.low.last_y + 1;
-  }
-  return halves;
-}
-
-bool is_few(const PieceGrid::Range& cells) {
-  return (cells.last_x - cells.first_x + 1) * (cells.last_y - cells.first_y + 1) <= kFewCells;
-}
-
 /// Clips one polygon after another. Not for several threads at once.
 class OcclusionClipper {
  public:
@@ -63,73 +41,107 @@ class OcclusionClipper {
   /// Returns whether the polygon in a slot is wholly hidden. Also false if the answer would take long. Most polygons
   /// are not hidden, and a look at their middle suffices.
   [[nodiscard]] bool is_hidden(std::size_t slot) {
+    slot_ = slot;
     cutter_.begin(screen_.outline(slot));
     cutter_.keep_within(glm::dvec2(0), screen_.size());
     if (cutter_.count() == 0) return false;
     const Outline outline = cutter_[0];
     glm::dvec2 middle(0);
     for (const PaintCorner& corner : outline) middle += glm::dvec2(corner.at) / double(outline.size());
-    const std::uint32_t hider = hider_at(slot, middle);
+    const std::uint32_t hider = at(middle);
     if (hider == no_index) return false;
-    const OccluderUnion::Found found = spread(slot, outline, hider, middle);
-    if (found != OccluderUnion::Found::unknown) return found == OccluderUnion::Found::hidden;
+    // The hider may have been found for a point next to the middle.
+    if (is_within(screen_.outline(hider), middle, 0)) {
+      const OccluderUnion::Found found = union_.spread(outline, hider, *this);
+      if (found != OccluderUnion::Found::unknown) return found == OccluderUnion::Found::hidden;
+    }
     const PolygonExtent& extent = screen_.extent(slot);
     const PieceGrid::Range cells = screen_.grid().range(extent);
-    return is_few(cells) && take_covers(slot, extent, cells);
+    return cells.count() <= kFewCells && take_covers(extent, cells);
   }
 
-  /// Returns the visible parts of the polygon in a slot; valid until the next call.
-  [[nodiscard]] const OutlineList& clip(std::size_t slot) {
-    seen_.clear();
+  // The questions that OccluderUnion asks.
+
+  /// Whether a polygon may hide things behind or beside the polygon of is_hidden().
+  [[nodiscard]] bool may_hide(std::uint32_t other) {
+    poll_.count();
+    return screen_.place(other) >= screen_.first_place(slot_) && other != slot_ && hides(other);
+  }
+  /// The slot of a polygon that hides a point, or points next to it; no_index: none.
+  [[nodiscard]] std::uint32_t at(const glm::dvec2& place) {
+    const std::uint32_t first_place = screen_.first_place(slot_);
+    const std::span<const std::uint32_t> cell = screen_.cell_at(place);
+    for (std::size_t i = cell.size(); i-- > 0 && screen_.place(cell[i]) >= first_place;) {
+      const std::uint32_t other = cell[i];
+      if (other == slot_) continue;
+      poll_.count();
+      const PolygonExtent& e = screen_.extent(other);
+      if (place.x >= e.low.x && place.x <= e.high.x && place.y >= e.low.y && place.y <= e.high.y &&
+          is_within(screen_.outline(other), place, OutlineClipper::thin) && hides(other))
+        return other;
+    }
+    return no_index;
+  }
+
+  /// Calls see(outline) for the visible parts of the polygon in a slot.
+  template <class See>
+  void clip(std::size_t slot, const See& see) {
+    slot_ = slot;
     const PolygonExtent& extent = screen_.extent(slot);
-    if (!(extent.low.x < extent.high.x && extent.low.y < extent.high.y)) return seen_;
+    if (!(extent.low.x < extent.high.x && extent.low.y < extent.high.y)) return;
     const PieceGrid::Range cells = screen_.grid().range(extent);
     cutter_.begin(screen_.outline(slot));
     cutter_.keep_within(glm::dvec2(0), screen_.size());
-    if (cutter_.count() == 0) return seen_;
-    if (is_few(cells)) {
-      if (is_all_seen_at_once(slot, extent, cells)) seen_.add(cutter_[0]);
-      return seen_;
+    if (cutter_.count() == 0) return;
+    if (cells.count() <= kFewCells) {
+      if (is_all_seen_at_once(extent, cells, see)) see(cutter_[0]);
+      return;
     }
     const Corners whole(cutter_[0].begin(), cutter_[0].end());
-    if (is_all_seen(slot, whole, cells)) seen_.add(whole);
-    return seen_;
+    if (is_all_seen(whole, cells, see)) see(whole);
   }
 
  private:
   using Corners = std::vector<PaintCorner>;
 
-  /// Clips the part of a polygon that lies in some cells, and adds the visible parts to seen_. \returns true if all of
-  /// it is visible; nothing is added then.
-  bool is_all_seen(std::size_t slot, const Corners& outline, const PieceGrid::Range& cells) {
-    if (is_few(cells)) {
+  /// Clips the part of a polygon that lies in some cells, and calls see() for the visible parts. \returns true if all
+  /// of it is visible; see() is not called then.
+  template <class See>
+  bool is_all_seen(const Corners& outline, const PieceGrid::Range& cells, const See& see) {
+    if (cells.count() <= kFewCells) {
       cutter_.begin(outline);
-      return is_all_seen_at_once(slot, box_of(outline), cells);
+      return is_all_seen_at_once(box_of(outline), cells, see);
     }
-    const auto [axis, low, high] = halve(cells);
+    // Halves along the longer axis.
+    const glm::ivec2 count = cells.last - cells.first + 1;
+    const int axis = count.x >= count.y ? 0 : 1;
+    PieceGrid::Range low = cells, high = cells;
+    low.last[axis] = cells.first[axis] + count[axis] / 2 - 1;
+    high.first[axis] = low.last[axis] + 1;
     glm::dvec2 low_end = screen_.size(), high_begin(0);
-    low_end[axis] = high_begin[axis] = screen_.grid().box(high.first_x, high.first_y).low[axis];
+    low_end[axis] = high_begin[axis] = screen_.grid().box(high.first.x, high.first.y).low[axis];
     const Corners low_part = part_within(outline, glm::dvec2(0), low_end),
                   high_part = part_within(outline, high_begin, screen_.size());
-    const bool sees_low = low_part.empty() || is_all_seen(slot, low_part, low);
-    const bool sees_high = high_part.empty() || is_all_seen(slot, high_part, high);
+    const bool sees_low = low_part.empty() || is_all_seen(low_part, low, see);
+    const bool sees_high = high_part.empty() || is_all_seen(high_part, high, see);
     if (sees_low && sees_high) return true;
-    if (sees_low && !low_part.empty()) seen_.add(low_part);
-    if (sees_high && !high_part.empty()) seen_.add(high_part);
+    if (sees_low && !low_part.empty()) see(low_part);
+    if (sees_high && !high_part.empty()) see(high_part);
     return false;
   }
   /// is_all_seen() for the outline in the cutter, if it lies in few cells.
-  bool is_all_seen_at_once(std::size_t slot, const PolygonExtent& own, const PieceGrid::Range& cells) {
+  template <class See>
+  bool is_all_seen_at_once(const PolygonExtent& own, const PieceGrid::Range& cells, const See& see) {
     cutter_.forget_changes();
     const Corners whole(cutter_[0].begin(), cutter_[0].end());
-    take_covers(slot, own, cells);
+    take_covers(own, cells);
     if (!cutter_.is_changed()) return true;
     for (std::size_t i = 0; i < cutter_.count(); ++i)
       if (is_narrow(cutter_[i], kNarrowest)) {
-        seen_.add(whole);
+        see(whole);
         return false;
       }
-    for (std::size_t i = 0; i < cutter_.count(); ++i) seen_.add(cutter_[i]);
+    for (std::size_t i = 0; i < cutter_.count(); ++i) see(cutter_[i]);
     return false;
   }
   Corners part_within(const Corners& outline, const glm::dvec2& low, const glm::dvec2& high) {
@@ -137,54 +149,20 @@ class OcclusionClipper {
     cutter_.keep_within(low, high);
     return cutter_.count() == 0 ? Corners() : Corners(cutter_[0].begin(), cutter_[0].end());
   }
-  /// The polygons that may hide the polygon in a slot, as OccluderUnion::spread() asks for them.
-  struct Hiders {
-    OcclusionClipper& clipper;
-    std::size_t slot;
-
-    [[nodiscard]] bool may_hide(std::uint32_t other) const {
-      clipper.poll_.count();
-      const ScreenPolygons& screen = clipper.screen_;
-      return screen.place(other) >= screen.first_place(slot) && other != slot && clipper.may_hide(slot, other);
-    }
-    [[nodiscard]] std::uint32_t at(const glm::dvec2& place) const { return clipper.hider_at(slot, place); }
-  };
-  /// Returns the slot of a polygon that hides a point, or points next to it, or no_index if there is none.
-  [[nodiscard]] std::uint32_t hider_at(std::size_t slot, const glm::dvec2& at) {
-    const std::uint32_t first_place = screen_.first_place(slot);
-    const std::span<const std::uint32_t> cell = screen_.cell_at(at);
-    for (std::size_t i = cell.size(); i-- > 0 && screen_.place(cell[i]) >= first_place;) {
-      const std::uint32_t other = cell[i];
-      if (other == slot) continue;
-      poll_.count();
-      const PolygonExtent& e = screen_.extent(other);
-      if (at.x >= e.low.x && at.x <= e.high.x && at.y >= e.low.y && at.y <= e.high.y &&
-          is_within(screen_.outline(other), at, OutlineClipper::thin) && may_hide(slot, other))
-        return other;
-    }
-    return no_index;
-  }
-  /// Returns whether an outline is hidden, given that `hider` hides the point `at`.
-  OccluderUnion::Found spread(std::size_t slot, Outline outline, std::uint32_t hider, const glm::dvec2& at) {
-    // The hider may have been found for a point next to `at`.
-    if (!is_within(screen_.outline(hider), at, 0)) return OccluderUnion::Found::unknown;
-    union_.set(outline);
-    return union_.spread(hider, Hiders{*this, slot});
-  }
   /// Subtracts the later polygons in some cells from the outline in the cutter. \returns true if nothing is left.
-  bool take_covers(std::size_t slot, const PolygonExtent& own, const PieceGrid::Range& cells) {
-    const bool is_one_cell = cells.first_x == cells.last_x && cells.first_y == cells.last_y;
-    for (int y = cells.first_y; y <= cells.last_y; ++y)
-      for (int x = cells.first_x; x <= cells.last_x; ++x) {
+  bool take_covers(const PolygonExtent& own, const PieceGrid::Range& cells) {
+    const bool is_one_cell = cells.first.x == cells.last.x && cells.first.y == cells.last.y;
+    for (int y = cells.first.y; y <= cells.last.y; ++y)
+      for (int x = cells.first.x; x <= cells.last.x; ++x) {
         const std::span<const std::uint32_t> cell = screen_.cell(x, y);
         std::size_t count = 0;
         for (std::size_t i = cell.size(); i-- > 0 && count < kMostCovers;) {
           const std::uint32_t other = cell[i];
-          if (screen_.place(other) <= screen_.place(slot)) break;
+          if (screen_.place(other) <= screen_.place(slot_)) break;
           poll_.count();
           const PolygonExtent& e = screen_.extent(other);
           if (is_apart(e, own) || (!is_one_cell && !is_first_meeting(cells, e, x, y))) continue;
-          if (!may_hide(slot, other)) continue;
+          if (!hides(other)) continue;
           ++count;
           const Cover cover{screen_.outline(other), glm::dvec2(e.low), glm::dvec2(e.high)};
           poll_.count(cutter_.count());
@@ -193,14 +171,14 @@ class OcclusionClipper {
       }
     return false;
   }
-  [[nodiscard]] bool may_hide(std::size_t slot, std::size_t cover) const {
-    return screen_.is_occluder(cover) && (!is_behind_ || is_behind_(screen_.place(slot), screen_.place(cover)));
+  [[nodiscard]] bool hides(std::size_t cover) const {
+    return screen_.is_occluder(cover) && (!is_behind_ || is_behind_(screen_.place(slot_), screen_.place(cover)));
   }
   /// Returns whether (x, y) is the first of the cells in which two boxes meet. On each axis, this is the cell in which
   /// the later of the two boxes begins.
   [[nodiscard]] bool is_first_meeting(const PieceGrid::Range& cells, const PolygonExtent& cover, int x, int y) const {
     const PieceGrid::Range other = screen_.grid().range(cover);
-    return x == std::max(cells.first_x, other.first_x) && y == std::max(cells.first_y, other.first_y);
+    return x == std::max(cells.first.x, other.first.x) && y == std::max(cells.first.y, other.first.y);
   }
 
   const ScreenPolygons& screen_;
@@ -208,7 +186,7 @@ class OcclusionClipper {
   const IsBehind is_behind_;
   OccluderUnion union_;
   OutlineClipper cutter_;
-  OutlineList seen_;
+  std::size_t slot_ = 0;  ///< of the polygon that is asked about
 };
 
 /// Returns whether one piece is certainly in front of another wherever they overlap on the screen.
@@ -253,7 +231,7 @@ Unhidden without_hidden(const Pieces& pieces, const std::vector<std::uint32_t>& 
   const Execution& execution = effort.execution();
   // The nearest piece comes last, so a piece that is in front of another mostly comes after it.
   std::vector<std::uint32_t> sorted = members;
-  sort_by_nearest(pieces, sorted, execution);
+  sort_by_depth(pieces, sorted, &PolygonExtent::nearest, execution);
   const ScreenPolygons screen(pieces, sorted, view, occluders);
   const Adjacency adjacency(screen);
   const auto is_behind = [&](std::uint32_t place, std::uint32_t cover) {
@@ -292,12 +270,11 @@ VisibleParts visible_parts(const PaintOrder& order, const Occluders& occluders, 
       screen, execution, "visible parts", [&] { return std::make_unique<OcclusionClipper>(screen, adjacency, effort); },
       [&](OcclusionClipper& clipper, std::size_t slot, PartList& list) {
         const PrimitiveId id = order.polygons[screen.place(slot)].id;
-        if (is_unoverlapped[slot]) {
-          list.add(id, screen.outline(slot), order.view);
-        } else {
-          const OutlineList& seen = clipper.clip(slot);
-          for (std::size_t i = 0; i < seen.count(); ++i) list.add(id, seen[i], order.view);
-        }
+        const auto see = [&](Outline outline) { list.add(id, outline, order.view); };
+        if (is_unoverlapped[slot])
+          see(screen.outline(slot));
+        else
+          clipper.clip(slot, see);
         list.ends.push_back(list.polygons.size());
       });
   return {order.view, std::move(parts.polygons), std::move(parts.corners)};

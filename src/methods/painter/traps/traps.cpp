@@ -87,14 +87,7 @@ void write_trap(const TrapList& list, const Trap& trap, const glm::dvec2& from, 
   turn_around();
 }
 
-/// Returns whether the strips of two consecutive sides go around the corner between them: the end of the first then
-/// coincides with the beginning of the second.
-bool go_around(const Trap& first, const Trap& second, const glm::dvec2& corner) {
-  return second.at_from.reach > 0 && first.polygon == second.polygon && is_at(corner, second.from);
-}
-
-/// A polygon in more cells of the grid may have thousands of others around it, so occluders are then listed for each
-/// outline anew.
+/// A polygon in more cells of the grid may have thousands of others around it: each outline then has a list of its own.
 constexpr int kMostCells = 64;
 /// The most later polygons of a cell, from the front-most on, that are tried as covers of a polygon's surroundings.
 /// Without a limit, a stack of n planes would take n * n steps. A trap that the first 4,096 do not hide is not made.
@@ -132,7 +125,7 @@ class NearbyOccluders {
     box.low -= float(reach);
     box.high += float(reach);
     const PieceGrid::Range cells = screen_.grid().range(box);
-    is_listed_ = (cells.last_x - cells.first_x + 1) * (cells.last_y - cells.first_y + 1) <= kMostCells;
+    is_listed_ = cells.count() <= kMostCells;
     if (is_listed_) list(box);
   }
   /// Returns whether this side is shared with another polygon that has an area and hides nothing beyond the side.
@@ -175,8 +168,8 @@ class NearbyOccluders {
     hiders_.clear();
     const std::uint32_t first_place = screen_.first_place(slot_);
     const PieceGrid::Range cells = screen_.grid().range(box);
-    for (int y = cells.first_y; y <= cells.last_y; ++y)
-      for (int x = cells.first_x; x <= cells.last_x; ++x) {
+    for (int y = cells.first.y; y <= cells.last.y; ++y)
+      for (int x = cells.first.x; x <= cells.last.x; ++x) {
         const std::span<const std::uint32_t> cell = screen_.cell(x, y);
         std::size_t count = 0;
         for (std::size_t i = cell.size(); i-- > 0 && count < kMostHiders && screen_.place(cell[i]) >= first_place;) {
@@ -473,8 +466,8 @@ void write_outline(const TrapList& list, std::span<const TrappedCorner> outline,
     const std::size_t end = corners.size();
     if (trap) write_trap(list, *trap, from, to, corners);
     const bool is_written = corners.size() > end;
-    // The strips go around the corner. The corner itself, and one of their two equal ends there, are left out.
-    if (is_written && before && go_around(*before, *trap, from))
+    // Both strips go around the corner, which lies within them: the end of the first is the beginning of the second.
+    if (is_written && before && trap->at_from.reach > 0 && before->polygon == trap->polygon && is_at(from, trap->from))
       corners.erase(corners.begin() + std::ptrdiff_t(end) - 1, corners.begin() + std::ptrdiff_t(end) + 1);
     before = is_written ? trap : nullptr;
   }

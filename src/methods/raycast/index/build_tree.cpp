@@ -15,16 +15,15 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "raycast/index/build.h"
+#include "raycast/index/ray_tree.h"
 
 namespace frontmost {
 
-LeafBox box_of(const RayLeaf& leaf, std::uint32_t number) {
+Box box_of(const RayLeaf& leaf) {
   std::size_t count = kRayLanes;
   while (count > 1 && leaf.id[count - 1] == no_primitive) --count;
-  LeafBox box{};
-  box.leaf = number;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
     float low = leaf.corner[0][axis][0], high = low;
     for (std::size_t k = 0; k < 3; ++k)
       for (std::size_t lane = 0; lane < count; ++lane) {
@@ -51,33 +50,8 @@ Buffer<RayLeaf> leaves_for(std::size_t triangle_count) {
   return leaves;
 }
 
-std::uint32_t count_triangles(const ClusterSet& set, std::size_t begin, std::size_t end) {
-  std::uint32_t count = 0;
-  for (std::size_t c = begin; c < end; ++c) {
-    const Cluster& cluster = set.clusters[c];
-    const std::size_t first = cluster.first_triangle;
-    for (std::size_t t = first; t < first + cluster.triangle_count; ++t) count += !is_degenerate(set, t);
-  }
-  return count;
-}
-
-void fill(const ClusterSet& set, const Cluster& cluster, std::size_t& place, Buffer<RayLeaf>& leaves) {
-  const float* const positions[3] = {set.x.data() + cluster.first_vertex, set.y.data() + cluster.first_vertex,
-                                     set.z.data() + cluster.first_vertex};
-  const std::size_t first = cluster.first_triangle;
-  for (std::size_t t = first; t < first + cluster.triangle_count; ++t) {
-    if (is_degenerate(set, t)) continue;
-    RayLeaf& leaf = leaves[place / kRayLanes];
-    const std::size_t lane = place % kRayLanes;
-    set_corners(set, t, positions, leaf, lane);
-    leaf.id[lane] = set.id[t];
-    ++place;
-  }
-}
-
-/// Redistributes the triangles of a group of whole leaves: halves the group at the middle triangle along the longest
-/// side of the box of their centres, until sixteen triangles are left. The spatial order alone makes leaves that bend
-/// around the turns of its curve.
+/// Redistributes the triangles of a group of whole leaves: halves them by the middle triangle along the longest side of
+/// their centres' box, until sixteen are left. The spatial order alone makes leaves that bend around its turns.
 class Regrouping {
  public:
   static constexpr std::size_t kLeaves = 16;
@@ -147,38 +121,15 @@ bool is_copy(const RayTree& tree, std::size_t place) {
   return one.id[a] < again.id[b] && (tree.sides->is_double(one.id[a]) || !tree.sides->is_double(again.id[b]));
 }
 
-std::size_t count_copies(const RayTree& tree, const Execution& execution) {
-  std::atomic<std::size_t> count{0};
-  parallel_for(execution, tree.triangle_count, kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
-    std::size_t here = 0;
-    for (std::size_t i = std::max<std::size_t>(begin, 1); i < end; ++i) here += is_copy(tree, i);
-    count += here;
-  });
-  return count;
-}
-
-/// Fills leaves, starting with the first lane.
-class LeafFiller {
- public:
-  explicit LeafFiller(std::size_t triangle_count) : leaves_(leaves_for(triangle_count)) {}
-  void add(const RayLeaf& from, std::size_t from_lane) {
-    leaves_[next_ / kRayLanes].copy(next_ % kRayLanes, from, from_lane);
-    ++next_;
-  }
-  [[nodiscard]] Buffer<RayLeaf> take() { return std::move(leaves_); }
-
- private:
-  Buffer<RayLeaf> leaves_;
-  std::size_t next_ = 0;
-};
-
 /// Fills tree.leaves in the surfaces' spatial order.
 void fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execution) {
   const ClusterSet& set = cluster_set(surfaces, execution);
   const std::size_t parts = (set.clusters.size() + kClustersPerPart - 1) / kClustersPerPart;
   std::vector<std::size_t> first(parts + 1, 0);
   parallel_for(execution, set.clusters.size(), kClustersPerPart, [&](std::size_t begin, std::size_t end) {
-    first[begin / kClustersPerPart + 1] = count_triangles(set, begin, end);
+    std::size_t count = 0;
+    for (std::size_t c = begin; c < end; ++c) visit_triangles(set, set.clusters[c], [&](std::size_t) { ++count; });
+    first[begin / kClustersPerPart + 1] = count;
   });
   for (std::size_t i = 0; i < parts; ++i) first[i + 1] += first[i];
 
@@ -186,7 +137,12 @@ void fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execu
   tree.leaves = leaves_for(first.back());
   parallel_for(execution, set.clusters.size(), kClustersPerPart, [&](std::size_t begin, std::size_t end) {
     std::size_t place = first[begin / kClustersPerPart];
-    for (std::size_t c = begin; c < end; ++c) fill(set, set.clusters[c], place, tree.leaves);
+    for (std::size_t c = begin; c < end; ++c)
+      visit_triangles(set, set.clusters[c], [&](std::size_t t) {
+        RayLeaf& leaf = tree.leaves[place / kRayLanes];
+        set_corners(set, set.clusters[c], t, leaf, place % kRayLanes);
+        leaf.id[place++ % kRayLanes] = set.id[t];
+      });
   });
 }
 
@@ -196,18 +152,34 @@ void fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execu
 std::shared_ptr<RayTree> take_copies(RayTree& tree, const Execution& execution) {
   // Copies with holes may be open where the original is not.
   if (tree.cutouts || tree.triangle_count <= kFew) return nullptr;
-  const std::size_t count = count_copies(tree, execution);
+  std::atomic<std::size_t> count{0};
+  parallel_for(execution, tree.triangle_count, kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
+    std::size_t here = 0;
+    for (std::size_t i = std::max<std::size_t>(begin, 1); i < end; ++i) here += is_copy(tree, i);
+    count += here;
+  });
   if (count <= kFew) return nullptr;
   const auto copies = std::make_shared<RayTree>();
   copies->triangle_count = std::uint32_t(count);
-  LeafFiller again(count), kept(tree.triangle_count - count);
-  for (std::size_t i = 0; i < tree.triangle_count; ++i)
-    (i > 0 && is_copy(tree, i) ? again : kept).add(tree.leaves[i / kRayLanes], i % kRayLanes);
-  copies->leaves = again.take();
-  tree.leaves = kept.take();
+  copies->leaves = leaves_for(count);
+  Buffer<RayLeaf> kept = leaves_for(tree.triangle_count - count);
+  std::size_t copied = 0;
+  for (std::size_t i = 0; i < tree.triangle_count; ++i) {
+    const bool is_again = i > 0 && is_copy(tree, i);
+    const std::size_t place = is_again ? copied++ : i - copied;
+    (is_again ? copies->leaves : kept)[place / kRayLanes].copy(place % kRayLanes, tree.leaves[i / kRayLanes],
+                                                               i % kRayLanes);
+  }
+  tree.leaves = std::move(kept);
   tree.triangle_count -= copies->triangle_count;
   return copies;
 }
+
+/// A leaf and its bounds, for building nodes.
+struct LeafBox {
+  Box box;
+  std::uint32_t leaf;
+};
 
 /// Redistributes triangles within a few leaves at a time, so that leaves get small. \returns the box of every leaf.
 std::vector<LeafBox> group_leaves(RayTree& tree, const Execution& execution) {
@@ -219,7 +191,7 @@ std::vector<LeafBox> group_leaves(RayTree& tree, const Execution& execution) {
     Regrouping regrouping;
     for (std::size_t i = begin; i + 1 < whole_end; i += Regrouping::kLeaves)
       regrouping.regroup(tree.leaves.data() + i, std::min(Regrouping::kLeaves, whole_end - i));
-    for (std::size_t i = begin; i < end; ++i) boxes[i] = box_of(tree.leaves[i], static_cast<std::uint32_t>(i));
+    for (std::size_t i = begin; i < end; ++i) boxes[i] = {box_of(tree.leaves[i]), std::uint32_t(i)};
   });
   return boxes;
 }
@@ -237,13 +209,8 @@ struct BoxRange {
   [[nodiscard]] std::size_t size() const { return end - begin; }
 };
 
-LeafBox as_leaf_box(const Box& box, std::uint32_t leaf) {
-  return {{box.low.x, box.low.y, box.low.z}, leaf, {box.high.x, box.high.y, box.high.z}, 0};
-}
 /// Halves are added, as the sum of two large floats can overflow.
-glm::vec3 centre_of(const LeafBox& b) {
-  return {0.5f * b.low[0] + 0.5f * b.high[0], 0.5f * b.low[1] + 0.5f * b.high[1], 0.5f * b.low[2] + 0.5f * b.high[2]};
-}
+glm::vec3 centre_of(const Box& b) { return 0.5f * b.low + 0.5f * b.high; }
 
 float half_area(const Box& box) {
   const glm::vec3 d = box.high - box.low;
@@ -304,9 +271,38 @@ void consider(const std::array<Bin, kBins>& bins, int axis, BoxSplit& best) {
   }
 }
 
-class NodeBuilder {
+/// Nodes over one range; children are numbered within the piece.
+struct NodePiece {
+  BoxRange range;
+  std::vector<RayNode> nodes;
+  std::uint32_t root = 0, depth = 0;
+};
+
+class PieceBuilder {
  public:
-  explicit NodeBuilder(std::vector<LeafBox>& boxes) : boxes_(boxes) {}
+  PieceBuilder(std::vector<LeafBox>& boxes, NodePiece& piece) : boxes_(boxes), piece_(piece) {}
+
+  /// Builds the piece over boxes [begin, end).
+  void build(std::size_t begin, std::size_t end) {
+    piece_.range = range_of(begin, end);
+    piece_.root = build(piece_.range, 0);
+  }
+
+ private:
+  std::uint32_t build(const BoxRange& range, std::uint32_t depth) {
+    piece_.depth = std::max(piece_.depth, depth);
+    if (range.size() == 1) return boxes_[range.begin].leaf | kLeafBit;
+    const std::vector<BoxRange> ranges = children_of(range);
+    const std::size_t number = piece_.nodes.size();
+    piece_.nodes.push_back({});
+    for (std::size_t lane = 0; lane < ranges.size(); ++lane) {
+      const std::uint32_t child = build(ranges[lane], depth + 1);
+      piece_.nodes[number].set_box(lane, ranges[lane].box);
+      piece_.nodes[number].child[lane] = child;
+    }
+    piece_.nodes[number].count = std::uint32_t(ranges.size());
+    return std::uint32_t(number);
+  }
 
   /// \returns up to sixteen ranges. Splits the range with the largest surface until there are sixteen, or none can be
   /// split.
@@ -331,11 +327,10 @@ class NodeBuilder {
 
   [[nodiscard]] BoxRange range_of(std::size_t begin, std::size_t end) const {
     BoxRange range{begin, end, {}};
-    for (std::size_t i = begin; i < end; ++i) range.box.include(as_box(boxes_[i]));
+    for (std::size_t i = begin; i < end; ++i) range.box.include(boxes_[i].box);
     return range;
   }
 
- private:
   std::pair<BoxRange, BoxRange> split(const BoxRange& range) {
     if (range.size() >= kBinFrom) {
       const std::pair<BoxRange, BoxRange> halves = split_by_area(range);
@@ -348,12 +343,12 @@ class NodeBuilder {
   /// \returns empty ranges if all centres are in one place, or areas exceed the range of floats.
   std::pair<BoxRange, BoxRange> split_by_area(const BoxRange& range) {
     Box centres;
-    for (std::size_t i = range.begin; i < range.end; ++i) centres.include(centre_of(boxes_[i]));
+    for (std::size_t i = range.begin; i < range.end; ++i) centres.include(centre_of(boxes_[i].box));
     const Binning binning(centres);
     Bins bins;
     for (std::size_t i = range.begin; i < range.end; ++i) {
-      const glm::vec3 centre = centre_of(boxes_[i]);
-      const Box box = as_box(boxes_[i]);
+      const Box& box = boxes_[i].box;
+      const glm::vec3 centre = centre_of(box);
       for (int axis = 0; axis < 3; ++axis) {
         Bin& bin = bins[std::size_t(axis)][std::size_t(binning(centre, axis))];
         bin.box.include(box);
@@ -364,8 +359,8 @@ class NodeBuilder {
     for (int axis = 0; axis < 3; ++axis) consider(bins[std::size_t(axis)], axis, best);
     if (best.axis < 0) return {};
     const auto first = boxes_.begin() + std::ptrdiff_t(range.begin), last = boxes_.begin() + std::ptrdiff_t(range.end);
-    const auto middle =
-        std::partition(first, last, [&](const LeafBox& box) { return binning(centre_of(box), best.axis) < best.bin; });
+    const auto middle = std::partition(
+        first, last, [&](const LeafBox& box) { return binning(centre_of(box.box), best.axis) < best.bin; });
     const auto cut = std::size_t(middle - boxes_.begin());
     BoxRange left{range.begin, cut, {}}, right{cut, range.end, {}};
     for (int i = 0; i < kBins; ++i)
@@ -374,39 +369,6 @@ class NodeBuilder {
   }
 
   std::vector<LeafBox>& boxes_;
-};
-
-/// Nodes over one range; children are numbered within the piece.
-struct NodePiece {
-  BoxRange range;
-  std::vector<RayNode> nodes;
-  std::uint32_t root = 0, depth = 0;
-};
-
-class PieceBuilder {
- public:
-  PieceBuilder(std::vector<LeafBox>& boxes, NodePiece& piece) : boxes_(boxes), builder_(boxes), piece_(piece) {}
-
-  void build() { piece_.root = build(piece_.range, 0); }
-
- private:
-  std::uint32_t build(const BoxRange& range, std::uint32_t depth) {
-    piece_.depth = std::max(piece_.depth, depth);
-    if (range.size() == 1) return boxes_[range.begin].leaf | kLeafBit;
-    const std::vector<BoxRange> ranges = builder_.children_of(range);
-    const std::size_t number = piece_.nodes.size();
-    piece_.nodes.push_back({});
-    for (std::size_t lane = 0; lane < ranges.size(); ++lane) {
-      const std::uint32_t child = build(ranges[lane], depth + 1);
-      piece_.nodes[number].set_box(lane, ranges[lane].box);
-      piece_.nodes[number].child[lane] = child;
-    }
-    piece_.nodes[number].count = std::uint32_t(ranges.size());
-    return std::uint32_t(number);
-  }
-
-  std::vector<LeafBox>& boxes_;
-  NodeBuilder builder_;
   NodePiece& piece_;
 };
 
@@ -415,17 +377,14 @@ void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& ex
   if (boxes.empty()) return;
   std::vector<NodePiece> pieces((boxes.size() + kPieceLeaves - 1) / kPieceLeaves);
   parallel_for(execution, boxes.size(), kPieceLeaves, [&](std::size_t begin, std::size_t end) {
-    NodePiece& piece = pieces[begin / kPieceLeaves];
-    piece.range = NodeBuilder(boxes).range_of(begin, end);
-    PieceBuilder(boxes, piece).build();
+    PieceBuilder(boxes, pieces[begin / kPieceLeaves]).build(begin, end);
   });
 
   // The piece above all others, whose leaves are the pieces.
   std::vector<LeafBox> roots;
-  for (std::uint32_t p = 0; p < pieces.size(); ++p) roots.push_back(as_leaf_box(pieces[p].range.box, p));
+  for (std::uint32_t p = 0; p < pieces.size(); ++p) roots.push_back({pieces[p].range.box, p});
   NodePiece top;
-  top.range = NodeBuilder(roots).range_of(0, roots.size());
-  PieceBuilder(roots, top).build();
+  PieceBuilder(roots, top).build(0, roots.size());
   tree.bounds = top.range.box;
 
   std::vector<std::uint32_t> first(pieces.size() + 1, std::uint32_t(top.nodes.size()));

@@ -9,43 +9,25 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 
 #include "base/parallel.h"
-#include "raycast/index/build.h"
+#include "raycast/index/ray_tree.h"
 
 namespace frontmost {
 namespace {
 
-std::size_t byte_count(const RayLinks& links) {
-  return (links.above_node.size() + links.above_leaf.size()) * sizeof(std::uint32_t) +
-         (links.leaves_of_instances ? links.leaves_of_instances->byte_count() : 0);
-}
-
 std::size_t byte_count(const RayTree& tree) {
-  return sizeof(RayTree) + tree.nodes.size() * sizeof(RayNode) + tree.leaves.size() * sizeof(RayLeaf) +
-         (tree.cutouts ? tree.cutouts->byte_count() : 0) +
-         (tree.sides ? tree.sides->bits.size() * sizeof(std::uint32_t) : 0) +
-         (tree.copies ? byte_count(*tree.copies) : 0) + (tree.links ? byte_count(*tree.links) : 0);
+  std::size_t bytes = sizeof(RayTree) + tree.nodes.size() * sizeof(RayNode) + tree.leaves.size() * sizeof(RayLeaf);
+  if (tree.cutouts) bytes += tree.cutouts->byte_count();
+  if (tree.sides) bytes += tree.sides->bits.size() * sizeof(std::uint32_t);
+  if (tree.copies) bytes += byte_count(*tree.copies);
+  if (tree.links) bytes += (tree.links->above_node.size() + tree.links->above_leaf.size()) * sizeof(std::uint32_t);
+  if (tree.links && tree.links->leaves_of_instances) bytes += tree.links->leaves_of_instances->byte_count();
+  return bytes;
 }
 
-/// Guards a tree while it is changed in place. An error halfway would leave the triangles of two scenes with the holes
-/// of one, so the destructor empties the tree unless the change is complete.
-class TreeChange {
- public:
-  explicit TreeChange(RayTree& tree) : tree_(tree) {}
-  ~TreeChange() {
-    if (!is_complete_) tree_ = RayTree();
-  }
-  TreeChange(const TreeChange&) = delete;
-  TreeChange& operator=(const TreeChange&) = delete;
-  void complete() { is_complete_ = true; }
-
- private:
-  RayTree& tree_;
-  bool is_complete_ = false;
-};
-
-/// Returns the bounds of a node's children.
+/// The bounds of a node's children.
 Box box_of(const RayNode& node) {
   Box box;
   for (std::size_t lane = 0; lane < node.count; ++lane)
@@ -72,24 +54,22 @@ Buffer<std::uint32_t> places_of(const RayTree& tree, std::size_t id_count, const
 /// work jumps least through memory. \returns how many triangles were moved, or no_index if one has no place.
 std::size_t move_triangles(const ClusterSet& set, const Cluster& cluster, const Buffer<std::uint32_t>& places,
                            RayTree& tree) {
-  const float* const positions[3] = {set.x.data() + cluster.first_vertex, set.y.data() + cluster.first_vertex,
-                                     set.z.data() + cluster.first_vertex};
   std::size_t count = 0;
-  const std::size_t first = cluster.first_triangle;
-  for (std::size_t t = first; t < first + cluster.triangle_count; ++t) {
-    if (is_degenerate(set, t)) continue;
+  bool have_places = true;
+  visit_triangles(set, cluster, [&](std::size_t t) {
     const std::uint32_t place = places[set.id[t]];
-    if (place == no_index) return no_index;
-    set_corners(set, t, positions, tree.leaves[place / kRayLanes], place % kRayLanes);
+    have_places = have_places && place != no_index;
+    if (!have_places) return;
+    set_corners(set, cluster, t, tree.leaves[place / kRayLanes], place % kRayLanes);
     ++count;
-  }
-  return count;
+  });
+  return have_places ? count : no_index;
 }
 
 /// Fits every node's boxes to its children.
-void fit_nodes(const std::vector<LeafBox>& boxes, RayTree& tree) {
+void fit_nodes(const std::vector<Box>& boxes, RayTree& tree) {
   const auto box_of_child = [&](std::uint32_t child) {
-    return child & kLeafBit ? as_box(boxes[child & ~kLeafBit]) : box_of(tree.nodes[child]);
+    return child & kLeafBit ? boxes[child & ~kLeafBit] : box_of(tree.nodes[child]);
   };
   // From the last node backwards, as children come after their parents.
   for (std::size_t n = tree.nodes.size(); n-- > 0;) {
@@ -99,11 +79,11 @@ void fit_nodes(const std::vector<LeafBox>& boxes, RayTree& tree) {
   tree.bounds = box_of_child(tree.root);
 }
 
-/// Moves the triangles of `tree` to their places in `surfaces`, and fits every box anew. \returns false if `surfaces`
-/// has other triangles; the tree is then empty, as after an error.
-bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execution) {
-  TreeChange change(tree);
-  // Copies may have moved apart.
+/// Moves the triangles of `kept` to their places in `surfaces`, and fits every box anew. \returns false if `surfaces`
+/// has other triangles. The tree is then empty, as after an error: halfway it would have triangles of two scenes.
+bool refit_tree(const Surfaces& surfaces, RayTree& kept, const Execution& execution) {
+  RayTree tree = std::exchange(kept, RayTree());
+  // Copies may move apart.
   if (tree.copies) return false;
   const ClusterSet& set = cluster_set(surfaces, execution);
   tree.cutouts = set.cutouts;
@@ -115,16 +95,12 @@ bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execut
   });
   // The count is too high if a triangle has no place, and too low if a triangle cannot be met any more.
   if (moved != tree.triangle_count) return false;
-  if (tree.root == no_index) {
-    change.complete();
-    return true;
-  }
-  std::vector<LeafBox> boxes(tree.leaves.size());
+  std::vector<Box> boxes(tree.leaves.size());
   parallel_for(execution, tree.leaves.size(), kRefitLeavesPerPart, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) boxes[i] = box_of(tree.leaves[i], std::uint32_t(i));
+    for (std::size_t i = begin; i < end; ++i) boxes[i] = box_of(tree.leaves[i]);
   });
-  fit_nodes(boxes, tree);
-  change.complete();
+  if (tree.root != no_index) fit_nodes(boxes, tree);
+  kept = std::move(tree);
   return true;
 }
 
@@ -185,9 +161,9 @@ std::uint32_t count_met(const Mesh& mesh) {
 /// Moves one instance to its place in `surfaces`, from which the tree was made. \returns false if the tree must be made
 /// anew, because vertices became finite or ceased to be, or because triangles are copies of others. The tree is then
 /// empty, as after an error.
-bool follow_instance(const Surfaces& surfaces, std::uint32_t instance, RayTree& tree) {
+bool follow_instance(const Surfaces& surfaces, std::uint32_t instance, RayTree& kept) {
   const PlacedScene& placed = placed_scene(surfaces);
-  TreeChange change(tree);
+  RayTree tree = std::exchange(kept, RayTree());
   tree.cutouts = placed.cutouts;
   tree.sides = placed.sides;
   if (tree.copies || tree.root == no_index) return false;
@@ -202,11 +178,11 @@ bool follow_instance(const Surfaces& surfaces, std::uint32_t instance, RayTree& 
     const std::uint32_t moved = move_triangles(placed, instance, tree.leaves[leaf]);
     if (moved == no_index) return false;
     count += moved;
-    fit_above(tree, leaf, as_box(box_of(tree.leaves[leaf], leaf)));
+    fit_above(tree, leaf, box_of(tree.leaves[leaf]));
   }
   // The counts differ if vertices became finite.
   if (count != count_met(placed.scene->meshes[placed.scene->instances[instance].mesh])) return false;
-  change.complete();
+  kept = std::move(tree);
   return true;
 }
 

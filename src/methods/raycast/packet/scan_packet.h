@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "raycast/index/ray_tree.h"
-#include "raycast/query/query_rule.h"
+#include "raycast/query/queries.h"
 
 namespace frontmost::raycast_detail {
 

@@ -268,9 +268,6 @@ class LightPacket {
     return any;
   }
 
-  static HWY_INLINE QV Least(const QV (&x)[3]) { return hn::Min(hn::Min(x[0], x[1]), x[2]); }
-  static HWY_INLINE QV Most(const QV (&x)[3]) { return hn::Max(hn::Max(x[0], x[1]), x[2]); }
-
   static HWY_INLINE std::uint32_t UsedLanes(const RayLeaf& leaf, std::size_t first) {
     const QU du;
     return QueryBits(hn::RebindMask(QF(), hn::Ne(hn::Load(du, leaf.id + first), hn::Set(du, no_primitive))));

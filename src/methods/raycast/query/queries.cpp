@@ -228,9 +228,12 @@ Query query_of(const Ray& ray) { return {ray.origin, ray.origin, ray.direction, 
 /// The rounded direction may overflow if the ends are as far apart as floats reach; the walk then leaves no box out.
 Query query_of(const Segment& segment) { return {segment.from, segment.to, segment.to - segment.from, true}; }
 
-RayHit first_of(const RayTree& tree, const Query& query, Want want) {
+template <class Question>
+RayHit first_of(const RayIndex& index, const Question& question, Want want) {
+  const IeeeScope ieee;
+  const Query query = query_of(question);
   RayHit hit;
-  walk_batch(tree, {&query, 1}, want, {&hit, 1}, Isa::best);
+  walk_batch(ray_tree(index), {&query, 1}, want, {&hit, 1}, Isa::best);
   return hit;
 }
 
@@ -266,15 +269,9 @@ void ask_closest(const RayIndex& index, std::span<const Question> questions, std
 
 }  // namespace
 
-RayHit closest_hit(const RayIndex& index, const Ray& ray) {
-  const IeeeScope ieee;
-  return first_of(ray_tree(index), query_of(ray), Want::closest);
-}
+RayHit closest_hit(const RayIndex& index, const Ray& ray) { return first_of(index, ray, Want::closest); }
 
-RayHit closest_hit(const RayIndex& index, const Segment& segment) {
-  const IeeeScope ieee;
-  return first_of(ray_tree(index), query_of(segment), Want::closest);
-}
+RayHit closest_hit(const RayIndex& index, const Segment& segment) { return first_of(index, segment, Want::closest); }
 
 std::vector<RayHit> all_hits(const RayIndex& index, const Ray& ray) {
   const IeeeScope ieee;
@@ -289,8 +286,7 @@ std::vector<RayHit> all_hits(const RayIndex& index, const Ray& ray) {
 }
 
 bool is_clear(const RayIndex& index, const Segment& segment) {
-  const IeeeScope ieee;
-  return first_of(ray_tree(index), query_of(segment), Want::any).primitive == no_primitive;
+  return first_of(index, segment, Want::any).primitive == no_primitive;
 }
 
 void closest_hits(const RayIndex& index, std::span<const Ray> rays, std::span<RayHit> answers,

@@ -38,8 +38,12 @@ constexpr std::size_t kQueryLanes = hn::MaxLanes(QF());
 
 HWY_INLINE std::uint32_t QueryBits(QM mask) { return std::uint32_t(frontmost::HWY_NAMESPACE::BitsOf(QF(), mask)); }
 
-/// Returns how many of `count` values are greater than value i, or equal to it and before it. The values are the bits
-/// of floats from 0 on, which have the same order as the floats, even if these overflow to NaN.
+/// The least and the greatest of three, in every lane.
+HWY_INLINE QV Least(const QV (&x)[3]) { return hn::Min(hn::Min(x[0], x[1]), x[2]); }
+HWY_INLINE QV Most(const QV (&x)[3]) { return hn::Max(hn::Max(x[0], x[1]), x[2]); }
+
+/// How many of `count` are greater than number i, or equal and before it. Bits of floats from 0 on are ordered as the
+/// floats are, even if they overflow to NaN.
 HWY_INLINE std::size_t RankOf(const std::int32_t* at, std::size_t count, std::size_t i) {
   const QI d;
   const auto own = hn::Set(d, at[i]);
@@ -115,8 +119,6 @@ class RayAxis {
     const QF d;
     return hn::And(hn::Lt(size, hn::Set(d, 0x1p40f)), hn::Gt(hn::Abs(total), hn::Set(d, 0x1p-80f)));
   }
-  static HWY_INLINE QV Least(const QV (&x)[3]) { return hn::Min(hn::Min(x[0], x[1]), x[2]); }
-  static HWY_INLINE QV Most(const QV (&x)[3]) { return hn::Max(hn::Max(x[0], x[1]), x[2]); }
   static HWY_INLINE QV Size(const QV (&x)[3]) { return hn::Max(hn::Max(hn::Abs(x[0]), hn::Abs(x[1])), hn::Abs(x[2])); }
 
   glm::vec3 origin_;

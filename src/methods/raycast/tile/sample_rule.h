@@ -68,11 +68,7 @@ inline SampleTriangle make_triangle(const ScreenTransform& t, const std::array<g
   return {world, {make_corner(t, world[0]), make_corner(t, world[1]), make_corner(t, world[2])}};
 }
 
-struct Point {
-  double x, y;
-};
-
-inline Point sheared(const ScreenTransform& t, const SampleCorner& c, float sx, float sy) {
+inline glm::dvec2 sheared(const ScreenTransform& t, const SampleCorner& c, float sx, float sy) {
   if (!c.is_single) {
     const double w = t.orthographic ? 1.0 : c.d;
     return {c.x - double(sx) * w, c.y - double(sy) * w};
@@ -81,9 +77,9 @@ inline Point sheared(const ScreenTransform& t, const SampleCorner& c, float sx, 
   return {float(c.x) - sx * w, float(c.y) - sy * w};
 }
 
-/// Returns the exact sign of a.x * b.y - a.y * b.x. Rounding is monotonic, so the rounded products decide if they
-/// differ. If they are equal, their rounding errors decide.
-inline int side(const Point& a, const Point& b) {
+/// The exact sign of a.x * b.y - a.y * b.x. Products round monotonically, so different rounded products decide. Equal
+/// ones leave the decision to their rounding errors.
+inline int side(const glm::dvec2& a, const glm::dvec2& b) {
   const double p = a.x * b.y, q = a.y * b.x;
   if (p != q) return p > q ? 1 : -1;
   const double p_error = std::fma(a.x, b.y, -p), q_error = std::fma(a.y, b.x, -q);
@@ -93,8 +89,8 @@ inline int side(const Point& a, const Point& b) {
 /// Returns -1 if the triangle is met from the front (counter-clockwise on the screen; y is down), 1 if it is met from
 /// behind, and 0 if it is missed or edge-on.
 inline int facing(const ScreenTransform& t, const std::array<SampleCorner, 3>& corners, float sx, float sy) {
-  const Point a = sheared(t, corners[0], sx, sy), b = sheared(t, corners[1], sx, sy),
-              c = sheared(t, corners[2], sx, sy);
+  const glm::dvec2 a = sheared(t, corners[0], sx, sy), b = sheared(t, corners[1], sx, sy),
+                   c = sheared(t, corners[2], sx, sy);
   const int u = side(b, c), v = side(c, a), w = side(a, b);
   const int least = std::min({u, v, w}), most = std::max({u, v, w});
   return least >= 0 ? most : most <= 0 ? least : 0;

@@ -147,9 +147,9 @@ class BatchPainter {
   }
 
  private:
-  void DrawItems(const BatchJob::Items& items) {
+  void DrawItems(const TileJob::Items& items) {
     large_.DrawAll(frame_.records, items.records);
-    for (const std::uint32_t i : items.batches) DrawBatch(*frame_.batches[i]);
+    for (const std::uint32_t i : items.groups) DrawBatch(*frame_.batches[i]);
     small_.Finish();
   }
 

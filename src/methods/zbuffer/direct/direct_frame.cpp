@@ -38,18 +38,6 @@ struct DirectScratch : PlaceScratch {
   Buffer<BatchColumns> spare{1};
 };
 
-/// The index of a batch, and the slice of depth that its nearest key lies in. The far end of a slice is at most 1.5
-/// times as far as its near end. Finer slices hide no more, and lose the order of the file, which is the order of
-/// memory.
-struct Near {
-  std::uint32_t slice, batch;
-
-  Near() = default;
-  Near(float key, std::size_t number)
-      : slice(bits_as<std::uint32_t>(key) >> 22),  // the exponent and one bit of the fraction
-        batch(std::uint32_t(number)) {}
-};
-
 class DirectFrame {
  public:
   DirectFrame(const PlacedScene& scene, const View& view, const Execution& execution)
@@ -97,7 +85,7 @@ class DirectFrame {
     std::size_t next = 0, at_once = batches_at_first();
     do {
       const std::size_t count = std::min(at_once, order_.size() - next);
-      place(std::span(order_).subspan(next, count));
+      place({order_.data() + next, count});
       next += count;
       draw_placed(pixels, next == order_.size());
       report_progress(execution_, "visible", order_.empty() ? 1 : double(next) / double(order_.size()));
@@ -105,16 +93,18 @@ class DirectFrame {
     } while (next < order_.size());
   }
 
-  /// Divides triangles into batches, and sorts the batches nearest first, judging by a few triangles of each.
+  /// Divides triangles into batches, and sorts the batches nearest first, judging by a few triangles of each, by
+  /// slices: the exponent and one bit of the fraction of their keys. The far end of a slice is at most 1.5 times as far
+  /// as its near end. Finer slices hide no more, and lose the order of the file, which is the order of memory.
   void survey() {
     constexpr std::size_t kGrain = 64;
     sources_ = batch_sources(scene_.ranges);
     order_.resize(sources_.size());
     parallel_for(execution_, order_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) order_[i] = Near(nearest_of(sources_[i]), i);
+      for (std::size_t i = begin; i < end; ++i)
+        order_[i] = std::uint64_t(~(bits_as<std::uint32_t>(nearest_of(sources_[i])) >> 22)) << 32 | i;
     });
-    std::sort(order_.begin(), order_.end(),
-              [](const Near& a, const Near& b) { return a.slice != b.slice ? a.slice > b.slice : a.batch < b.batch; });
+    std::sort(order_.begin(), order_.end());
   }
 
   /// Returns the greatest key of some triangles of a batch, or 2, more than any key, if a vertex is nearer than the
@@ -168,28 +158,27 @@ class DirectFrame {
                      batch.records);
   }
 
-  void place(std::span<const Near> chosen) {
+  void place(std::span<const std::uint64_t> chosen) {
     if (batches_.size() < chosen.size()) batches_.resize(chosen.size());
     parallel_for(execution_, chosen.size(), 1, [&](std::size_t begin, std::size_t end) {
       const auto scratch = scratches_.borrow([] { return std::make_unique<DirectScratch>(); });
       for (std::size_t i = begin; i < end; ++i) {
-        const BatchSource& source = sources_[chosen[i].batch];
-        batches_[i].small.clear();
-        batches_[i].records.clear();
+        const BatchSource& source = sources_[std::uint32_t(chosen[i])];
+        DirectBatch& batch = batches_[i];
+        batch.small.clear();
+        batch.records.clear();
         for (std::size_t range = source.begin; range < source.end; ++range)
-          place_range(scene_.ranges[range], *scratch, batches_[i]);
-        if (cutouts_) extract_cutouts(batches_[i]);
-        list_tiles(batches_[i].small, *scratch);
-        if (cutouts_) list_tiles(*batches_[i].cutouts, *scratch);
+          place_range(scene_.ranges[range], *scratch, batch);
+        if (cutouts_) {
+          if (!batch.cutouts) batch.cutouts.emplace();
+          batch.cutouts->clear();
+          batch.small.extract([&](PrimitiveId id) { return cutouts_->has(id); }, *batch.cutouts);
+          list_tiles(*batch.cutouts, *scratch);
+        }
+        list_tiles(batch.small, *scratch);
       }
     });
     sort_out(chosen.size());
-  }
-
-  void extract_cutouts(DirectBatch& batch) const {
-    if (!batch.cutouts) batch.cutouts.emplace();
-    batch.cutouts->clear();
-    batch.small.extract([&](PrimitiveId id) { return cutouts_->has(id); }, *batch.cutouts);
   }
 
   static void list_tiles(TriangleBatch& batch, DirectScratch& scratch) {
@@ -233,24 +222,11 @@ class DirectFrame {
     const View& view = visible_.view;
     // The planes are touched for the first time; zbuffer.cpp explains the threshold.
     const bool streams = view.sample_count() * (sizeof(PrimitiveId) + sizeof(float)) >= std::size_t(32) << 20;
-    const Picture picture{view,
-                          sample_offsets(view.samples),
-                          visible_.primitives.data(),
-                          visible_.keys.data(),
-                          streams,
-                          cutouts_,
-                          ScreenRays(view),
-                          pixels};
+    const Picture picture(visible_, streams, cutouts_, pixels);
     const BatchFrame frame{picture, nearest_first_, records_.records};
     draw_tiles(records_, view, execution_, tile_scratches_, [&](std::size_t tile, TileScratch& scratch) {
-      const PartedList records = records_.of(tile);
-      const PartedList batches(batch_lists_.of(tile), [&](std::uint32_t batch) { return batch >= first_cutout_; });
-      const BatchJob job{Tile(tile, view),
-                         {records.solid, batches.solid},
-                         {records.cutouts, batches.cutouts},
-                         is_drawn_[tile] != 0,
-                         is_last,
-                         &farthest_[tile * BlockBounds::count]};
+      const BatchJob job{TileJob({tile, view}, records_.of(tile), {batch_lists_.of(tile), first_cutout_}),
+                         is_drawn_[tile] != 0, is_last, &farthest_[tile * BlockBounds::count]};
       const bool goes_out = is_last && (pixels || !job.is_drawn);
       if (job.is_empty() && !goes_out) return;
       draw_batches(frame, job, scratch, execution_.isa);
@@ -267,7 +243,7 @@ class DirectFrame {
   std::vector<std::uint8_t> is_drawn_;  // by tile: 1 if batches were drawn to it
   std::vector<float> farthest_;         // by tile and block: no sample of the block is farther than this key
   std::vector<BatchSource> sources_;
-  std::vector<Near> order_;
+  std::vector<std::uint64_t> order_;  // nearest first; the number of a batch in the low half
   // State of the batches that are placed.
   std::vector<DirectBatch> batches_;
   std::vector<const TriangleBatch*> nearest_first_;  // solid batches, then batches with cutouts from `first_cutout_` on

@@ -35,19 +35,10 @@ struct BatchFrame : Picture {
 };
 
 /// One tile, and the records and batches that may be seen in it.
-struct BatchJob : Tile {
-  /// Indices of records and of batches, nearest first.
-  struct Items {
-    std::span<const std::uint32_t> records, batches;
-
-    [[nodiscard]] bool is_empty() const { return records.empty() && batches.empty(); }
-  };
-  Items solid, cutouts;
-  bool is_drawn;    ///< true if earlier batches were drawn to the tile; the planes hold the result
-  bool is_last;     ///< true if no batches follow
-  float* farthest;  ///< farthest keys of the 64 blocks: read, and updated unless is_last
-
-  [[nodiscard]] bool is_empty() const { return solid.is_empty() && cutouts.is_empty(); }
+struct BatchJob : TileJob {
+  bool is_drawn;    ///< the tile shows something already, which the planes hold
+  bool is_last;     ///< nothing will be drawn to it any more
+  float* farthest;  ///< keys of the 64 blocks: read, and updated unless is_last
 };
 
 /// Draws a tile and writes it to the planes.

@@ -60,12 +60,21 @@ struct Picture {
   std::span<const glm::ivec2> samples;  ///< offsets within a pixel
   PrimitiveId* primitives;              ///< planes, [sample][y][x]
   float* keys;
-  bool streams;                         ///< true if planes are written past the cache, because they are too large to
-                                        ///< stay in it
-  const Cutouts* cutouts;               ///< null if no triangle has holes
-  ScreenRays rays;                      ///< rays of the view, which find the holes
-  const PixelPlanes* pixels = nullptr;  ///< if not null, receives the final result; `primitives` and `keys` then hold
-                                        ///< intermediate results
+  bool streams;               ///< write planes past the cache: they are too large to stay in it
+  const Cutouts* cutouts;     ///< null where no triangle has holes
+  ScreenRays rays;            ///< rays of the view, which find the holes
+  const PixelPlanes* pixels;  ///< if not null, takes the final result; the planes then hold intermediate
+                              ///< results
+
+  Picture(Visible& planes, bool is_streamed, const Cutouts* holes, const PixelPlanes* result = nullptr)
+      : view(planes.view),
+        samples(sample_offsets(view.samples)),
+        primitives(planes.primitives.data()),
+        keys(planes.keys.data()),
+        streams(is_streamed),
+        cutouts(holes),
+        rays(view),
+        pixels(result) {}
 };
 
 /// The pixels of one tile.
@@ -106,16 +115,31 @@ struct TileRect {
   [[nodiscard]] bool holds(int column, int row) const { return x0 <= column && column <= x1 && y0 <= row && row <= y1; }
 };
 
-/// Splits a list of solid items followed by cutouts into these two parts.
+/// Splits a list in which all cutouts, numbered from `first_cutout` on, stand behind the solid items.
 struct PartedList {
   std::span<const std::uint32_t> solid, cutouts;
 
-  template <class IsCutout>
-  PartedList(std::span<const std::uint32_t> list, const IsCutout& is_cutout) {
-    const auto first = std::partition_point(list.begin(), list.end(), [&](std::uint32_t i) { return !is_cutout(i); });
+  PartedList(std::span<const std::uint32_t> list, std::size_t first_cutout) {
+    const auto first =
+        std::partition_point(list.begin(), list.end(), [&](std::uint32_t i) { return i < first_cutout; });
     solid = list.first(std::size_t(first - list.begin()));
     cutouts = list.subspan(solid.size());
   }
+};
+
+/// One tile, and what may be seen in it. Groups of triangles are clusters, or batches.
+struct TileJob : Tile {
+  /// Nearest first.
+  struct Items {
+    std::span<const std::uint32_t> records, groups;
+
+    [[nodiscard]] bool is_empty() const { return records.empty() && groups.empty(); }
+  };
+  Items solid, cutouts;
+
+  TileJob(const Tile& tile, const PartedList& records, const PartedList& groups)
+      : Tile(tile), solid{records.solid, groups.solid}, cutouts{records.cutouts, groups.cutouts} {}
+  [[nodiscard]] bool is_empty() const { return solid.is_empty() && cutouts.is_empty(); }
 };
 
 /// A list of numbers for every tile of a range, one after another in one array:

@@ -103,9 +103,9 @@ class TilePainter {
 
   void DrawItems(const TileJob::Items& items) {
     large_.DrawAll(frame_.records, items.records);
-    for (std::size_t i = 0; i < items.clusters.size(); ++i) {
-      if (i + 2 < items.clusters.size()) Prefetch(items.clusters[i + 2]);
-      const std::uint32_t cluster = items.clusters[i];
+    for (std::size_t i = 0; i < items.groups.size(); ++i) {
+      if (i + 2 < items.groups.size()) Prefetch(items.groups[i + 2]);
+      const std::uint32_t cluster = items.groups[i];
       const std::uint64_t blocks = buffer_.BlocksInTile(frame_.culled.rect(cluster));
       if (buffer_.AllHide(blocks, frame_.culled.nearest[cluster])) continue;
       DrawCluster(frame_.set.clusters[cluster]);
