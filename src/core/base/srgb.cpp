@@ -109,8 +109,7 @@ class Parabolas {
   }
   /// Wrong by at most 1e-4.
   [[nodiscard]] double operator()(float linear) const {
-    std::uint32_t bits;
-    std::memcpy(&bits, &linear, sizeof bits);
+    const auto bits = bits_as<std::uint32_t>(linear);
     const Piece& piece = pieces_[(bits >> 16) - kFirst];
     const double t = double(bits & 0xFFFFu) * (1.0 / 65536);
     return piece.at_start + t * (piece.slope + t * piece.bend);
@@ -122,12 +121,7 @@ class Parabolas {
   };
   static constexpr std::uint32_t kFirst = 0x3B4D2E1Cu >> 16;  // kLinearEnd as a float
 
-  static double start(std::size_t i) {
-    const std::uint32_t bits = (kFirst + std::uint32_t(i)) << 16;
-    float value;
-    std::memcpy(&value, &bits, sizeof value);
-    return double(value);
-  }
+  static double start(std::size_t i) { return double(bits_as<float>((kFirst + std::uint32_t(i)) << 16)); }
 
   std::array<Piece, (detail::one_bits >> 16) - kFirst> pieces_;
 };

@@ -6,7 +6,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
+
+#include "base/memory.h"
 
 namespace frontmost {
 
@@ -32,8 +33,7 @@ extern const std::array<float, 256> srgb8_linears;
 [[nodiscard]] inline std::uint8_t srgb8_of_linear(float linear) {
   const float above = linear > detail::least_srgb8 ? linear : detail::least_srgb8;  // false for NaN
   const float clamped = above < 1.0f ? above : 1.0f;
-  std::uint32_t bits;
-  std::memcpy(&bits, &clamped, sizeof bits);
+  const auto bits = bits_as<std::uint32_t>(clamped);
   const std::uint32_t entry = detail::srgb8_buckets[(bits - detail::least_srgb8_bits) >> 16];
   return std::uint8_t((entry + (bits & 0xFFFFu)) >> 16);
 }

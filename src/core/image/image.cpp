@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <set>
 #include <utility>
 
@@ -25,11 +24,7 @@ class WordHash {
     for (const char c : text) add(std::uint32_t(static_cast<unsigned char>(c)));
   }
   /// Machines differ in the bits of a NaN that an operation makes, so all NaNs hash alike.
-  void add(float number) {
-    std::uint32_t bits = 0x7FC00000u;
-    if (number == number) std::memcpy(&bits, &number, sizeof bits);
-    add(bits);
-  }
+  void add(float number) { add(number == number ? bits_as<std::uint32_t>(number) : 0x7FC00000u); }
   [[nodiscard]] std::uint64_t value() const {
     // The low bits of a word reach only the high bits of the product, so these are folded back.
     return value_ ^ (value_ >> 32);

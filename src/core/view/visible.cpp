@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <cstring>
 #include <string>
 
 #include "base/parallel.h"
@@ -106,10 +105,8 @@ std::uint64_t content_hash(const Visible& visible) {
   hash_word(hash, std::uint64_t(visible.view.height));
   hash_word(hash, std::uint64_t(visible.view.samples));
   for (std::size_t i = 0; i < visible.keys.size(); ++i) {
-    std::uint32_t key;
     // The bits, not the number: two pictures are equal only to the last bit.
-    std::memcpy(&key, &visible.keys[i], sizeof key);
-    hash_word(hash, std::uint64_t(key) << 32 | visible.primitives[i]);
+    hash_word(hash, std::uint64_t(bits_as<std::uint32_t>(visible.keys[i])) << 32 | visible.primitives[i]);
   }
   return hash;
 }
