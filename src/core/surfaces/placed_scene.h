@@ -151,13 +151,11 @@ struct PlacedScene {
 [[nodiscard]] const PlacedScene& placed_scene(const Surfaces& surfaces);
 
 /// Numbers the triangles and finds their boxes. Precondition: validate_besides_vertices(scene) and
-/// check_transforms(scene) have passed. O(triangles), in parallel: 3 ns a triangle on one thread. \throws Error as
-/// validate(scene) does for the number of a vertex that does not exist.
+/// check_transform() of all instances have passed. O(triangles), in parallel: 3 ns a triangle on one thread. \throws
+/// Error as validate(scene) does for the number of a vertex that does not exist.
 [[nodiscard]] PlacedScene place_scene(const Scene& scene, const Execution& execution);
 
-/// \throws Error bad_argument if a transform is not finite.
-void check_transforms(const Scene& scene);
-/// check_transforms() for a new transform of one instance.
+/// \throws Error bad_argument if a transform, which need not be that of the instance yet, is not finite.
 void check_transform(const Scene& scene, std::size_t instance, const glm::dmat4& world_from_mesh);
 
 /// Triangles of a range in world space. Borrows from the scene, or from the scratch memory.

@@ -38,7 +38,8 @@ Surfaces::Surfaces(const Scene& scene, const Execution& execution) {
   const IeeeScope ieee;
   // All checks are here: behind this point no method checks an index or a transform again.
   validate_besides_vertices(scene);
-  check_transforms(scene);
+  for (std::size_t i = 0; i < scene.instances.size(); ++i)
+    check_transform(scene, i, scene.instances[i].world_from_mesh);
   auto state = std::make_unique<State>();
   state->placed = place_scene(scene, execution);
   state_ = std::move(state);
