@@ -119,8 +119,8 @@ std::uint64_t content_hash(const DeepImage& image) {
 
 namespace {
 
-Image one_channel(const Visible& visible, Channel channel) {
-  Image image{visible.view.width, visible.view.height, {}};
+Image one_channel(int width, int height, Channel channel) {
+  Image image{width, height, {}};
   image.channels.push_back(std::move(channel));
   return image;
 }
@@ -136,40 +136,12 @@ Image map_of_depths(const Visible& visible, const char* name, float background, 
     for (int x = 0; x < view.width; ++x, ++i)
       values[i] =
           visible.primitives[i] == no_primitive ? background : depth_at(x, y, depth_of_key(view, visible.keys[i]));
-  return one_channel(visible, {name, std::move(values)});
+  return one_channel(view.width, view.height, {name, std::move(values)});
 }
-
-/// Distance along the ray for a planar distance of 1, through the first sample of each pixel.
-class RayLengths {
- public:
-  explicit RayLengths(const View& view) : projection_(view.projection) {
-    const glm::ivec2 offset = sample_offsets(view.samples)[0];
-    first_ = glm::dvec2(offset) / 256.0;
-    step_ = {(projection_.right - projection_.left) / view.width, (projection_.top - projection_.bottom) / view.height};
-  }
-  [[nodiscard]] double at(int x, int y) const {
-    const double right = projection_.left + (x + first_.x) * step_.x;
-    const double up = projection_.top - (y + first_.y) * step_.y;
-    return std::sqrt(1 + right * right + up * up);
-  }
-
- private:
-  const Projection& projection_;
-  glm::dvec2 first_{0}, step_{0};
-};
 
 std::uint32_t id_of(const Scene& scene, const PrimitiveSource& source, IdKind kind) {
   if (kind == IdKind::object) return source.instance;
   return scene.meshes[source.mesh].material_of(source.triangle);
-}
-
-const char* channel_name(IdKind kind) {
-  switch (kind) {
-    case IdKind::primitive: return "primitive";
-    case IdKind::object: return "object";
-    case IdKind::material: return "material";
-  }
-  return "";
 }
 
 }  // namespace
@@ -179,10 +151,14 @@ Image depth_image(const Visible& visible, float background) {
 }
 
 Image ray_distance_image(const Visible& visible, float background) {
-  const bool parallel = visible.view.projection.orthographic;
-  const RayLengths lengths(visible.view);
+  const View& view = visible.view;
+  const Projection& p = view.projection;
+  // The ray passes through the first sample of the pixel.
+  const glm::dvec2 first = glm::dvec2(sample_offsets(view.samples)[0]) / 256.0;
+  const glm::dvec2 step((p.right - p.left) / view.width, (p.top - p.bottom) / view.height);
   return map_of_depths(visible, "distance", background, [&](int x, int y, float depth) {
-    return parallel ? depth : float(double(depth) * lengths.at(x, y));
+    const double right = p.left + (x + first.x) * step.x, up = p.top - (y + first.y) * step.y;
+    return p.orthographic ? depth : float(double(depth) * std::sqrt(1 + right * right + up * up));
   });
 }
 
@@ -211,9 +187,8 @@ Image id_image(const Surfaces& surfaces, const glm::ivec2& size, std::span<const
     }
     ids[i] = last_id;
   }
-  Image image{size.x, size.y, {}};
-  image.channels.push_back({channel_name(kind), std::move(ids)});
-  return image;
+  constexpr const char* names[] = {"primitive", "object", "material"};  // by IdKind
+  return one_channel(size.x, size.y, {names[int(kind)], std::move(ids)});
 }
 
 std::vector<std::uint64_t> count_pixels(const Image& ids, std::size_t count) {
@@ -268,6 +243,12 @@ std::optional<ColorPlanes> color_planes(const Image& image) {
   for (const float* color : planes.color)
     if (!color) return std::nullopt;
   return planes;
+}
+
+std::string channel_list(const Image& image) {
+  std::string list;
+  for (const Channel& channel : image.channels) list += (list.empty() ? "" : ", ") + channel.name;
+  return list;
 }
 
 void srgb8_row(const ColorPlanes& planes, int y, bool with_alpha, std::uint8_t* row) {

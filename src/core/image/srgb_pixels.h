@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The colours of an image in the form of screens and PNG: sRGB, straight alpha.
+// The colours of an image in the form of screens and PNG: sRGB, straight alpha. Also the names of its channels.
 #pragma once
 
 #include <limits>
@@ -22,6 +22,9 @@ struct ColorPlanes {
 
 /// The planes R, G, B and, if there is one, A. None if one of R, G, B is missing or holds integers.
 [[nodiscard]] std::optional<ColorPlanes> color_planes(const Image& image);
+
+/// The image's channel names as "R, G, B", for messages.
+[[nodiscard]] std::string channel_list(const Image& image);
 
 /// A fraction of 0 to 1 as 0 to `most`, rounded. Values out of range are clamped, NaN gives 0.
 template <class Value>

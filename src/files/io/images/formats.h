@@ -105,7 +105,4 @@ inline constexpr const char* png_ids_key = "frontmost:ids";  ///< marks an id ma
                               : reinterpret_cast<const std::byte*>(channel.floats().data());
 }
 
-/// The image's channel names as "R, G, B", for messages.
-[[nodiscard]] std::string channel_list(const Image& image);
-
 }  // namespace frontmost::detail

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "image/srgb_pixels.h"
 #include "io/images/formats.h"
 #include "io/input_file.h"
 
@@ -79,7 +80,7 @@ Buffer<float> take_light(Image& image, const char* name, const std::string& file
   if (is_grey) channel = image.find("Y");
   if (channel == nullptr || channel->is_integer())
     throw Error(ErrorCode::unsupported, file, "",
-                "an environment has channels R, G and B, or Y, not " + detail::channel_list(image));
+                "an environment has channels R, G and B, or Y, not " + channel_list(image));
   return is_grey ? channel->floats() : std::move(channel->floats());
 }
 

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "image/srgb_pixels.h"
 #include "io/images/formats.h"
 
 namespace frontmost::detail {

@@ -36,7 +36,7 @@ int checked_quality(const SaveOptions& options, const std::string& name) {
 detail::PictureRows lossy_rows(const Image& image, const char* format, const std::string& name) {
   if (std::optional<detail::PictureRows> rows = detail::picture_rows(image)) return std::move(*rows);
   throw Error(ErrorCode::unsupported, name, "",
-              std::string(format) + " holds pictures, of R, G, B and A, not " + detail::channel_list(image) +
+              std::string(format) + " holds pictures, of R, G, B and A, not " + channel_list(image) +
                   "; write EXR, NPY or PNG");
 }
 
@@ -55,12 +55,6 @@ void write_file(const std::string& path, const Execution& execution, const Write
 }  // namespace
 
 namespace detail {
-
-std::string channel_list(const Image& image) {
-  std::string list;
-  for (const Channel& channel : image.channels) list += (list.empty() ? "" : ", ") + channel.name;
-  return list;
-}
 
 std::optional<PictureRows> picture_rows(const Image& image) {
   const std::optional<ColorPlanes> planes = color_planes(image);
