@@ -94,14 +94,9 @@ class Models {
   std::uint64_t next_ = 0, shared_pieces_ = 0;
 };
 
-struct LoopOptions {
-  std::uint32_t triangles_at_once = 1;
-  int workers = 1;
-};
-
-/// Calls work(worker, piece, place) for every piece. If several pieces fail, the error of the earliest is thrown, for
-/// any number of threads.
-void for_each_piece(Models& models, const LoopOptions& options, const Execution& execution,
+/// Calls work(worker, piece, place) for every piece of about `triangles`. If several pieces fail, the error of the
+/// earliest is thrown, for any number of threads.
+void for_each_piece(Models& models, std::uint32_t triangles, int workers, const Execution& execution,
                     const std::function<void(int worker, StreamPiece&, const PiecePlace&)>& work);
 
 }  // namespace frontmost::streaming

@@ -104,7 +104,7 @@ struct Stream::State {
     if (execution.watch) quiet.cancelled = execution.watch->cancelled;
     const Execution of_worker{std::max(1, thread_count(execution) / workers), execution.isa, &quiet};
     for_each_piece(
-        models, {options.triangles_at_once, workers}, execution,
+        models, options.triangles_at_once, workers, execution,
         [&](int worker, StreamPiece& piece, const PiecePlace& place) { work(worker, piece, place, of_worker); });
   }
 
