@@ -124,8 +124,11 @@ bool Models::can_rewind() const {
 
 double Models::fraction() const {
   double sum = 0, count = 0;
-  for (std::size_t i = 0; i < models_.size(); ++i)
-    if (is_read_here(i)) sum += models_[i].stream->fraction(), ++count;
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    if (!is_read_here(i)) continue;
+    sum += models_[i].stream->fraction();
+    ++count;
+  }
   return count == 0 ? 1 : sum / count;
 }
 

@@ -87,6 +87,9 @@ enum class ImagePart : std::uint8_t { size, pixels };
 [[nodiscard]] Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, ImagePart part);
 [[nodiscard]] bool has_webp();
 
+/// \throws Error file_malformed "name: format: reason".
+[[noreturn]] void fail_image(const std::string& name, const char* format, const std::string& reason);
+
 /// Check of every decoder between header and pixels. `densest` is the greatest number of pixels that one byte of a
 /// valid file can hold. A header that claims more belongs to a truncated or hostile file, and no memory is allocated
 /// for it. `format` is the place of an error.

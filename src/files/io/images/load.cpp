@@ -101,12 +101,15 @@ Image environment_of(Image image, const std::string& file) {
 
 namespace detail {
 
+void fail_image(const std::string& name, const char* format, const std::string& reason) {
+  throw Error(ErrorCode::file_malformed, name, format, reason);
+}
+
 void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height, std::size_t byte_count,
                       double densest, const char* format) {
   const std::string size = std::to_string(width) + " x " + std::to_string(height);
   if (width == 0 || height == 0)
-    throw Error(ErrorCode::file_malformed, name, format,
-                "the image has " + size + " pixels; width and height must be at least 1");
+    fail_image(name, format, "the image has " + size + " pixels; width and height must be at least 1");
   // The sides are checked first, so that their product stays far below 64 bits.
   if (width > std::uint64_t(max_image_side) || height > std::uint64_t(max_image_side) ||
       width * height > max_image_pixels)
@@ -116,8 +119,7 @@ void check_image_size(const std::string& name, std::uint64_t width, std::uint64_
   // A file of some hundred bytes may claim the greatest size. Memory is allocated only if the bytes can hold the
   // pixels.
   if (double(width * height) > densest * double(byte_count))
-    throw Error(ErrorCode::file_malformed, name, format,
-                std::to_string(byte_count) + " bytes cannot hold " + size + " pixels");
+    fail_image(name, format, std::to_string(byte_count) + " bytes cannot hold " + size + " pixels");
 }
 
 }  // namespace detail

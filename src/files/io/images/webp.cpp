@@ -109,7 +109,7 @@ Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, I
   const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
   WebPBitstreamFeatures features;
   const VP8StatusCode header = WebPGetFeatures(data, bytes.size(), &features);
-  if (header != VP8_STATUS_OK) throw Error(ErrorCode::file_malformed, name, "WebP", reason_of(header));
+  if (header != VP8_STATUS_OK) fail_image(name, "WebP", reason_of(header));
   if (features.has_animation) throw Error(ErrorCode::unsupported, name, "WebP", "animations are not supported");
   // The pixels of a picture of one colour take no bits at all, so only the callers' limits of pixels hold.
   constexpr double any_density = double(max_image_pixels);
@@ -129,7 +129,7 @@ Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, I
                           texture.pixels.size() * sizeof(glm::u8vec4)};
   const VP8StatusCode status = WebPDecode(data, bytes.size(), &config);
   if (status == VP8_STATUS_OUT_OF_MEMORY) throw std::bad_alloc();
-  if (status != VP8_STATUS_OK) throw Error(ErrorCode::file_malformed, name, "WebP", reason_of(status));
+  if (status != VP8_STATUS_OK) fail_image(name, "WebP", reason_of(status));
   return texture;
 }
 
