@@ -105,6 +105,15 @@ void fail_image(const std::string& name, const char* format, const std::string& 
   throw Error(ErrorCode::file_malformed, name, format, reason);
 }
 
+Texture texture_of_size(const std::string& name, int width, int height, ImagePart part) {
+  Texture texture;
+  texture.name = name;
+  texture.width = width;
+  texture.height = height;
+  if (part == ImagePart::pixels) texture.pixels.resize(std::size_t(width) * std::size_t(height));
+  return texture;
+}
+
 void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height, std::size_t byte_count,
                       double densest, const char* format) {
   const std::string size = std::to_string(width) + " x " + std::to_string(height);

@@ -16,7 +16,12 @@ namespace frontmost::detail {
 namespace {
 
 /// The start of a text of the file, quoted for messages.
-std::string quoted(std::string_view text) { return '"' + std::string(text.substr(0, 40)) + '"'; }
+std::string quoted(std::string_view text) {
+  std::string quote(1, '"');
+  quote += text.substr(0, 40);
+  quote += '"';
+  return quote;
+}
 
 /// The rest of the file that is not read yet.
 class RadianceBytes {
@@ -79,8 +84,9 @@ RadianceSize read_radiance_header(RadianceBytes& bytes, const std::string& name)
     if (!line.starts_with(format_key)) continue;
     const std::string_view format = line.substr(format_key.size());
     if (format == rgbe) continue;
+    const std::string found = quoted(format);
     throw Error(ErrorCode::unsupported, name, "Radiance",
-                "format " + quoted(format) + " is not supported, only " + std::string(rgbe));
+                "format " + found + " is not supported, only " + std::string(rgbe));
   }
   return size_of(bytes.line(), name);
 }

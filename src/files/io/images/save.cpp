@@ -65,6 +65,14 @@ std::optional<PictureRows> picture_rows(const Image& image) {
                      }};
 }
 
+void check_sides(const PictureRows& picture, int most, const char* format, const OutputFile& file) {
+  const int side = std::max(picture.width, picture.height);
+  if (side > most)
+    throw Error(ErrorCode::limit_exceeded, file.name(), "",
+                std::string(format) + " holds at most " + std::to_string(most) + " pixels on a side, not " +
+                    std::to_string(side));
+}
+
 PictureRows picture_rows(const Bitmap& bitmap) {
   constexpr std::size_t bytes = 4;  // a pixel
   const std::size_t size = bitmap.rgba.size();

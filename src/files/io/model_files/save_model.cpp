@@ -148,6 +148,7 @@ class GlbDocument {
   /// The whole JSON part except the buffer, which is the file's second part.
   Json json = {{"asset", {{"version", "2.0"}, {"generator", "Frontmost"}}}};
   std::string buffer;
+  std::set<std::string> extensions;
 
   /// Appends bytes to the buffer, aligned to four. `target` is glTF's number for the use of the view, or 0. \returns
   /// the number of the view.
@@ -186,15 +187,13 @@ class GlbDocument {
   void pad_buffer() { buffer.resize((buffer.size() + 3) / 4 * 4, '\0'); }
   /// Notes that an extension is used. \returns its name.
   const char* uses(const char* extension) {
-    extensions_.insert(extension);
+    extensions.insert(extension);
     return extension;
   }
-  [[nodiscard]] const std::set<std::string>& extensions() const { return extensions_; }
 
  private:
   const Scene& scene_;
   std::map<std::uint32_t, std::size_t> textures_, materials_;
-  std::set<std::string> extensions_;
 };
 
 /// Writes a material, with each use of a texture in the object that it belongs to. Values that equal glTF's defaults
@@ -284,10 +283,6 @@ class MaterialWriter {
       set(object, "sheenColorTexture", s.color_texture);
       set(object, "sheenRoughnessTexture", s.roughness_texture);
     }
-    write_glass(layer, material);
-  }
-  template <class Layer>
-  void write_glass(const Layer& layer, const Material& material) {
     if (!(material.transmission.factor > 0)) return;
     Json& glass = layer("KHR_materials_transmission");
     glass["transmissionFactor"] = within(material.transmission.factor, 0, 1);
@@ -478,7 +473,7 @@ void write_nodes(const Scene& scene, GlbDocument& document) {
 void write_glb(const Scene& scene, OutputFile& file) {
   GlbDocument document(scene);
   write_nodes(scene, document);
-  if (!document.extensions().empty()) document.json["extensionsUsed"] = document.extensions();
+  if (!document.extensions.empty()) document.json["extensionsUsed"] = document.extensions;
   document.pad_buffer();
   const std::string& buffer = document.buffer;
   if (!buffer.empty()) document.json["buffers"] = Json::array({{{"byteLength", buffer.size()}}});
@@ -499,22 +494,14 @@ void write_glb(const Scene& scene, OutputFile& file) {
   file.write(std::as_bytes(std::span(buffer)));
 }
 
-enum class ModelFile { ply, stl, glb };
-
-ModelFile model_file_of(const std::string& path) {
-  const std::string suffix = lower_suffix(path);
-  if (suffix == ".ply") return ModelFile::ply;
-  if (suffix == ".stl") return ModelFile::stl;
-  if (suffix == ".glb") return ModelFile::glb;
-  throw Error(ErrorCode::unsupported, path, "", "models are written as .ply, .stl or .glb");
-}
-
 }  // namespace
 
 void save(const Scene& scene, const std::string& path, const Table& of_triangles) {
-  const ModelFile kind = model_file_of(path);
+  const std::string suffix = lower_suffix(path);
+  if (suffix != ".ply" && suffix != ".stl" && suffix != ".glb")
+    throw Error(ErrorCode::unsupported, path, "", "models are written as .ply, .stl or .glb");
   validate(scene);
-  if (!of_triangles.columns.empty() && kind != ModelFile::ply)
+  if (!of_triangles.columns.empty() && suffix != ".ply")
     throw Error(ErrorCode::unsupported, path, "", "only PLY stores properties of triangles");
   validate(of_triangles);
   if (!of_triangles.columns.empty() && of_triangles.row_count() != triangle_count(scene))
@@ -522,11 +509,9 @@ void save(const Scene& scene, const std::string& path, const Table& of_triangles
                 std::to_string(of_triangles.row_count()) + " rows are given for " +
                     std::to_string(triangle_count(scene)) + " triangles");
   OutputFile file(path);
-  switch (kind) {
-    case ModelFile::ply: write_ply(scene, of_triangles, file); break;
-    case ModelFile::stl: write_stl(scene, file); break;
-    case ModelFile::glb: write_glb(scene, file); break;
-  }
+  if (suffix == ".ply") write_ply(scene, of_triangles, file);
+  if (suffix == ".stl") write_stl(scene, file);
+  if (suffix == ".glb") write_glb(scene, file);
   file.commit();
 }
 

@@ -185,11 +185,10 @@ void unpack_directions(const Buffer<Value>& pixels, Image& image) {
 
 template <class Value, class Linear>
 void unpack(const Buffer<Value>& pixels, bool directions, Image& image, Linear&& linear) {
-  if (directions) {
+  if (directions)
     unpack_directions(pixels, image);
-  } else {
+  else
     unpack_colors(pixels, image, linear);
-  }
 }
 
 std::size_t pixel_count(const Image& image) { return std::size_t(image.width) * std::size_t(image.height); }
@@ -257,13 +256,8 @@ Image load_png(std::span<const std::byte> bytes, const std::string& name) {
 
 Texture decode_png(std::span<const std::byte> bytes, const std::string& name, ImagePart part) {
   PngReader reader(bytes, name, false);
-  Texture texture;
-  texture.name = name;
-  texture.width = reader.width();
-  texture.height = reader.height();
-  if (part == ImagePart::size) return texture;
-  texture.pixels.resize(std::size_t(texture.width) * std::size_t(texture.height));
-  reader.read(PngReader::Pixels::rgba8, texture.pixels.data());
+  Texture texture = texture_of_size(name, reader.width(), reader.height(), part);
+  if (part == ImagePart::pixels) reader.read(PngReader::Pixels::rgba8, texture.pixels.data());
   return texture;
 }
 

@@ -24,14 +24,11 @@ namespace {
 /// Contents of a PNG file. `row` may be called from many threads at once, and more than once for a row.
 struct PngContents {
   enum class Color : std::uint8_t { grey = 0, rgb = 2, rgba = 6 };  ///< values of the file's header
-  struct Text {
-    std::string keyword, text;
-  };
   int width = 0, height = 0;
   Color color = Color::rgb;
-  int bits = 8;         ///< 8 or 16, big-endian
-  bool is_srgb = true;  ///< whether the file is marked as sRGB
-  std::vector<Text> texts;
+  int bits = 8;                                            ///< 8 or 16, big-endian
+  bool is_srgb = true;                                     ///< whether the file is marked as sRGB
+  std::vector<std::pair<std::string, std::string>> texts;  ///< keyword and text
   std::function<void(int y, std::uint8_t* row)> row;
 
   [[nodiscard]] std::size_t pixel_bytes() const {
@@ -79,8 +76,7 @@ ByteVector head(const PngContents& contents) {
   ByteVector bytes = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
   append_chunk(bytes, "IHDR", as_text(header));
   if (contents.is_srgb) append_chunk(bytes, "sRGB", std::string_view("\0", 1));
-  for (const PngContents::Text& text : contents.texts)
-    append_chunk(bytes, "tEXt", text.keyword + std::string(1, '\0') + text.text);
+  for (const auto& [keyword, text] : contents.texts) append_chunk(bytes, "tEXt", keyword + std::string(1, '\0') + text);
   return bytes;
 }
 
