@@ -48,7 +48,6 @@ class InputFile {
 
   InputFile(Data data, std::size_t size) : data_(std::move(data)), size_(size) {}
   static InputFile read_stream(int descriptor, const std::string& name, std::uint64_t max_bytes);
-  static InputFile map(int descriptor, std::size_t size, const std::string& name);
 
   Data data_;
   std::size_t size_ = 0;

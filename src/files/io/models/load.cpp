@@ -158,8 +158,7 @@ Scene load_named(const std::string& reference, const ModelSource& scene_file) {
   const std::filesystem::path path = scene_file.path_of(reference);
   const InputFile file = scene_file.open(reference, max_file_bytes);
   const auto opened = std::make_shared<OpenedFiles>(path);
-  ModelSource source(printable(reference), scene_file.execution(), file, path, opened);
-  source.decode_images_by(scene_file.image_decoder());
+  ModelSource source(printable(reference), scene_file.execution(), file, path, opened, scene_file.image_decoder());
   if (const auto conversion = conversion_by_suffix(reference)) refuse(source, *conversion);
   auto format = format_of_suffix(reference);
   if (!format) format = format_of_content(file.bytes());
@@ -177,16 +176,14 @@ Scene load(const std::string& path, const LoadOptions& options, const Execution&
   }
   if (path == "-") {
     const InputFile file = InputFile::open_input(path);
-    ModelSource source(input_name(path), execution);
-    source.decode_images_by(options.image_decoder);
+    ModelSource source(input_name(path), execution, options.image_decoder);
     Scene scene = read_any(file.bytes(), source, options.format, options);
     scene.name = "stdin";
     return scene;
   }
   const InputFile file = InputFile::open(path, path);
   const auto opened = std::make_shared<OpenedFiles>(path);
-  ModelSource source(path, execution, file, path, opened);
-  source.decode_images_by(options.image_decoder);
+  ModelSource source(path, execution, file, path, opened, options.image_decoder);
   if (const auto conversion = options.format ? std::nullopt : conversion_by_suffix(path)) refuse(source, *conversion);
   const auto format = options.format ? options.format : format_of_suffix(path);
   Scene scene = read_any(file.bytes(), source, format, options);
@@ -197,8 +194,7 @@ Scene load(const std::string& path, const LoadOptions& options, const Execution&
 
 Scene load(std::span<const std::byte> bytes, const std::string& name, const LoadOptions& options,
            const Execution& execution) {
-  ModelSource source(name, execution);
-  source.decode_images_by(options.image_decoder);
+  ModelSource source(name, execution, options.image_decoder);
   return read_any(bytes, source, options.format, options);
 }
 

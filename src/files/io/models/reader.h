@@ -47,12 +47,12 @@ class OpenedFiles {
 /// A model being read.
 class ModelSource {
  public:
-  /// A model from memory or a stream: files named inside the model cannot be read.
-  ModelSource(std::string name, const Execution& execution) : name_(std::move(name)), execution_(execution) {}
-  /// A model from `file`, which is borrowed, at `path`. Files opened beside it are added to `opened`, unless that is
-  /// null.
+  /// A model from memory or a stream: files named inside the model cannot be read. `decoder` may be null.
+  ModelSource(std::string name, const Execution& execution, const ImageDecoder* decoder = nullptr)
+      : name_(std::move(name)), execution_(execution), image_decoder_(decoder) {}
+  /// A model from `file`, which is borrowed, at `path`. Files opened beside it are added to `opened`.
   ModelSource(std::string name, const Execution& execution, const InputFile& file, std::filesystem::path path,
-              std::shared_ptr<OpenedFiles> opened = nullptr);
+              std::shared_ptr<OpenedFiles> opened, const ImageDecoder* decoder = nullptr);
 
   /// The name of the file in messages.
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -61,7 +61,6 @@ class ModelSource {
   [[nodiscard]] const Execution& execution() const { return execution_; }
   /// LoadOptions's decoder of images; may be null.
   [[nodiscard]] const ImageDecoder* image_decoder() const { return image_decoder_; }
-  void decode_images_by(const ImageDecoder* decoder) { image_decoder_ = decoder; }
   /// Allows files named inside a scene file to lie in these folders, too. \throws Error file_unreadable if one is no
   /// folder.
   void allow_outside(const std::vector<std::string>& folders);

@@ -245,7 +245,7 @@ class AsciiStl {
       facet();
     } else if (same_word(word, "solid")) {
       if (in_solid_) text_.fail("\"solid\" within a solid");
-      begin_solid();
+      begin_solid(name_of(text_.rest()));
     } else if (same_word(word, "endsolid")) {
       text_.rest();
       in_solid_ = false;
@@ -256,9 +256,8 @@ class AsciiStl {
     }
   }
 
-  void begin_solid() {
+  void begin_solid(const std::string& name) {
     in_solid_ = true;
-    const std::string name = name_of(text_.rest());
     add_object(scene_, name, text_.source(), text_.place());
   }
 
@@ -270,7 +269,8 @@ class AsciiStl {
 
   /// Reads facet normal X Y Z outer loop (vertex X Y Z) x 3 endloop endfacet.
   void facet() {
-    if (!in_solid_) begin_solid_without_name();
+    if (!in_solid_ && !scene_.meshes.empty()) text_.fail("\"facet\" outside a solid");
+    if (!in_solid_) begin_solid("");
     Mesh& mesh = scene_.meshes.back();
     expect("normal");
     // The normal follows from the corners; any three words in its place are skipped.
@@ -286,12 +286,6 @@ class AsciiStl {
     expect("endfacet");
     if (first > no_index - 6) text_.source().fail_limit(text_.place(), "too many triangles");
     mesh.triangles.emplace_back(first, first + 1, first + 2);
-  }
-
-  void begin_solid_without_name() {
-    in_solid_ = true;
-    if (!scene_.meshes.empty()) text_.fail("\"facet\" outside a solid");
-    add_object(scene_, "", text_.source(), text_.place());
   }
 
   glm::vec3 vertex() {

@@ -13,7 +13,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "base/srgb.h"
 #include "frontmost/files.h"
 #include "io/input_file.h"
 #include "io/models/gltf/json.h"
@@ -262,13 +261,6 @@ std::string read_name(const JsonValue& value) {
   return name_of(name);
 }
 
-/// \throws Error limit_exceeded if the list has more elements than a scene may have objects.
-void check_count(const JsonValue& array) {
-  if (array.size() > max_objects)
-    array.source().fail_limit(array.place(),
-                              std::to_string(array.size()) + " are more than " + std::to_string(max_objects));
-}
-
 Category read_category(const JsonValue& json, std::uint32_t number) {
   if (json.is_string()) return {read_name(json), number};
   check_keys(json, {"name", "number"});
@@ -285,7 +277,7 @@ class CategoryNames {
     const std::optional<JsonValue> list = root.find("categories");
     is_listed_ = list.has_value();
     if (!list) return;
-    check_count(*list);
+    list->check_count(max_objects);
     std::set<std::uint32_t> numbers;
     for (std::size_t i = 0; i < list->size(); ++i) {
       const JsonValue json = (*list)[i];
@@ -362,15 +354,6 @@ class LookNames {
   std::map<std::string, std::uint32_t> numbers_;
 };
 
-bool read_has_parts(const JsonValue& object) {
-  const std::optional<JsonValue> value = object.find("parts");
-  if (!value) return false;
-  const std::string text = value->to_string();
-  if (text != "together" && text != "apart")
-    value->fail(in_quotes(text) + " is not allowed; expected \"together\" or \"apart\"");
-  return text == "apart";
-}
-
 PlacedModel read_object(const JsonValue& json, const SceneFile& file, CategoryNames& categories,
                         const LookNames& looks) {
   check_keys(json, {"model", "name", "category", "pose", "pose_convention", "translation", "rotation", "scale", "up",
@@ -390,7 +373,12 @@ PlacedModel read_object(const JsonValue& json, const SceneFile& file, CategoryNa
     object.metres_per_unit = read_unit(*unit);
   }
   if (const auto material = json.find("material")) object.replacement = looks.read(*material);
-  object.has_parts = read_has_parts(json);
+  if (const auto parts = json.find("parts")) {
+    const std::string text = parts->to_string();
+    if (text != "together" && text != "apart")
+      parts->fail(in_quotes(text) + " is not allowed; expected \"together\" or \"apart\"");
+    object.has_parts = text == "apart";
+  }
   return object;
 }
 
@@ -407,7 +395,7 @@ SceneFile parse_scene_file(std::string_view text, const ModelSource& source) {
   CategoryNames categories(root, file.categories);
   const LookNames looks(root, file.materials);
   const JsonValue objects = root.require("objects");
-  check_count(objects);
+  objects.check_count(max_objects);
   for (std::size_t i = 0; i < objects.size(); ++i)
     file.objects.push_back(read_object(objects[i], file, categories, looks));
   return file;

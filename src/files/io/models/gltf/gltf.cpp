@@ -180,15 +180,10 @@ void check_extensions(const JsonValue& root, std::vector<std::string>& warnings)
 
 /// Each element costs some hundred bytes of memory, even an empty one ("{}").
 void check_counts(const JsonValue& root) {
-  const auto check = [](const std::optional<JsonValue>& array) {
-    if (array && array->size() > max_objects)
-      array->source().fail_limit(array->place(),
-                                 std::to_string(array->size()) + " are more than " + std::to_string(max_objects));
-  };
   for (const char* key : {"accessors", "bufferViews", "buffers", "cameras", "images", "materials", "meshes", "nodes",
                           "samplers", "skins", "textures"})
-    check(root.find(key));
-  check(find_lights(root));
+    if (const auto array = root.find(key)) array->check_count(max_objects);
+  if (const auto lights = find_lights(root)) lights->check_count(max_objects);
 }
 
 Scene read_scene(const Container& container, const ModelSource& source) {

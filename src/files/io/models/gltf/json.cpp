@@ -97,6 +97,10 @@ std::size_t JsonValue::size() const {
   return value_->size();
 }
 
+void JsonValue::check_count(std::size_t most) const {
+  if (size() > most) source_->fail_limit(place_, std::to_string(size()) + " are more than " + std::to_string(most));
+}
+
 JsonValue JsonValue::operator[](std::size_t i) const {
   return {(*value_)[i], place_ + "[" + std::to_string(i) + "]", *source_};
 }

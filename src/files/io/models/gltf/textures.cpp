@@ -154,14 +154,12 @@ class TextureTable::ImageLoader {
       const auto [alike, is_new] = first_alike_.emplace(look.image, look.image);
       if (is_new) {
         Job job;
-        try {
+        note_problem(job, [&] {
           job.encoded = find_image(look.image);
           const auto [place, is_first] =
               places.try_emplace({job.encoded.bytes.data(), job.encoded.bytes.size(), job.encoded.path}, look.image);
-          alike->second = place->second;
-        } catch (const Error& error) {
-          job.problem = root_.source().without_name(error);
-        }
+          first_alike_[look.image] = place->second;
+        });
         if (alike->second == look.image) by_image_.emplace(look.image, std::move(job));
       }
       ++by_image_.at(alike->second).uses;
@@ -179,7 +177,7 @@ class TextureTable::ImageLoader {
       Job& job = entry.second;  // a named reference, because lambdas may not capture structured bindings
       if (!job.problem.empty()) continue;
       const std::string& place = job.encoded.place;
-      try {
+      note_problem(job, [&] {
         if (job.encoded.bytes.size() > encoded_left)
           throw Error(ErrorCode::limit_exceeded, place, "all images together are larger than the file");
         encoded_left -= job.encoded.bytes.size();
@@ -190,9 +188,7 @@ class TextureTable::ImageLoader {
         };
         if (!budget.take(job.uses * with_bytes(job.encoded, pixel_count)))
           throw Error(ErrorCode::limit_exceeded, place, "too many pixels in all images together");
-      } catch (const Error& error) {
-        job.problem = root_.source().without_name(error);
-      }
+      });
     }
   }
 
@@ -203,14 +199,12 @@ class TextureTable::ImageLoader {
     parallel_for(root_.source().execution(), list.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         Job& job = *list[i];
-        try {
+        note_problem(job, [&] {
           job.texture = with_bytes(job.encoded, [&](Bytes bytes, const std::string& name) {
             return decode_texture(bytes, name, root_.source().image_decoder());
           });
           job.texture.name = job.encoded.name;
-        } catch (const Error& error) {
-          job.problem = root_.source().without_name(error);
-        }
+        });
       }
     });
   }
@@ -219,6 +213,16 @@ class TextureTable::ImageLoader {
   [[nodiscard]] Job& job_of(std::uint32_t image) { return by_image_.at(first_alike_.at(image)); }
 
  private:
+  /// Calls `work`, whose error becomes the problem of the image.
+  template <class Work>
+  void note_problem(Job& job, const Work& work) const {
+    try {
+      work();
+    } catch (const Error& error) {
+      job.problem = root_.source().without_name(error);
+    }
+  }
+
   const JsonValue& root_;
   const Data& data_;
   std::map<std::uint32_t, Job> by_image_;

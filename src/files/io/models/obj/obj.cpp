@@ -62,20 +62,19 @@ class Renumbering {
     for (const std::uint32_t old : used_) numbers_[old] = no_index;
     used_.clear();
     for (glm::uvec3& t : triangles)
-      for (int k = 0; k < 3; ++k)
-        if (t[k] != no_index) t[k] = renumber(t[k]);
+      for (int k = 0; k < 3; ++k) {
+        if (t[k] == no_index) continue;
+        std::uint32_t& number = numbers_[t[k]];
+        if (number == no_index) {
+          number = std::uint32_t(used_.size());
+          used_.push_back(t[k]);
+        }
+        t[k] = number;
+      }
     return used_;
   }
 
  private:
-  std::uint32_t renumber(std::uint32_t old) {
-    if (numbers_[old] == no_index) {
-      numbers_[old] = std::uint32_t(used_.size());
-      used_.push_back(old);
-    }
-    return numbers_[old];
-  }
-
   std::vector<std::uint32_t> numbers_, used_;
 };
 
@@ -274,18 +273,16 @@ class ObjReader {
     append(vertices_, index, pool_.positions.size());
     uvs_.corners.push_back(no_index);
     normals_.corners.push_back(no_index);
-    if (!text_.take('/')) return end_corner();
-    if (text_.integer_here(index)) {
-      uvs_.corners.pop_back();
-      append(uvs_, index, pool_.texcoords.size());
+    if (text_.take('/')) {
+      if (text_.integer_here(index)) {
+        uvs_.corners.pop_back();
+        append(uvs_, index, pool_.texcoords.size());
+      }
+      if (text_.take('/') && text_.integer_here(index)) {
+        normals_.corners.pop_back();
+        append(normals_, index, pool_.normals.size());
+      }
     }
-    if (text_.take('/') && text_.integer_here(index)) {
-      normals_.corners.pop_back();
-      append(normals_, index, pool_.normals.size());
-    }
-    return end_corner();
-  }
-  bool end_corner() {
     if (!text_.at_blank()) text_.fail("not a corner of a face");
     return true;
   }
