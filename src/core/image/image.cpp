@@ -58,8 +58,14 @@ void add(WordHash& hash, const AnyImage& image) {
   }
 }
 
-std::size_t value_count(const Channel& channel) {
-  return channel.is_integer() ? channel.integers().size() : channel.floats().size();
+/// A file stores its channels by name, and find() would never reach the second of one name.
+void check_channels(const std::vector<Channel>& channels, std::size_t value_count, const char* expected) {
+  std::set<std::string_view> names;
+  for (const Channel& channel : channels) {
+    if ((channel.is_integer() ? channel.integers().size() : channel.floats().size()) != value_count)
+      fail("channel " + channel.name + " does not have " + expected);
+    if (!names.insert(channel.name).second) fail("two channels are named " + channel.name);
+  }
 }
 
 }  // namespace
@@ -76,11 +82,7 @@ void validate(const Image& image) {
   validate_size(image.width, image.height);
   if (image.channels.empty()) fail("no channels");
   const std::size_t count = std::size_t(image.width) * std::size_t(image.height);
-  for (const Channel& channel : image.channels) {
-    if (value_count(channel) != count) fail("channel " + channel.name + " does not have width x height values");
-    // A file stores its channels by name, and find() would never reach the second.
-    if (image.find(channel.name) != &channel) fail("two channels are named " + channel.name);
-  }
+  check_channels(image.channels, count, "width x height values");
 }
 
 void validate(const DeepImage& image) {
@@ -90,12 +92,7 @@ void validate(const DeepImage& image) {
   if (image.first.size() != pixels + 1 || image.first[0] != 0 ||
       !std::is_sorted(image.first.begin(), image.first.end()))
     fail("a deep image needs ascending beginnings, one for each pixel, and the end");
-  std::set<std::string_view> names;
-  for (const Channel& channel : image.channels) {
-    if (value_count(channel) != image.first[pixels])
-      fail("channel " + channel.name + " does not have one value for each sample");
-    if (!names.insert(channel.name).second) fail("two channels are named " + channel.name);
-  }
+  check_channels(image.channels, image.first[pixels], "one value for each sample");
 }
 
 void validate(const Bitmap& bitmap) {

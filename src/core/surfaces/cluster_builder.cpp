@@ -276,13 +276,6 @@ std::size_t part_cutouts(const Cutouts* cutouts, Buffer<std::uint64_t>& runs) {
   return kinds[0].size();
 }
 
-/// The number of clusters before the cluster whose first triangle is `id`.
-std::size_t clusters_before(const ClusterSet& set, PrimitiveId id) {
-  std::size_t count = 0;
-  while (count < set.clusters.size() && set.id[set.clusters[count].first_triangle] != id) ++count;
-  return count;
-}
-
 }  // namespace
 
 BoxArrays::BoxArrays(std::size_t count) {
@@ -312,9 +305,13 @@ ClusterSet build_clusters(const PlacedScene& placed, const Execution& execution)
   });
   report_progress(execution, "surfaces", 0.9);
   gather(set, parts, order, execution);
-  set.first_cutout = first_cutout < order.runs.size()
-                         ? clusters_before(set, TriangleRun::unpacked(order.runs[first_cutout]).first)
-                         : set.clusters.size();
+  set.first_cutout = set.clusters.size();
+  if (first_cutout < order.runs.size()) {
+    const PrimitiveId first = TriangleRun::unpacked(order.runs[first_cutout]).first;
+    const auto begins = [&](const Cluster& cluster) { return set.id[cluster.first_triangle] == first; };
+    set.first_cutout =
+        std::size_t(std::find_if(set.clusters.begin(), set.clusters.end(), begins) - set.clusters.begin());
+  }
   report_progress(execution, "surfaces", 1);
   return set;
 }

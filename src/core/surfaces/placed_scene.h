@@ -132,8 +132,6 @@ struct PlacedScene {
   [[nodiscard]] PrimitiveId first_id(const MeshRange& range) const {
     return first_primitives[range.instance] + range.begin;
   }
-  /// Whether triangles of an instance may have holes.
-  [[nodiscard]] bool has_cutouts(std::uint32_t instance) const;
   /// Moves an instance to its place in the scene.
   void follow(std::uint32_t instance, Isa isa);
   /// Makes the levels, and from them the bounds. O(instances * log(instances)).
