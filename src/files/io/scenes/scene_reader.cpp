@@ -228,9 +228,17 @@ class PlacedMeshes {
   const std::vector<std::uint32_t>& meshes_of(const PlacedModel& object, bool is_one) {
     const auto [found, is_new] = known_.emplace(std::pair(is_one, object.replacement), std::vector<std::uint32_t>());
     if (!is_new) return found->second;
-    check_names(object);
+    for (const auto& [name, material] : object.replacement.named)
+      if (std::find(names_.begin(), names_.end(), name) == names_.end())
+        source_.fail(object.place + ".material", "the model has no material " + in_quotes(name));
     if (is_one) {
-      for (const Instance& part : model_.instances) check_part(model_.meshes[part.mesh], object);
+      for (const Instance& part : model_.instances) {
+        const Mesh& mesh = model_.meshes[part.mesh];
+        budget_.charge(1, bytes_of(mesh), object.place, source_);
+        if (mesh.is_curved())
+          source_.fail(object.place + ".model",
+                       "has several curved objects, which cannot be one; say \"parts\": \"apart\"");
+      }
       add_mesh(one_mesh(model_), object.replacement, found->second);
     } else {
       for (const Mesh& mesh : model_.meshes) {
@@ -239,19 +247,6 @@ class PlacedMeshes {
       }
     }
     return found->second;
-  }
-
-  void check_part(const Mesh& mesh, const PlacedModel& object) {
-    budget_.charge(1, bytes_of(mesh), object.place, source_);
-    if (mesh.is_curved())
-      source_.fail(object.place + ".model",
-                   "has several curved objects, which cannot be one; say \"parts\": \"apart\"");
-  }
-
-  void check_names(const PlacedModel& object) const {
-    for (const auto& [name, material] : object.replacement.named)
-      if (std::find(names_.begin(), names_.end(), name) == names_.end())
-        source_.fail(object.place + ".material", "the model has no material " + in_quotes(name));
   }
 
   void add_mesh(Mesh mesh, const Replacement& replacement, std::vector<std::uint32_t>& numbers) {

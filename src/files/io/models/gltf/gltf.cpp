@@ -64,7 +64,7 @@ void take_chunk(Container& container, std::uint32_t type, Bytes chunk, std::size
 
 constexpr std::uint8_t no_digit = 0xFF;
 
-constexpr std::array<std::uint8_t, 256> make_base64_digits() {
+constexpr std::array<std::uint8_t, 256> base64_digits = [] {
   std::array<std::uint8_t, 256> digits{};
   for (std::uint8_t& digit : digits) digit = no_digit;
   constexpr std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -73,9 +73,7 @@ constexpr std::array<std::uint8_t, 256> make_base64_digits() {
   digits['-'] = 62;  // the URL-safe alphabet, which some exporters write
   digits['_'] = 63;
   return digits;
-}
-
-constexpr std::array<std::uint8_t, 256> base64_digits = make_base64_digits();
+}();
 
 std::vector<std::byte> decode_base64(std::string_view text, const JsonValue& place) {
   while (!text.empty() && text.back() == '=') text.remove_suffix(1);

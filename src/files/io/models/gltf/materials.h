@@ -37,7 +37,6 @@ class TextureTable {
     auto operator<=>(const Look&) const = default;
   };
   class ImageLoader;
-  void read_sampler(const JsonValue& texture, Look& look) const;
 
   const JsonValue& root_;
   const Data& data_;

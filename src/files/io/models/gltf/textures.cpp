@@ -46,7 +46,10 @@ bool remap(TextureUse& use, const std::vector<std::uint32_t>& new_numbers) {
 /// Changes a material whose texture is lost. A factor without its texture would not mean what the file says, so the
 /// layer goes; textures that only add colour or bumps are dropped.
 void do_without(const TextureUse* lost, Material& m, const std::string& who, std::vector<std::string>& warnings) {
-  if (lost == &m.metallic_roughness_texture) return lose_metallic_roughness_texture(m, who, warnings);
+  if (lost == &m.metallic_roughness_texture && m.metallic != 0) {
+    m.metallic = 0;  // as most materials; the factor is the greatest value of the texture, not a mean
+    warnings.push_back(who + ": its metallic-roughness texture is missing, so the material is not metallic");
+  }
   if (lost == &m.emissive_texture) return lose_emissive_texture(m, who, warnings);
   const auto lose = [&](auto& layer, const char* name) {
     layer = {};
@@ -78,20 +81,17 @@ std::uint32_t TextureTable::intern(const JsonValue& index, std::vector<std::stri
     warnings.push_back(texture.place() + lack_of_image(texture) + ", materials go without it");
     return lost_texture;
   }
-  read_sampler(texture, look);
+  const std::uint32_t sampler_id = texture.index_or_none("sampler", root_.count("samplers"));
+  if (sampler_id != no_index) {
+    const JsonValue sampler = root_.require("samplers")[sampler_id];
+    look.wrap_u = wrap_of(sampler.unsigned_or("wrapS", repeat_code));
+    look.wrap_v = wrap_of(sampler.unsigned_or("wrapT", repeat_code));
+    look.nearest = sampler.unsigned_or("magFilter", 0) == nearest_code;
+  }
   const auto [entry, is_new] = numbers_.emplace(look, std::uint32_t(looks_.size()));
   // The number is an index of looks_, because it is unknown yet which images can be decoded; load() closes the gaps.
   if (is_new) looks_.push_back(look);
   return entry->second;
-}
-
-void TextureTable::read_sampler(const JsonValue& texture, Look& look) const {
-  const std::uint32_t id = texture.index_or_none("sampler", root_.count("samplers"));
-  if (id == no_index) return;
-  const JsonValue sampler = root_.require("samplers")[id];
-  look.wrap_u = wrap_of(sampler.unsigned_or("wrapS", repeat_code));
-  look.wrap_v = wrap_of(sampler.unsigned_or("wrapT", repeat_code));
-  look.nearest = sampler.unsigned_or("magFilter", 0) == nearest_code;
 }
 
 /// Finds and decodes the images that textures use.

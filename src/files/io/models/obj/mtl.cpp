@@ -57,13 +57,7 @@ class MtlReader {
       material().roughness = unit(value());
     } else if (word == "Pm") {
       material().metallic = unit(value());
-    } else {
-      texture_statement(word);
-    }
-  }
-
-  void texture_statement(std::string_view word) {
-    if (word == "map_Kd") {
+    } else if (word == "map_Kd") {
       maps_[number_].color = read_map();
     } else if (word == "map_d") {
       if (!text_.at_line_end()) maps_[number_].alpha = read_map();  // some exporters leave it empty

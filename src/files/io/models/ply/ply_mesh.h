@@ -60,9 +60,6 @@ struct PlyElement {
       size += size_of(property.is_list ? property.count_type : property.type);
     return size;
   }
-  [[nodiscard]] bool has_lists() const {
-    return std::any_of(properties.begin(), properties.end(), [](const PlyProperty& p) { return p.is_list; });
-  }
 };
 
 enum class PlyEncoding : std::uint8_t { ascii, little, big };

@@ -140,7 +140,8 @@ class PlyStream final : public ModelStream {
     choose_elements();
     start_ = std::move(start.start);
     if (file_) {
-      vertices_.rows = file_->bytes().subspan(vertex_offset_, std::size_t(vertex_bytes()));
+      const std::uint64_t size = vertices_.element->count * vertices_.element->least_row_size();
+      vertices_.rows = file_->bytes().subspan(vertex_offset_, std::size_t(size));
     } else {
       keep_vertices();
     }
@@ -185,9 +186,6 @@ class PlyStream final : public ModelStream {
 
  private:
   [[nodiscard]] Endian endian() const { return endian_of(header_); }
-  [[nodiscard]] std::uint64_t vertex_bytes() const {
-    return vertices_.element->count * vertices_.element->least_row_size();
-  }
   [[noreturn]] void refuse(const std::string& reason) const {
     throw Error(ErrorCode::unsupported, source_.name(), "header", reason);
   }
@@ -212,7 +210,8 @@ class PlyStream final : public ModelStream {
         face_offset_ = offset;
       }
       if (faces_) continue;  // elements behind the faces are ignored
-      if (element.has_lists()) refuse("element " + in_quotes(element.name) + " has lists, and comes before the faces");
+      if (std::any_of(element.properties.begin(), element.properties.end(), [](const auto& p) { return p.is_list; }))
+        refuse("element " + in_quotes(element.name) + " has lists, and comes before the faces");
       const std::uint64_t row = element.least_row_size();
       if (row > 0 && element.count > (size - std::min(size, offset)) / row)
         fail_within(element, (size - std::min(size, offset)) / row);
