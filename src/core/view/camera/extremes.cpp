@@ -87,12 +87,11 @@ void Extremes::include(const glm::vec3& point) {
 }
 
 void Extremes::offer(int direction, double reach, const glm::vec3& point) {
-  Kept& kept = kept_[direction];
   // Points that reach equally far are kept by a fixed order, so that the result does not depend on who came first.
   if (reach < reach_[direction]) return;
-  if (kept.is_set && reach == reach_[direction] && !comes_before(point, kept.point)) return;
+  if (reach == reach_[direction] && !comes_before(point, kept_[direction])) return;
   reach_[direction] = reach;
-  kept = {point, true};
+  kept_[direction] = point;
 }
 
 /// A box as centre and half size, enlarged by more than all rounding, so that no point that would tie is passed over.
@@ -335,8 +334,8 @@ void Extremes::include(const ClusterSet& set) { Search<ClusterParts>({set}, *thi
 
 std::vector<glm::vec3> Extremes::points() const {
   std::vector<glm::vec3> points;
-  for (const Kept& kept : kept_)
-    if (kept.is_set) points.push_back(kept.point);
+  for (int i = 0; i < direction_count; ++i)
+    if (reach_[i] != -kInfinity) points.push_back(kept_[i]);
   std::sort(points.begin(), points.end(), comes_before);
   points.erase(std::unique(points.begin(), points.end()), points.end());
   return points;

@@ -71,18 +71,13 @@ class Extremes {
   /// False if the point would not be kept.
   [[nodiscard]] bool may_change_by(const Projected& point) const;
 
-  struct Kept {
-    glm::vec3 point{0};
-    bool is_set = false;
-  };
-
   glm::dvec3 across_[2], back_;
   glm::dvec2 spread_;
   double cosine_[around], sine_[around];
   double x_[direction_count], y_[direction_count], z_[direction_count];              ///< directions in world axes
   double abs_x_[direction_count], abs_y_[direction_count], abs_z_[direction_count];  ///< absolute values
-  double reach_[direction_count];
-  Kept kept_[direction_count];
+  double reach_[direction_count];  ///< minus infinity until a point is kept
+  glm::vec3 kept_[direction_count]{};
 };
 
 }  // namespace frontmost

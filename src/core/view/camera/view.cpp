@@ -216,20 +216,12 @@ Intrinsics intrinsics_of(const Projection& projection, int width, int height, Pi
 }
 
 View make_view(const Intrinsics& intrinsics, int width, int height) {
-  View view;
-  view.width = width;
-  view.height = height;
-  view.projection = make_projection(intrinsics, width, height, {});
-  return view;
+  return {.width = width, .height = height, .projection = make_projection(intrinsics, width, height, {})};
 }
 
 View make_view(double min_fov, int width, int height) {
   check_size(width, height);
-  View view;
-  view.width = width;
-  view.height = height;
-  view.projection = make_projection(min_fov, double(width) / height, {});
-  return view;
+  return {.width = width, .height = height, .projection = make_projection(min_fov, double(width) / height, {})};
 }
 
 View View::between(double near, double far) const {

@@ -246,9 +246,7 @@ struct RowStrip {
   std::size_t start = 0;  ///< start of the compressed rows, behind the header and a table with one offset a chunk
 };
 
-enum class Pixels : bool { left_out, written };
-
-RowStrip make_strip(Image& image, int first, int end, Pixels pixels, const std::string& name) {
+RowStrip make_strip(Image& image, int first, int end, bool with_pixels, const std::string& name) {
   Imf::Header header(image.width, image.height);
   header.dataWindow() = Imath::Box2i({0, first}, {image.width - 1, end - 1});
   header.compression() = Imf::ZIP_COMPRESSION;
@@ -259,7 +257,7 @@ RowStrip make_strip(Image& image, int first, int end, Pixels pixels, const std::
   {
     Imf::OutputFile out(memory, header, 0);
     strip.start = std::size_t(memory.tellp());
-    if (pixels == Pixels::written) {
+    if (with_pixels) {
       out.setFrameBuffer(frame_buffer(image, 0, 0));
       out.writePixels(end - first);
     }
@@ -348,9 +346,9 @@ void save_exr(const Image& image, OutputFile& file, const Execution& execution) 
   RowStrip head;
   with_named_errors(file.name(), ErrorCode::unsupported, [&] {
     // A file of all rows without pixels has the header and the table of offsets of the whole file.
-    head = make_strip(planes, 0, image.height, Pixels::left_out, file.name());
+    head = make_strip(planes, 0, image.height, false, file.name());
     parallel_for(execution, std::size_t(image.height), strip_rows, [&](std::size_t first, std::size_t end) {
-      strips[first / strip_rows] = make_strip(planes, int(first), int(end), Pixels::written, file.name());
+      strips[first / strip_rows] = make_strip(planes, int(first), int(end), true, file.name());
     });
   });
   fill_in_offsets(head, strips, image.height);

@@ -21,9 +21,10 @@
 namespace frontmost::detail {
 namespace {
 
+enum class Color : std::uint8_t { grey = 0, rgb = 2, rgba = 6 };  ///< values of the file's header
+
 /// Contents of a PNG file. `row` may be called from many threads at once, and more than once for a row.
 struct PngContents {
-  enum class Color : std::uint8_t { grey = 0, rgb = 2, rgba = 6 };  ///< values of the file's header
   int width = 0, height = 0;
   Color color = Color::rgb;
   int bits = 8;                                            ///< 8 or 16, big-endian
@@ -177,8 +178,6 @@ void write_png(const PngContents& contents, OutputFile& file, const Execution& e
   const ByteVector end = tail(strips);
   file.write(std::as_bytes(std::span(end)));
 }
-
-using Color = PngContents::Color;
 
 void store_big_endian(std::uint8_t* place, unsigned value) {
   place[0] = std::uint8_t(value >> 8);
