@@ -125,32 +125,8 @@ Selection Drawer::select(const Mesh& mesh, const SightGatherer& sight) {
   return selection;
 }
 
-namespace {
-
-/// Passes on a few triangles at a time, because the mesh's own arrays do not have this layout.
-void tell_corners(const Mesh& mesh, const std::function<void(CornerSpan)>& tell) {
-  std::vector<std::array<glm::vec3, 3>> corners;
-  constexpr std::size_t at_once = 1024;
-  for (std::size_t begin = 0; begin < mesh.triangles.size(); begin += at_once) {
-    corners.clear();
-    for (std::size_t t = begin; t < std::min(begin + at_once, mesh.triangles.size()); ++t) {
-      const glm::uvec3& triangle = mesh.triangles[t];
-      corners.push_back({mesh.positions[triangle.x], mesh.positions[triangle.y], mesh.positions[triangle.z]});
-    }
-    tell(corners);
-  }
-}
-
-}  // namespace
-
 void Drawer::draw(StreamPiece& piece, const PiecePlace& place, const Scene& frame, SightGatherer& sight,
                   const Execution& execution) {
-  draw_selection(piece, place, frame, sight, execution);
-  if (sight.needs().unseen && sight.is_blank()) tell_corners(piece.mesh, sight.needs().unseen);
-}
-
-void Drawer::draw_selection(StreamPiece& piece, const PiecePlace& place, const Scene& frame, SightGatherer& sight,
-                            const Execution& execution) {
   const Selection selection = select(piece.mesh, sight);
   if (sight.needs().bounds) sight.include(finite_bounds(piece.mesh, 0, piece.mesh.triangles.size()));
   if (selection.numbers.empty()) return;
