@@ -212,10 +212,14 @@ class MaterialWriter {
     surface["roughnessFactor"] = within(material.roughness, 0, 1);
     set(surface, "baseColorTexture", material.base_color_texture);
     set(surface, "metallicRoughnessTexture", material.metallic_roughness_texture);
-    set_scaled(json, "normalTexture", material.normal_texture, "scale", material.normal_scale);
-    set_scaled(json, "occlusionTexture", material.occlusion_texture, "strength",
-               within(material.occlusion_strength, 0, 1));
-    write_emission(json, material);
+    set(json, "normalTexture", material.normal_texture, "scale", material.normal_scale);
+    set(json, "occlusionTexture", material.occlusion_texture, "strength", within(material.occlusion_strength, 0, 1));
+    set(json, "emissiveTexture", material.emissive_texture);
+    const float most = std::max({material.emissive.x, material.emissive.y, material.emissive.z});
+    if (most > 0 && std::isfinite(most)) {
+      json["emissiveFactor"] = color_json(material.emissive / std::max(most, 1.0f));
+      if (most > 1) json["extensions"][document_.uses("KHR_materials_emissive_strength")]["emissiveStrength"] = most;
+    }
     if (material.alpha == Material::Alpha::mask) {
       json["alphaMode"] = "MASK";
       json["alphaCutoff"] = within(material.alpha_cutoff, 0, 1e30f);
@@ -228,13 +232,11 @@ class MaterialWriter {
   }
 
  private:
-  void set(Json& object, const char* key, const TextureUse& use) {
-    if (use.is_set()) object[key] = texture_json(use);
-  }
-  void set_scaled(Json& object, const char* key, const TextureUse& use, const char* factor, float value) {
+  /// Writes the use of a texture, if there is one, and perhaps a factor beside it.
+  void set(Json& object, const char* key, const TextureUse& use, const char* factor = nullptr, float value = 0) {
     if (!use.is_set()) return;
     object[key] = texture_json(use);
-    object[key][factor] = value;
+    if (factor != nullptr) object[key][factor] = value;
   }
   Json texture_json(const TextureUse& use) {
     Json json = {{"index", document_.texture(use.texture)}};
@@ -243,14 +245,6 @@ class MaterialWriter {
     json["extensions"][document_.uses("KHR_texture_transform")] = {
         {"offset", {use.offset.x, use.offset.y}}, {"rotation", use.rotation}, {"scale", {use.scale.x, use.scale.y}}};
     return json;
-  }
-  /// The strength is written separately if it is above 1.
-  void write_emission(Json& json, const Material& material) {
-    const float most = std::max({material.emissive.x, material.emissive.y, material.emissive.z});
-    set(json, "emissiveTexture", material.emissive_texture);
-    if (!(most > 0) || !std::isfinite(most)) return;
-    json["emissiveFactor"] = color_json(material.emissive / std::max(most, 1.0f));
-    if (most > 1) json["extensions"][document_.uses("KHR_materials_emissive_strength")]["emissiveStrength"] = most;
   }
   void write_layers(Json& json, const Material& material) {
     const auto layer = [&](const char* name) -> Json& {
@@ -274,7 +268,7 @@ class MaterialWriter {
       object["clearcoatRoughnessFactor"] = within(c.roughness, 0, 1);
       set(object, "clearcoatTexture", c.factor_texture);
       set(object, "clearcoatRoughnessTexture", c.roughness_texture);
-      set_scaled(object, "clearcoatNormalTexture", c.normal_texture, "scale", c.normal_scale);
+      set(object, "clearcoatNormalTexture", c.normal_texture, "scale", c.normal_scale);
     }
     if (const auto& s = material.sheen; s.color != glm::vec3(0)) {
       Json& object = layer("KHR_materials_sheen");

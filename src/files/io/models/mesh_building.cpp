@@ -375,6 +375,16 @@ std::string skipped_faces_warning(std::uint64_t count) {
   return "faces: " + std::to_string(count) + " with fewer than three corners were passed over";
 }
 
+void append_material(std::vector<std::uint32_t>& ids, std::size_t first, std::size_t count, std::uint32_t material) {
+  if (count == 0) return;
+  if (first == 0) {
+    ids.assign(1, material);
+  } else if (ids.size() > 1 || ids[0] != material) {
+    if (ids.size() == 1) ids.assign(first, ids[0]);
+    ids.resize(first + count, material);
+  }
+}
+
 Mesh& add_object(Scene& scene, const std::string& name, const ModelSource& source, const std::string& place) {
   if (scene.meshes.size() >= max_objects)
     source.fail_limit(place, "more than " + std::to_string(max_objects) + " objects");

@@ -183,22 +183,19 @@ void refuse_singular(const JsonValue& place, const glm::dmat4& pose) {
   if (!(std::abs(volume) > 0 && std::isfinite(volume))) place.fail("the pose is singular, or too large");
 }
 
-glm::dmat4 inverse_of(const JsonValue& place, const glm::dmat4& pose) {
-  const glm::dmat3 turned = glm::inverse(glm::dmat3(pose));
-  glm::dmat4 inverse(turned);
-  inverse[3] = glm::dvec4(-(turned * glm::dvec3(pose[3])), 1);
-  refuse_singular(place, inverse);
-  if (!is_finite(glm::dvec3(inverse[3]))) place.fail("its inverse is too large");
-  return inverse;
-}
-
 glm::dmat4 read_matrix(const JsonValue& object, const JsonValue& value) {
   const glm::dmat4 pose = matrix_by_rows(value, value.is_string() ? numbers_in_file(value) : numbers_in(value));
   refuse_singular(value, pose);
   const std::string convention = object.string_or_empty("pose_convention");
   if (convention.empty() || convention == "model-to-world") return pose;
-  if (convention == "world-to-model") return inverse_of(value, pose);
-  object.require("pose_convention").fail("must be model-to-world or world-to-model");
+  if (convention != "world-to-model")
+    object.require("pose_convention").fail("must be model-to-world or world-to-model");
+  const glm::dmat3 turned = glm::inverse(glm::dmat3(pose));
+  glm::dmat4 inverse(turned);
+  inverse[3] = glm::dvec4(-(turned * glm::dvec3(pose[3])), 1);
+  refuse_singular(value, inverse);
+  if (!is_finite(glm::dvec3(inverse[3]))) value.fail("its inverse is too large");
+  return inverse;
 }
 
 /// A rotation by nine numbers, orthonormal within the rounding errors of data sets.

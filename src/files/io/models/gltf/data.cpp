@@ -45,20 +45,6 @@ const Shape* shape_of(const JsonValue& json) {
   return nullptr;
 }
 
-/// Layout of the components of one element. Columns of matrices start at multiples of four, and so do packed matrices;
-/// the last column has no padding behind it.
-struct RowLayout {
-  std::size_t column, column_stride;  ///< bytes of a column, and from one to the next
-  int columns;
-
-  RowLayout(const Shape& shape, Component component)
-      : column(std::size_t(shape.rows) * size_of(component)),
-        column_stride(shape.columns == 1 ? column : (column + 3) & ~std::size_t(3)),
-        columns(shape.columns) {}
-  [[nodiscard]] std::size_t stride() const { return std::size_t(columns) * column_stride; }
-  [[nodiscard]] std::size_t size() const { return stride() - column_stride + column; }
-};
-
 /// Whether `count` elements, `stride` apart, lie within `length` bytes from `offset` on. Nothing overflows.
 bool fits(std::uint64_t offset, std::uint64_t count, std::uint64_t stride, std::uint64_t element,
           std::uint64_t length) {
@@ -292,12 +278,15 @@ void Data::read_accessor(const JsonValue& json) {
     accessor.components = shape->columns * shape->rows;
     accessor.rows = shape->rows;
     accessor.normalized = json.bool_or("normalized", false);
-    const RowLayout layout(*shape, *component);
-    accessor.column_stride = layout.column_stride;
-    accessor.size = layout.size();
-    accessor.stride = layout.stride();
+    // Columns of matrices start at multiples of four, and so do packed matrices; the last column has no padding behind
+    // it.
+    const std::size_t column = std::size_t(shape->rows) * size_of(*component);
+    accessor.column_stride = shape->columns == 1 ? column : (column + 3) & ~std::size_t(3);
+    const std::size_t packed_stride = std::size_t(shape->columns) * accessor.column_stride;
+    accessor.size = packed_stride - accessor.column_stride + column;
+    accessor.stride = packed_stride;
     find_elements(json, accessor);
-    if (const std::optional<JsonValue> sparse = json.find("sparse")) read_sparse(*sparse, accessor, layout.stride());
+    if (const std::optional<JsonValue> sparse = json.find("sparse")) read_sparse(*sparse, accessor, packed_stride);
   } else {
     // This is no error yet: extensions add accessors for their own use, which readers without the extension never
     // touch.

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "io/models/gltf/nodes.h"
+#include "io/models/mesh_building.h"
 
 namespace frontmost::gltf {
 namespace {
@@ -165,7 +166,7 @@ class MeshBuilder {
       read_corners(primitive, {0, 3 * count}, count == 0 ? nullptr : &triangles[0][0]);
     else
       read_strip_or_fan(primitive, corner_count, triangles);
-    append_materials(primitive, first, count);
+    append_material(mesh_.material_ids, first, count, primitive.material);
     include(primitive, triangles);
   }
 
@@ -187,17 +188,6 @@ class MeshBuilder {
       triangles[i] = primitive.mode == Mode::fan
                          ? glm::uvec3(corners[i + 1], corners[i + 2], corners[0])
                          : glm::uvec3(corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]);
-  }
-
-  void append_materials(const Primitive& primitive, std::size_t first, std::size_t count) {
-    std::vector<std::uint32_t>& ids = mesh_.material_ids;
-    if (count == 0) return;
-    if (first == 0) {
-      ids.assign(1, primitive.material);
-    } else if (ids.size() > 1 || ids[0] != primitive.material) {
-      if (ids.size() == 1) ids.assign(first, ids[0]);
-      ids.resize(first + count, primitive.material);
-    }
   }
 
   /// Checks vertex numbers and widens the range of needed vertices.
