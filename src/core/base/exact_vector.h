@@ -254,8 +254,7 @@ struct DoubleDouble {
   return value > error ? 1 : value < -error ? -1 : 0;
 }
 
-/// Whether two vectors surely lie along one line. Decides only if their components are doubles without rounding;
-/// otherwise false.
+/// Whether two vectors surely lie along one line. False unless their components are doubles without rounding.
 [[nodiscard]] inline bool are_parallel(const Leg& a, const Leg& b) {
   double v[2][3];
   for (int axis = 0; axis < 3; ++axis) {

@@ -2,8 +2,7 @@
 // The sRGB function by roots instead of powers, and its tables, which are computed at compile time.
 //
 // srgb8_of_linear() looks up a float by the upper half of its bits. A bucket holds at most one threshold from one byte
-// to the next. Its entry is such that adding the lower half of the bits carries into the byte exactly from the
-// threshold on:
+// to the next. Adding the lower half of the bits to its entry carries into the byte exactly from the threshold on:
 //
 //   entry            | byte     | 65536 - threshold |
 //   + lower half     | 0        | bits              |

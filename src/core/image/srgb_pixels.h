@@ -50,8 +50,7 @@ void store_srgb(const float (&color)[3], float alpha, Value* out) {
   }
 }
 
-/// Row y as bytes R, G, B, or R, G, B, A. Values out of range are clamped, NaN gives 0, and pixels with alpha 0 are
-/// black.
+/// Row y as bytes R, G, B, or R, G, B, A. Values out of range are clamped, NaN gives 0, alpha 0 gives black.
 void srgb8_row(const ColorPlanes& planes, int y, bool with_alpha, std::uint8_t* row);
 /// srgb8_row() in 16 bits.
 void srgb16_row(const ColorPlanes& planes, int y, bool with_alpha, std::uint16_t* row);

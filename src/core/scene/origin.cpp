@@ -6,8 +6,7 @@
 //                                                    ^ the roundest number near here
 //
 // This number becomes the origin if the distance is so much greater than the extent that floats would round the
-// details. The search is over as soon as one point is so near to zero, or so far from the others, that no other point
-// matters.
+// details. The search ends when a point is so near to zero, or so far from the others, that no other one matters.
 #include "scene/origin.h"
 
 #include <algorithm>

@@ -6,8 +6,7 @@
 // parts are profiles, handle and spout are halves. This file lists only numbers that are not reflections.
 //
 // Every patch becomes a grid of triangles, and points that two patches share are stored once. Patches of one part (body
-// with lid and bottom, handle, spout) are welded where their points agree to the bit, which evaluate() guarantees along
-// shared edges.
+// with lid and bottom, handle, spout) are welded where their points agree to the bit, as on shared edges.
 #include <algorithm>
 #include <map>
 #include <tuple>

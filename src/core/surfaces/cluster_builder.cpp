@@ -258,8 +258,7 @@ void gather(ClusterSet& set, std::vector<ClusterPart>& parts, const SpatialOrder
   });
 }
 
-/// Moves triangles that may have holes to the end of the order; runs that hold both kinds are split. \returns the first
-/// run with cutouts.
+/// Moves triangles that may have holes to the end, and splits runs of both kinds. \returns the first run with cutouts.
 std::size_t part_cutouts(const Cutouts* cutouts, Buffer<std::uint64_t>& runs) {
   if (!cutouts) return runs.size();
   std::vector<std::uint64_t> kinds[2];

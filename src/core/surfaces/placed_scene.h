@@ -5,8 +5,7 @@
 //   ranges     | 2048 | 2048 | rest |  | 2048 | 2048 | rest |  | rest |           triangles that follow one another
 //   boxes      one for 64 triangles each, in world space
 //
-// Nothing is copied: positions stay in the scene's meshes and go through to_world() at every read. Frequent readers use
-// clusters.
+// Positions are not copied: they stay in the meshes and go through to_world() when read. Frequent readers use clusters.
 #pragma once
 
 #include <algorithm>
@@ -64,8 +63,7 @@ struct NumberRange {
 
 /// Consecutive triangles of one instance.
 struct MeshRange {
-  /// Drawing so many takes long compared with handing them to a thread, and their vertices stay in the second-level
-  /// cache.
+  /// Drawing so many takes long compared with handing them over; their vertices stay in the second-level cache.
   static constexpr std::uint32_t most_triangles = 2048;
   /// Triangles in a box of PlacedScene::boxes.
   static constexpr std::uint32_t triangles_in_box = 64;
@@ -91,8 +89,7 @@ class MoveLog {
     }
     instances_.push_back(instance);
   }
-  /// Calls visit(instance) for all instances that may have moved since the log had `seen` moves, and sets `seen` to
-  /// count().
+  /// Calls visit(instance) for instances that may have moved after the first `seen` moves, and sets `seen` to count().
   template <class Visit>
   void visit_since(std::uint64_t& seen, std::size_t instance_count, const Visit& visit) const {
     if (seen < first_)
@@ -139,8 +136,7 @@ struct PlacedScene {
   /// Updates the levels and the bounds for one instance. O(log(instances)).
   void follow_bounds(std::uint32_t instance);
 
-  /// Calls visit(vertex) for the world-space vertices of a box's triangles, except those that a triangle shares with
-  /// the one before.
+  /// Calls visit(vertex) for the world-space vertices of a box's triangles, but those shared with the triangle before.
   template <class Visit>
   void visit_box(std::size_t box, const Visit& visit) const;
 };
@@ -209,8 +205,7 @@ void place_vertices(const glm::dmat4& world_from_mesh, std::span<const glm::vec3
 
 /// The least and greatest vertex number. Precondition: not empty.
 [[nodiscard]] NumberRange range_of_numbers(std::span<const glm::uvec3> corners, Isa isa);
-/// Finds a box for each MeshRange::triangles_in_box triangles. Triangles with vertices that are not finite are in no
-/// box.
+/// Finds a box for each MeshRange::triangles_in_box triangles. Triangles with non-finite vertices are in none.
 void find_boxes(const WorldTriangles& triangles, Isa isa, Box* boxes);
 
 }  // namespace frontmost

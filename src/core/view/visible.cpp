@@ -4,8 +4,7 @@
 //
 //   (key, id) wins over (key', id')  where  key > key',  or  key == key' and id < id'
 //
-// The rule depends neither on order nor on repetition, so parts of a scene may be merged in any order, twice, or by a
-// tree of machines.
+// The rule depends neither on order nor on repetition: parts of a scene may be merged in any order, or twice.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -41,8 +40,7 @@ constexpr std::size_t samples_at_once = 1u << 16;
   throw Error(ErrorCode::limit_exceeded, who, "more than 4294967294 triangles, the most that ids can number");
 }
 
-/// Merges a run of samples, without branches, so that the compiler uses vectors. \returns the greatest new id of all
-/// seen.
+/// Merges a run of samples, without branches, so that the compiler uses vectors. \returns the greatest new id.
 std::uint64_t merge_run(Visible& into, const Visible& other, PrimitiveId first_id, std::size_t begin, std::size_t end) {
   PrimitiveId* ids = into.primitives.data();
   float* keys = into.keys.data();

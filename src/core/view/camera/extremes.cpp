@@ -3,8 +3,7 @@
 //
 // The search begins with the boxes that reach farthest in each direction. The points found bound a polygon in each of
 // two planes (Core): a point within both polygons reaches less far than the kept points. Most boxes lie wholly in the
-// core and are passed over. Each vertex of other boxes is tested, and the core is made anew once it has become too
-// small.
+// core and are passed over. Each vertex of other boxes is tested, and the core is made anew if it is too small.
 //
 //     . - - - - - - *   --> direction k: the farthest point is kept
 //    /             /
@@ -103,8 +102,7 @@ struct Extremes::Extent {
     middle = 0.5 * (low + high);
     half = 0.5 * (high - low);
     const glm::dvec3 size = glm::abs(middle) + half;
-    // Coordinates are floats, exact in double. A reach is three products and two sums of them, and errs by less than
-    // 1e-15 of this sum.
+    // Coordinates are floats, exact in double. A reach, a sum of three products, errs by less than 1e-15 of this sum.
     half += 1e-12 * (size.x + size.y + size.z);
   }
 };
@@ -220,8 +218,7 @@ class Extremes::Core {
   Polygon polygons_[2];
 };
 
-/// Visits the boxes that reach farthest in each direction, and then all boxes that are not within the core of the
-/// points found.
+/// Visits the boxes that reach farthest in each direction, then all that are not within the core of the points found.
 template <class Parts>
 class Extremes::Search {
  public:

@@ -34,8 +34,7 @@ struct FilledFrustum {
 
 /// Keeps, of any number of points, those that lie farthest in some fixed directions: the directions in which the sides
 /// of a frustum move, exactly, and 64 around each of the two planes in which its sides can be drawn. The kept points
-/// depend on the set of points alone, not on their order. So a model in pieces is framed to the bit like the whole
-/// model.
+/// depend on the set of points alone, not on their order. So a model in pieces is framed like the whole one.
 class Extremes {
  public:
   explicit Extremes(const FilledFrustum& frustum);

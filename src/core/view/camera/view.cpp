@@ -270,8 +270,7 @@ constexpr auto kSampleOffsets = [] {
   return offsets;
 }();
 
-/// A value that is too large is a limit of the library, a value that is too small an error of the caller; messages name
-/// both ends.
+/// A value that is too large exceeds a limit of the library, a value too small is an error of the caller.
 void check_range(double value, double low, double high, const char* what) {
   if (!(value >= low && value <= high))
     throw Error(value > high ? ErrorCode::limit_exceeded : ErrorCode::bad_argument, std::string(what),

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Curved meshes as triangles that are fine enough for one view: first the levels, so that limits are known, then
-// triangles.
+// Curved meshes as triangles fine enough for one view: first the levels, so that limits are known, then triangles.
 //
 //   scene, view --Plan--> a level for every instance of a curved mesh --> one mesh for every pair of mesh and level
 //                         count of triangles, or an error                 instances refer to theirs
 //
 // A model may place a sphere a thousand times at the same size; instances that need the same fineness share a mesh. A
-// patch becomes a grid whose rims are as fine as the neighbours need: rows of quads inside, fans of triangles along
-// finer rims.
+// patch becomes a grid whose rims are as fine as the neighbours need: quads inside, fans of triangles along finer rims.
 //
 // A level is the first at which the error of the grid does not exceed the tolerated displacement:
 //
@@ -38,8 +36,7 @@ namespace {
 
 constexpr int kFewestRings = 4;
 
-/// An upper bound of the factor by which a matrix can lengthen a vector (Gershgorin's circles about M^T M); exact for
-/// rotations with a scale.
+/// How much a matrix can lengthen a vector, at most (Gershgorin's circles about M^T M); exact for scaled rotations.
 double greatest_stretch(const glm::dmat3& m) {
   const glm::dmat3 squares = glm::transpose(m) * m;
   double most = 0;
@@ -125,8 +122,7 @@ PatchLevel PatchBending::level_within(double tolerance) const {
   // A control point is infinite or NaN: tessellate() leaves such patches out.
   if (!std::isfinite(error(level))) return level;  // never seen
   while (error(level) > tolerance && (level.u < finest_level || level.v < finest_level)) {
-    // The direction with the greater share of the error is halved. This quarters its share, and keeps the triangles of
-    // the other direction.
+    // The direction with the greater share of the error is halved. This quarters its share, and keeps the other.
     const double by_u = uu_ / level.u / level.u, by_v = vv_ / level.v / level.v;
     // If only the twist remains, the longer cells are halved.
     const bool is_u = by_u != by_v ? by_u > by_v : level.u <= level.v;
@@ -328,8 +324,7 @@ Mesh make_triangles(const Mesh& curved, const MeshLevel& level) {
   return mesh;
 }
 
-/// The fineness of each instance of a curved mesh, known before anything is made; instances that are alike share
-/// meshes.
+/// The fineness of each instance of a curved mesh, known before anything is made; equal instances share meshes.
 struct Plan {
   using Key = std::pair<std::uint32_t, MeshLevel>;  ///< a mesh, and its level
 
