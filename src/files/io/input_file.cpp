@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole file in memory is mapped if that pays off, else read, with a limit that is checked before memory is
-// allocated.
+// A whole file is mapped if that pays off, else read, with a limit that is checked before memory is allocated.
 #include "io/input_file.h"
 
 #include <fcntl.h>

@@ -91,8 +91,7 @@ class ByteStream {
 
 /// \throws Error file_unreadable: "name: reason".
 [[noreturn]] void fail_to_read(const std::string& name, const std::string& reason);
-/// \throws Error file_unreadable with the system's text for errno. Precondition: errno is unchanged since the failed
-/// call.
+/// \throws Error file_unreadable with the system's text for errno, which is unchanged since the failed call.
 [[noreturn]] void fail_to_read_by_errno(const std::string& name, const char* doing);
 
 }  // namespace frontmost

@@ -5,8 +5,7 @@
 //   parse and work             +-- worker 0 --------+           +-- worker 0 ...
 //                                         +-- worker 1 ---------------+
 //
-// Fetching only reads bytes, so files are read from front to back. Each worker has memory of its own, which its pieces
-// reuse.
+// Fetching only reads bytes, so files are read from front to back. Each worker has memory of its own.
 #pragma once
 
 #include <exception>

@@ -25,8 +25,7 @@ inline constexpr std::uint64_t max_image_pixels = std::uint64_t(1) << 28;
 [[nodiscard]] Texture decode_texture(std::span<const std::byte> bytes, const std::string& name,
                                      const ImageDecoder* decoder = nullptr);
 
-/// Width and height, by `decoder` or as the file's header states them, without decoding. Limits and errors are those of
-/// decode_texture().
+/// Width and height, by `decoder` or by the file's header, without decoding. Limits and errors as decode_texture().
 [[nodiscard]] glm::ivec2 texture_size(std::span<const std::byte> bytes, const std::string& name,
                                       const ImageDecoder* decoder = nullptr);
 

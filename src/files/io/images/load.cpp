@@ -22,9 +22,8 @@ struct Signature {
 
 using namespace std::string_view_literals;
 
-/// Formats that occur in models but are not read; messages name them instead of calling them broken. Literals with a
-/// zero byte inside use the suffix sv, because a plain literal would end at the zero. "MM" alone begins many
-/// texts.
+/// Formats that occur in models but are not read; messages name them. Literals with a zero byte inside use the suffix
+/// sv, because a plain literal would end at the zero. "MM" alone begins many texts.
 constexpr Signature foreign_formats[] = {
     {1, "KTX 20", "KTX2"},
     {1, "KTX 11", "KTX"},
@@ -125,8 +124,7 @@ void check_image_size(const std::string& name, std::uint64_t width, std::uint64_
     throw Error(ErrorCode::limit_exceeded, name, format,
                 size + " pixels, more than " + std::to_string(max_image_side) + " on a side or " +
                     std::to_string(max_image_pixels) + " in all");
-  // A file of some hundred bytes may claim the greatest size. Memory is allocated only if the bytes can hold the
-  // pixels.
+  // A small file may claim the greatest size. Memory is allocated only if the bytes can hold the pixels.
   if (double(width * height) > densest * double(byte_count))
     fail_image(name, format, std::to_string(byte_count) + " bytes cannot hold " + size + " pixels");
 }

@@ -251,8 +251,7 @@ void save_pfm(const Image& image, OutputFile& file) {
 Image load_pfm(std::span<const std::byte> bytes, const std::string& name) {
   PfmHeader header(bytes, name);
   RawLayout layout;
-  // Other programs have extended the format, for example PF4 with four channels. A prefix match would misread such
-  // files.
+  // Other programs have extended the format, such as PF4 with four channels. A prefix match would misread these.
   const std::string_view kind = header.word();
   if (kind != "PF" && kind != "Pf") fail_image(name, "PFM", "neither PF nor Pf");
   layout.channels = kind == "PF" ? 3 : 1;

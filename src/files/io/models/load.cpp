@@ -48,8 +48,7 @@ bool looks_like_obj(std::string_view text) {
                      [&](std::string_view word) { return starts_with_word(text, word); });
 }
 
-/// Whether the text of JSON has the member "asset". Writers that sort keys put it behind the accessors, so all text is
-/// searched.
+/// Whether the text of JSON has the member "asset". Writers that sort keys put it far back, so all text is searched.
 bool has_asset(Bytes bytes) { return text_of(bytes).find("\"asset\"") != std::string_view::npos; }
 
 /// A remark about the points of a scene without triangles.

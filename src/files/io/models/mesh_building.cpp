@@ -94,8 +94,7 @@ class CornerTree {
 
   /// Whether a marked corner blocks the ear a, b, c with its tip at b. A corner blocks if one of its edges leads into
   /// the ear. If `by_touching`, two more corners block: one on an edge of the ear, and one at b whose edges follow
-  /// those of the ear, as it may belong to a bridge that turns there. Adds to `work` the number of boxes and corners
-  /// tested.
+  /// those of the ear, as it may belong to a bridge that turns there. Adds the boxes and corners tested to `work`.
   [[nodiscard]] bool blocks(const std::array<glm::vec2, 3>& ear, bool by_touching, std::uint64_t& work) const {
     const auto& [a, b, c] = ear;
     const glm::vec2 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));

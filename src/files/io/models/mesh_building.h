@@ -59,8 +59,7 @@ class PolygonWriter {
   std::uint64_t skipped_ = 0;
 };
 
-/// Gives the `count` newest triangles of a mesh, from number `first` on, a material. One id stands for all triangles as
-/// long as they agree.
+/// Gives the newest triangles of a mesh, from `first` on, a material. One id stands for all as long as they agree.
 void append_material(std::vector<std::uint32_t>& ids, std::size_t first, std::size_t count, std::uint32_t material);
 
 /// A warning for Scene::warnings about polygons that PolygonWriter skipped.

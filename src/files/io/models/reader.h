@@ -61,8 +61,7 @@ class ModelSource {
   [[nodiscard]] const Execution& execution() const { return execution_; }
   /// LoadOptions's decoder of images; may be null.
   [[nodiscard]] const ImageDecoder* image_decoder() const { return image_decoder_; }
-  /// Allows files named inside a scene file to lie in these folders, too. \throws Error file_unreadable if one is no
-  /// folder.
+  /// Allows files named inside a scene file to lie in these, too. \throws Error file_unreadable if one is no folder.
   void allow_outside(const std::vector<std::string>& folders);
 
   /// Whether files named inside the model can be read at all.
@@ -176,8 +175,7 @@ enum class StlEncoding : std::uint8_t { binary, ascii, neither };
 /// - neither: anything else. At least 84 bytes that are no text may be a broken binary file, but only the caller knows
 ///   whether the file's name says STL.
 [[nodiscard]] StlEncoding stl_encoding(Bytes start, std::uint64_t file_size);
-/// The encoding of a file that should be STL; binary for one that may be a broken binary file. \throws Error with the
-/// reason if it is neither.
+/// The encoding of a file that should be STL; binary for one that may be broken. \throws Error if it is neither.
 [[nodiscard]] StlEncoding known_stl_encoding(Bytes start, std::uint64_t file_size, const ModelSource& source);
 
 // Formats that are not read, and programs that convert them.
@@ -187,8 +185,7 @@ enum class StlEncoding : std::uint8_t { binary, ascii, neither };
 [[nodiscard]] std::optional<std::string> conversion_by_suffix(const std::string& path);
 /// Advice by the first bytes, for input without a suffix such as standard input.
 [[nodiscard]] std::optional<std::string> conversion_by_content(Bytes bytes);
-/// Advice for the glTF file `path`, by extensions that it requires or uses. Empty if no program is known for any of
-/// them.
+/// Advice for the glTF file `path`, by extensions that it requires or uses. Empty if no program is known for any.
 [[nodiscard]] std::optional<std::string> conversion_of_extensions(const std::vector<std::string>& names,
                                                                   const std::string& path);
 

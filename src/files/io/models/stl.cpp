@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// STL: binary files, whole or piece by piece, and text. Stored normals are dropped, because they follow from the
-// corners.
+// STL: binary files, whole or piece by piece, and text. Stored normals are dropped, as they follow from the corners.
 //
 //   byte   0                    80        84                134               184
 //          | anything, 80 bytes | count   | triangle 0      | triangle 1      | ...
@@ -326,8 +325,7 @@ class StlStream final : public ModelStream {
     Mesh& mesh = scene_.meshes.emplace_back();
     mesh.name = header_name(start_);
     scene_.instances.push_back({.name = mesh.name, .mesh = 0});
-    // A stream that can be read only once keeps its origin at zero. Its coordinates are floats, so no precision is
-    // lost.
+    // A stream that can be read only once keeps its origin at zero. Its coordinates are floats: nothing is lost.
     if (can_rewind()) set_origin(scene_, fitting_origin());
   }
 

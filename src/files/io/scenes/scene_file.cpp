@@ -265,8 +265,7 @@ Category read_category(const JsonValue& json, std::uint32_t number) {
   return {read_name(json.require("name")), given ? given->to_index(no_index) : number};
 }
 
-/// Categories by name. The names come from the file's list "categories" or, without such a list, from the names that
-/// objects use.
+/// Categories by name. The names come from the file's list "categories" or, without one, from the objects.
 class CategoryNames {
  public:
   /// Fills `categories`, which is borrowed. \throws Error file_malformed if a name or a number occurs twice.

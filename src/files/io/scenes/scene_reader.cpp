@@ -197,8 +197,7 @@ class PlacedMeshes {
 
   [[nodiscard]] const Scene& model() const { return model_; }
 
-  /// The objects of the scene that one object of the scene file makes. `scene_from_model` applies to the model's
-  /// coordinates.
+  /// The objects of the scene that one object of the scene file makes. `scene_from_model` applies to the model.
   std::vector<Instance> place(const PlacedModel& object, const glm::dmat4& scene_from_model) {
     const bool is_one = !object.has_parts && model_.instances.size() > 1;
     const std::vector<std::uint32_t>& meshes = meshes_of(object, is_one);
@@ -290,8 +289,7 @@ class SceneReader {
   }
 
  private:
-  /// Groups the objects by their model, as told by the path of its file. Models are in the order of their first
-  /// objects.
+  /// Groups the objects by the path of their model's file. Models are in the order of their first objects.
   void find_models() {
     std::map<std::string, std::size_t> by_reference, by_path;
     for (std::size_t i = 0; i < file_.objects.size(); ++i) {
@@ -386,8 +384,7 @@ class SceneReader {
 //   positions   a b c d | e f g          triangles   0 1 2, 0 2 3 | 4 5 6
 //
 // Normals, colours and texture coordinates are joined likewise. Attributes stay indexed by vertex unless a mesh indexes
-// them by corner. A mirrored object swaps the last two corners of its triangles, as elsewhere, to keep their outer
-// side.
+// them by corner. A mirrored object swaps the last two corners of its triangles, to keep their outer side.
 Mesh one_mesh(const Scene& model) {
   const std::vector<PartOfModel> parts = parts_of(model);
   Mesh all;

@@ -22,8 +22,7 @@
 namespace frontmost::detail {
 namespace {
 
-/// Compresses a piece by itself into `out`, which has room for the worst case. \returns the part of `out` that was
-/// filled.
+/// Compresses a piece by itself into `out`, which has room for the worst case. \returns the filled part of `out`.
 std::span<const std::uint8_t> deflate_piece(z_stream& stream, std::span<const std::uint8_t> raw, bool last,
                                             Buffer<std::uint8_t>& out) {
   ::deflateReset(&stream);

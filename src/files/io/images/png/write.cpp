@@ -163,8 +163,7 @@ ByteVector tail(const std::vector<Strip>& strips) {
 /// Writes the whole file. The bytes do not depend on the number of threads.
 void write_png(const PngContents& contents, OutputFile& file, const Execution& execution) {
   const std::size_t row_size = std::size_t(contents.width) * contents.pixel_bytes();
-  // The number of rows depends on the size of a row, never on the number of threads, because strips show in the file's
-  // bytes.
+  // The number of rows depends on the size of a row, never on threads, because strips show in the file's bytes.
   const std::size_t rows = std::max<std::size_t>(1, strip_bytes / (row_size + 1));
   Pool<Workspace> workspaces;
   std::vector<Strip> strips((std::size_t(contents.height) + rows - 1) / rows);
@@ -278,8 +277,7 @@ PngContents depth_map(const Image& image, const std::optional<double>& scale, co
   contents.row = [&image, mapping, fitted = !scale](int y, std::uint8_t* row) {
     const float* depths = image.channels[0].floats().data() + std::size_t(y) * std::size_t(image.width);
     for (int x = 0; x < image.width; ++x) {
-      // 0 means that the pixel shows nothing, so visible depths become at least 1. Depths that are not before the eye
-      // get 0.
+      // 0 means that the pixel shows nothing, so visible depths become at least 1, and depths not before the eye 0.
       const bool seen = std::isfinite(depths[x]) && (fitted || depths[x] > 0);
       store_big_endian(row + 2 * x, seen ? unsigned(std::clamp(mapping.stored(depths[x]), 1.0, 65535.0)) : 0);
     }

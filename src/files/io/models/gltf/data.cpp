@@ -278,8 +278,7 @@ void Data::read_accessor(const JsonValue& json) {
     accessor.components = shape->columns * shape->rows;
     accessor.rows = shape->rows;
     accessor.normalized = json.bool_or("normalized", false);
-    // Columns of matrices start at multiples of four, and so do packed matrices; the last column has no padding behind
-    // it.
+    // Columns of matrices, and packed matrices, start at multiples of four; the last column has no padding.
     const std::size_t column = std::size_t(shape->rows) * size_of(*component);
     accessor.column_stride = shape->columns == 1 ? column : (column + 3) & ~std::size_t(3);
     const std::size_t packed_stride = std::size_t(shape->columns) * accessor.column_stride;
@@ -288,8 +287,7 @@ void Data::read_accessor(const JsonValue& json) {
     find_elements(json, accessor);
     if (const std::optional<JsonValue> sparse = json.find("sparse")) read_sparse(*sparse, accessor, packed_stride);
   } else {
-    // This is no error yet: extensions add accessors for their own use, which readers without the extension never
-    // touch.
+    // This is no error yet: extensions add accessors, which readers without the extension never touch.
     accessor.unreadable = "the accessor's type is unknown";
   }
   accessors_.push_back(accessor);
@@ -315,8 +313,7 @@ void Data::find_elements(const JsonValue& json, Accessor& accessor) const {
     accessor.unreadable = no_contents;
 }
 
-/// The bytes of packed elements in the view that `json` names, from the first one on. Empty if the view has no
-/// contents.
+/// The bytes of packed elements in the view that `json` names, from the first on. Empty if it has no contents.
 Bytes Data::packed(const JsonValue& json, std::size_t count, std::size_t stride, std::size_t size) const {
   const ByteExtent& view = views_[json.require("bufferView").to_index(views_.size())];
   const std::uint64_t offset = json.unsigned_or("byteOffset", 0);

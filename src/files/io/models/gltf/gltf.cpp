@@ -202,8 +202,7 @@ Scene read_scene(const Container& container, const ModelSource& source) {
   place_meshes(root, data, plans, tree, scene);
   place_cameras(root, tree, scene);
   place_lights(root, tree, scene);
-  // Textures come last, and only those that materials use: decoding is the dearest step, and futile if another step
-  // fails.
+  // Textures come last, and only those that materials use: decoding is the dearest step, and futile if another fails.
   textures.load(scene);
   return scene;
 }

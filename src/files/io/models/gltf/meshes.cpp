@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns a mesh of the file into one Mesh: all its primitives, one after the other, with vertices moved by morph targets
-// and joints.
+// Turns a mesh of the file into one Mesh: all its primitives in order, with vertices moved by morph targets and joints.
 //
 // Exporters let primitives, and whole meshes, share one large array of vertices, which must not be stored repeatedly.
-// So triangles are read first, to find the range of vertices that each block of primitives uses, and only that range is
-// read.
+// So triangles are read first, to find the range of vertices that each block of primitives uses, which alone is read.
 #include <algorithm>
 #include <bit>
 #include <numeric>
@@ -65,8 +63,7 @@ class Influences {
     }
   }
 
-  /// The weighted mean of the joints' matrices. Weights stored as bytes may not sum to exactly one, so the sum is
-  /// divided out.
+  /// The weighted mean of the joints' matrices. Weights stored as bytes may not sum to one, so the sum is divided out.
   [[nodiscard]] glm::dmat4 matrix(std::size_t vertex, std::span<const glm::dmat4> joints) const {
     glm::dmat4 sum(0.0);
     double total = 0;
@@ -177,8 +174,7 @@ class MeshBuilder {
       std::iota(out, out + range.count, std::uint32_t(range.first));
   }
 
-  /// Takes corners in the order that the format defines for each mode, which keeps the winding of a strip's odd
-  /// triangles.
+  /// Takes corners in the format's order for each mode, which keeps the winding of a strip's odd triangles.
   void read_strip_or_fan(const Primitive& primitive, std::size_t corner_count, std::span<glm::uvec3> triangles) const {
     if (triangles.empty()) return;
     budget_.charge(corner_count, sizeof(std::uint32_t), primitive.place, source_);

@@ -99,8 +99,7 @@ void find_parents(std::vector<Node>& nodes, const ModelSource& source) {
     }
 }
 
-/// The nodes from `starts` downwards, in order, each before its children. The stack is explicit, since trees may be a
-/// million levels deep.
+/// The nodes from `starts` down, in order, each before its children. Trees may be too deep for recursion.
 std::vector<std::uint32_t> walk(const std::vector<Node>& nodes, std::vector<std::uint32_t> starts) {
   std::vector<std::uint32_t> order, stack(starts.rbegin(), starts.rend());
   std::vector<bool> seen(nodes.size());
@@ -156,8 +155,7 @@ std::vector<std::uint32_t> scene_starts(const JsonValue& root, std::size_t node_
 /// Matrices world_from_joint * inverse bind matrix for the joints of a skin, in rest pose.
 using Joints = std::vector<glm::dmat4>;
 
-/// Skinned vertices are stored in world space; if they lie far from zero, they are stored relative to an origin near
-/// them.
+/// Skinned vertices are stored in world space, or, if they lie far from zero, relative to an origin near them.
 struct Skin {
   Joints joints;
   glm::dvec3 origin{0};

@@ -112,8 +112,7 @@ struct NodeTree {
 void place_meshes(const JsonValue& root, const Data& data, const std::vector<MeshPlan>& plans, const NodeTree& tree,
                   Scene& scene);
 
-/// Fills scene.cameras, one for each shown node with a camera. Hidden nodes keep their cameras, as the extension
-/// requires.
+/// Fills scene.cameras, one for each shown node with a camera. Hidden nodes keep theirs, as the extension requires.
 void place_cameras(const JsonValue& root, const NodeTree& tree, Scene& scene);
 
 /// The list of lights that nodes refer to by number (KHR_lights_punctual), or nothing.

@@ -146,8 +146,7 @@ class TextureTable::ImageLoader {
 
   ImageLoader(const JsonValue& root, const Data& data) : root_(root), data_(data) {}
 
-  /// Textures that lie in the same place share an image: some exporters write an image for each material, and hostile
-  /// files write thousands.
+  /// Textures in the same place share an image: some exporters write one for each material, hostile files thousands.
   void find(const std::vector<Look>& looks) {
     std::map<std::tuple<const std::byte*, std::size_t, std::string>, std::uint32_t> places;
     for (const Look& look : looks) {
@@ -168,8 +167,7 @@ class TextureTable::ImageLoader {
 
   /// Reads the images' headers. Images that exceed the budget get a problem, before memory is allocated.
   void check_sizes() {
-    // Buffer views may overlap, and scanning an image's chunks takes time, so each byte may belong to a few images
-    // only.
+    // Buffer views may overlap, and scanning an image takes time, so each byte may belong to a few images only.
     std::uint64_t encoded_left = (std::uint64_t(1) << 24) + 4 * data_.byte_count();
     PixelBudget budget;
     budget.add_file(data_.byte_count());

@@ -158,8 +158,7 @@ class MtlReader {
   /// Combines the colour and alpha maps to one texture, with the options of map_Kd if there is one, else of map_d.
   ///
   /// MTL multiplies Kd and the texture. But exporters write a default grey or black Kd beside a texture that is meant
-  /// unchanged, so Kd only counts if it has a hue. A black Kd also becomes white if the texture cannot be read, and so
-  /// does a black Ke.
+  /// unchanged, so Kd only counts if it has a hue. Without the texture, too, a black Kd or Ke becomes white.
   void finish_material() {
     const auto found = maps_.find(number_);
     if (found == maps_.end()) return;

@@ -396,8 +396,7 @@ class FaceReader {
     }
   }
 
-  /// Completes the mesh. Colours of vertices have precedence over those of faces. Strips behind the faces get default
-  /// values.
+  /// Completes the mesh. Colours of vertices have precedence over those of faces. Strips behind the faces get defaults.
   void finish() {
     if (mesh_.colors.empty()) mesh_.colors = std::move(face_colors_);
     const std::size_t count = mesh_.triangles.size();

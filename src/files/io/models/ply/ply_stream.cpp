@@ -254,8 +254,7 @@ class PlyStream final : public ModelStream {
   }
 
   /// Fills the piece with whole rows. Remaining bytes wait for the next piece and count for it, because polygons make
-  /// more triangles a byte than triangles do. `again` means that a row was longer than all bytes, so twice as many are
-  /// read.
+  /// more triangles a byte than triangles do. `again`: a row was longer than all bytes, so twice as many are read.
   void fetch_rows(StreamPiece& piece, std::uint64_t triangles, bool again) {
     const std::size_t row = faces_->least_row_size() + 3 * corner_size();
     const std::size_t enough = std::max<std::size_t>(std::size_t(triangles) * row, 4096);
