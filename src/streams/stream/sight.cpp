@@ -113,21 +113,16 @@ void SightGatherer::forget_hidden() {
   }
 }
 
-Selection Drawer::select(const Mesh& mesh, const SightGatherer& sight) {
-  Selection selection;
-  marks_.assign(mesh.triangles.size(), 0);
+void Drawer::draw(StreamPiece& piece, const PiecePlace& place, const Scene& frame, SightGatherer& sight,
+                  const Execution& execution) {
+  Selection selection;  // triangles that may cover a sample of one of the views
+  marks_.assign(piece.mesh.triangles.size(), 0);
   for (std::size_t i = 0; i < sight.view_count(); ++i) {
     if (filters_.size() == i) filters_.emplace_back(sight.view(i));
-    selection.pixels.push_back(filters_[i].mark(mesh, marks_));
+    selection.pixels.push_back(filters_[i].mark(piece.mesh, marks_));
   }
   for (std::uint32_t t = 0; t < marks_.size(); ++t)
     if (marks_[t]) selection.numbers.push_back(t);
-  return selection;
-}
-
-void Drawer::draw(StreamPiece& piece, const PiecePlace& place, const Scene& frame, SightGatherer& sight,
-                  const Execution& execution) {
-  const Selection selection = select(piece.mesh, sight);
   if (sight.needs().bounds) sight.include(finite_bounds(piece.mesh, 0, piece.mesh.triangles.size()));
   if (selection.numbers.empty()) return;
   if (scene_.instances.empty()) {

@@ -79,9 +79,6 @@ class Drawer {
             const Execution& execution);
 
  private:
-  /// Selects the triangles that may cover a sample of one of the views.
-  [[nodiscard]] Selection select(const Mesh& mesh, const SightGatherer& sight);
-
   Scene scene_;
   std::vector<ZBuffer> buffers_;
   std::vector<SampleFilter> filters_;

@@ -88,9 +88,6 @@ std::string advice(const Foreign& format, const std::string& path) {
   return std::string(format.name) + " is not read; " + advice(format.converter, path);
 }
 
-/// Whether the text is IGES: lines of 80 columns, the first of which begins the start section.
-bool looks_like_iges(std::string_view text) { return text.size() >= 80 && text.substr(72, 8) == "S      1"; }
-
 }  // namespace
 
 std::optional<std::string> conversion_by_suffix(const std::string& path) {
@@ -114,7 +111,8 @@ std::optional<std::string> conversion_by_content(Bytes bytes) {
   const auto contains = [&](std::string_view word) { return text.find(word) != std::string_view::npos; };
   if (text.starts_with("ISO-10303-21;"))
     return contains("FILE_SCHEMA(('IFC") ? advice(ifc, "model.ifc") : advice(step, "model.step");
-  if (looks_like_iges(text)) return advice(iges, "model.iges");
+  // Lines of IGES have 80 columns; the first one begins the start section.
+  if (text.size() >= 80 && text.substr(72, 8) == "S      1") return advice(iges, "model.iges");
   if (text.starts_with("Kaydara FBX Binary") || text.starts_with("; FBX ")) return advice(fbx, "model.fbx");
   if (contains("<COLLADA")) return advice(collada, "model.dae");
   if (text.starts_with("BLENDER")) return advice(blend, "model.blend");

@@ -48,9 +48,6 @@ bool looks_like_obj(std::string_view text) {
                      [&](std::string_view word) { return starts_with_word(text, word); });
 }
 
-/// Whether the text of JSON has the member "asset". Writers that sort keys put it far back, so all text is searched.
-bool has_asset(Bytes bytes) { return text_of(bytes).find("\"asset\"") != std::string_view::npos; }
-
 /// A remark about the points of a scene without triangles.
 std::string points_told(const Scene& scene) {
   std::size_t points = 0;
@@ -143,7 +140,8 @@ Axis default_up(ModelFormat format) {
 std::optional<ModelFormat> format_of_content(Bytes bytes) {
   const std::string_view text = first_statement(bytes);
   if (text.starts_with("glTF")) return ModelFormat::gltf;
-  if (text.starts_with('{')) return has_asset(bytes) ? ModelFormat::gltf : ModelFormat::scene;
+  if (text.starts_with('{'))  // writers that sort keys put "asset" far back, so all text is searched
+    return text_of(bytes).find("\"asset\"") != std::string_view::npos ? ModelFormat::gltf : ModelFormat::scene;
   if (text.starts_with("PK\x03\x04")) return ModelFormat::threemf;
   if (starts_with_word(text, "ply")) return ModelFormat::ply;
   if (looks_like_off(text)) return ModelFormat::off;
