@@ -36,8 +36,7 @@ inline constexpr std::uint64_t max_image_pixels = std::uint64_t(1) << 28;
 
 namespace frontmost::detail {
 
-/// Writers get images whose planes have the right sizes. \throws Error unsupported, before anything is written, naming
-/// the file and what the format cannot hold.
+/// Writers get valid images. \throws Error unsupported, before anything is written, with what the format cannot hold.
 void save_png(const Image& image, const SaveOptions& options, OutputFile& file, const Execution& execution);
 void save_png(const Bitmap& bitmap, OutputFile& file, const Execution& execution);
 void save_exr(const Image& image, OutputFile& file, const Execution& execution);

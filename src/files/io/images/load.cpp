@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images and textures in: recognizes their formats, holds the limits that all decoders share, and converts environments
-// to the one layout that lighting expects.
+// Images and textures in: their formats, the limits of all decoders, and environments in the layout of lighting.
 #include <algorithm>
 #include <cstring>
 #include <limits>

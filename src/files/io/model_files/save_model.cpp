@@ -23,8 +23,7 @@ namespace {
 using detail::append_bytes;
 using detail::FileBytes;
 
-/// One object's triangles in the file's coordinates. Triangles of mirrored objects get the opposite winding, so that
-/// their outer side stays outside.
+/// One object's triangles in the file's coordinates. Mirrored ones get the opposite winding: outer sides stay outside.
 class PlacedMesh {
  public:
   PlacedMesh(const Scene& scene, const Instance& instance)
@@ -164,8 +163,7 @@ class GlbDocument {
     accessor["bufferView"] = add_view(bytes, target);
     return append("accessors", std::move(accessor));
   }
-  /// The number in the document of the scene's texture or material `number` (no_index: the default material). The first
-  /// request adds it to the document.
+  /// The document's number of the scene's texture or material (no_index: the default), added at the first request.
   std::size_t texture(std::uint32_t number) {
     const auto [place, is_new] = textures_.emplace(number, textures_.size());
     if (is_new) {
@@ -196,8 +194,7 @@ class GlbDocument {
   std::map<std::uint32_t, std::size_t> textures_, materials_;
 };
 
-/// Writes a material, with each use of a texture in the object that it belongs to. Values that equal glTF's defaults
-/// and layers that are absent are left out.
+/// Writes a material, with uses of textures where they belong. glTF's defaults and absent layers are left out.
 class MaterialWriter {
  public:
   explicit MaterialWriter(GlbDocument& document) : document_(document) {}

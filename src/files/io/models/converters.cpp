@@ -52,8 +52,7 @@ constexpr ForeignExtension foreign_extensions[] = {{"KHR_texture_basisu", ktx_to
                                                    {"EXT_meshopt_compression", decompress},
                                                    {"KHR_meshopt_compression", decompress}};
 
-/// Quotes `path` for a shell's command line if needed. Further quotes would end a text that is in quotes already, so a
-/// plain name stands for the file there.
+/// Quotes `path` for a shell's command line if needed. Within quotes, which allow no others, a plain name stands in.
 std::string word_of(const std::string& path, bool is_in_quotes) {
   constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/+,:@%";
   if (path.find_first_not_of(plain) == std::string::npos && !path.starts_with('-')) return path;

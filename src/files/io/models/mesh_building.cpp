@@ -64,8 +64,7 @@ struct BlockableEar {
 /// arrays from polygon to polygon.
 class CornerTree {
  public:
-  /// Builds the tree, without marks. Borrows the points and, for each corner, the numbers of its neighbours on the
-  /// outline, which may change. O(n log n).
+  /// Builds the tree, without marks. Borrows the points and, by corner, its neighbours, which may change. O(n log n).
   void build(std::span<const glm::vec2> points, std::span<const std::uint32_t> previous,
              std::span<const std::uint32_t> next) {
     points_ = points;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OFF in text form, with Geomview's optional colours, normals and texture coordinates: [ST][C][N]OFF. Prefixes may come
-// in any order, as other programs write them.
+// OFF in text form, with Geomview's optional colours, normals and texture coordinates: [ST][C][N]OFF, in any order.
 //
 //   COFF
 //   4 2 0                        vertices, faces, edges (nobody needs the last)

@@ -111,8 +111,7 @@ class Budget {
       source.fail_limit(place, std::to_string(count) + " elements are far more than a file of this size can hold");
     left_ -= count * size;
   }
-  /// Charges triangles that are placed again. They take no memory here, but code that transforms them to world space
-  /// needs ten times the charged amount.
+  /// Charges triangles that are placed again: code that transforms them to the world needs ten times this amount.
   void charge_placed(std::uint64_t triangles, const std::string& place, const ModelSource& source) {
     charge(triangles, 4, place, source);
   }
@@ -180,8 +179,7 @@ enum class StlEncoding : std::uint8_t { binary, ascii, neither };
 
 // Formats that are not read, and programs that convert them.
 
-/// Advice for a file in a format that is known but not read, with the command line that converts it. The suffix of
-/// `path` decides; empty for other suffixes.
+/// Advice for a file of a known format, by the suffix of `path`, with the command that converts it; else empty.
 [[nodiscard]] std::optional<std::string> conversion_by_suffix(const std::string& path);
 /// Advice by the first bytes, for input without a suffix such as standard input.
 [[nodiscard]] std::optional<std::string> conversion_by_content(Bytes bytes);

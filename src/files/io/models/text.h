@@ -43,8 +43,7 @@ inline bool rounds_once(double magnitude) {
   return (bits & below_float) != half && magnitude >= 1e-37 && magnitude <= 1e38;
 }
 
-/// Reads [+-]digits[.digits] with at most 15 digits. \returns the first character after the number; null if there is no
-/// number, or if it is longer or goes on.
+/// Reads [+-]digits[.digits] of up to 15 digits. \returns the character behind; null for no number, or a longer one.
 inline const char* parse_short(const char* at, const char* end, double& value) {
   const char* p = at;
   const bool negative = p != end && *p == '-';

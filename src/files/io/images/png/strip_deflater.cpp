@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// StripDeflater by Intel's ISA-L, which takes at most a quarter of the time of zlib with Z_RLE, or by zlib alone if
-// FRONTMOST_DEFLATES_BY_ZLIB is defined.
+// StripDeflater by Intel's ISA-L, in a quarter of zlib's time with Z_RLE, or by zlib (FRONTMOST_DEFLATES_BY_ZLIB).
 #include "io/images/png/strip_deflater.h"
 
 #include <zlib.h>

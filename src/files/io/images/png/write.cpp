@@ -91,8 +91,7 @@ struct Workspace {
       : raw(rows * (row_size + 1)), row(row_size), above(row_size), deflater(raw.size()) {}
 };
 
-// Rows have `size` bytes, and a pixel has `pixel` bytes. Rows are pointers instead of spans, whose ends would be
-// reloaded after each written byte.
+// Rows have `size` bytes, pixels `pixel`. Rows are pointers: ends of spans would be reloaded after each written byte.
 
 void filter_sub(const std::uint8_t* row, std::size_t pixel, std::size_t size, std::uint8_t* out) {
   std::copy_n(row, pixel, out);

@@ -104,8 +104,7 @@ std::optional<Light> read_light(const JsonValue& json, std::vector<std::string>&
   return light;
 }
 
-/// A rigid transform at the node's place whose -z is the node's direction of -z, whatever its scale or shear. Empty if
-/// the node has no such direction.
+/// A rigid transform at the node's place with the node's direction of -z, whatever its scale. Empty if there is none.
 std::optional<glm::dmat4> placement(const Light& light, const glm::dmat4& world) {
   if (light.kind == Light::Kind::point) {  // shines in all directions
     glm::dmat4 moved(1.0);

@@ -8,8 +8,7 @@
 namespace frontmost::gltf {
 namespace {
 
-// glTF needs a depth of about ten. A value costs up to a hundred bytes of memory, so a text of empty brackets would
-// take thirty times its size.
+// glTF needs a depth of about ten. A value takes up to 100 bytes, so empty brackets would take thirty times their size.
 constexpr int max_depth = 256;
 constexpr std::size_t max_values = std::size_t(1) << 23;
 // Beyond 2^53 a double skips integers, so a number with a point or an exponent has lost its last digits.

@@ -6,8 +6,7 @@
 //               |-> node "wheel"  mesh 3, somewhere else
 //               `-> node "driver" mesh 5, skin 0, and a camera below it
 //
-// All triangle primitives of a mesh become one Mesh, in order. The tree is flattened: instances have transforms to
-// world space, and the tree itself is dropped.
+// All triangle primitives of a mesh become one Mesh, in order. Instances have transforms to the world.
 #pragma once
 
 #include <array>

@@ -302,8 +302,7 @@ class PlyStream final : public ModelStream {
   bool has_warned_ = false;
 };
 
-/// Reads on until the header is complete. Only the header's parser finds its end: comments and longer words may contain
-/// "end_header", too, and lines may be joined.
+/// Reads on until the header is complete, as its parser finds: comments may hold "end_header", and lines may be joined.
 PlyHeader read_header(StreamStart& start, const ModelSource& source) {
   while (true) {
     const bool is_all = start.has_ended || start.start.size() >= max_header;

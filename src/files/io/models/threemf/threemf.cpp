@@ -4,8 +4,7 @@
 //   package --> start part --> model parts, each read once --> items of the start part --> instances
 //                                                              through components of components, each with a transform
 //
-// Base materials become materials of the scene; colours become colours of corners, with a plain material, which blends
-// if a colour is transparent.
+// Base materials become the scene's; colours become colours of corners, with a plain material, blended if one is clear.
 //
 // A component may name an object of another part, and a few components can stand for a million instances. So levels are
 // limited, and instances are charged to a budget.
