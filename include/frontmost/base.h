@@ -179,8 +179,7 @@ class Buffer {
 
 // Output of several files that belong together: either all of them appear, or none.
 
-/// Makes a folder, and missing folders on the path to it. The destructor removes the folders that this object made, if
-/// they are empty.
+/// Makes a folder, and missing folders on the path to it. The destructor removes the folders that it made, if empty.
 class MadeFolder {
  public:
   /// \throws Error file_unwritable if the folder cannot be made or the path is not a folder.

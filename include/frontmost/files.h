@@ -3,8 +3,7 @@
 //
 // Formats differ in what they hold and in how files break; the results of this header do not. A model of any format
 // becomes a Scene that validate() accepts, or an Error that names the file, the place and the reason. Output files are
-// written whole or not at all: the bytes go to a temporary file beside the target, which is renamed when it is
-// complete.
+// written whole or not at all: the bytes go to a temporary file beside the target, which is renamed at the end.
 #pragma once
 
 #include <iosfwd>

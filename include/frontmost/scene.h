@@ -319,9 +319,8 @@ struct PrimitiveSource {
 
 /// All triangles of a scene in world space, with stable ids: a triangle's id is its number over all instances in scene
 /// order. World space is relative to Scene::origin; so are all positions that methods take and return. Threads may
-/// share Surfaces; only move() changes them. Triangles with a vertex that is not finite in world space are never seen,
-/// but keep their number. Singular transforms are allowed: they flatten their mesh. Only the first three rows of a
-/// transform count.
+/// share Surfaces; only move() changes them. Triangles with a vertex that is not finite are never seen, but keep their
+/// number. Singular transforms are allowed: they flatten their mesh. Only the first three rows of a transform count.
 ///
 /// A triangle whose material has alpha mode MASK has holes where its alpha (base colour, texture and vertices) is below
 /// the cutoff; the texture is looked up as stored. Every method that answers in samples sees through holes;

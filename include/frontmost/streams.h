@@ -52,8 +52,7 @@ struct StreamOptions {
   std::uint32_t triangles_at_once = 1u << 19;
   /// Ranks that stream the model together; borrowed, must outlive the stream. Null: this process streams all of it.
   Ranks* ranks = nullptr;
-  /// For each file, the rank that alone reads its triangles. -1, or no entry: all ranks read the file, and take turns
-  /// by pieces.
+  /// For each file, the rank that alone reads its triangles. -1, or no entry: all ranks read it by turns.
   std::vector<int> readers = {};
 };
 
@@ -108,8 +107,7 @@ class Stream {
  public:
   /// Opens the files; "-" is standard input, which can be read only once.
   /// \throws Error as load() does; unsupported for text, other formats, triangle strips or several vertex or face
-  /// elements in PLY, and with ranks for anything but ordinary files; limit_exceeded for more than 2^32 - 2 triangles
-  /// in all.
+  /// elements in PLY, and with ranks for anything but ordinary files; limit_exceeded for more than 2^32 - 2 triangles.
   explicit Stream(const std::vector<std::string>& paths, const StreamOptions& options = {},
                   const Execution& execution = {});
   ~Stream();

@@ -207,9 +207,8 @@ struct FrameOptions {
 //          at most `pixels` apart in the picture: near parts are cut finely, distant ones coarsely
 //
 // Every patch becomes a grid of its own fineness, a power of two each way. Patches of a mesh share an edge if its four
-// control points are equal to the bit, in either order. Both patches then get the same points along the edge, so
-// nothing leaks between them. A sphere becomes a globe of rings. Vertices have the surface's normals and texture
-// coordinates.
+// control points are equal to the bit, in either order. Both patches then get the same points along it, so nothing
+// leaks between them. A sphere becomes a globe of rings. Vertices have the surface's normals and texture coordinates.
 
 /// True if an instance of the scene has a curved mesh.
 [[nodiscard]] bool has_curved(const Scene& scene);
@@ -230,8 +229,7 @@ struct FrameOptions {
 //                        x = 0, 1, ...
 //
 // Sample 0 of all pixels is a plane of its own, from which maps are made. The visible primitive is the minimum over
-// (depth, primitive id). Parts of a scene can therefore be answered one by one, in any order and on any machine, and
-// merged.
+// (depth, primitive id). So parts of a scene can be answered in any order, on any machine, and merged.
 
 /// The front-most primitive at every sample, and its depth. Planes are ordered [sample][y][x], top row first.
 struct Visible {

@@ -122,13 +122,13 @@ TEST_F(RanksTest, PipesAndStandardInputAreRefused) {
 // Ranks see different files under the same names.
 TEST(Messages, ThatDoNotFitAreErrors) {
   streaming::MessageWriter writer;
-  writer.put_text("twelve bytes");
+  writer.put_list(std::string("twelve bytes"));
   const Ranks::Message message = writer.take();
   streaming::MessageReader reader(message), again(message), beyond(message);
-  EXPECT_EQ(reader.get_text(), "twelve bytes");
+  EXPECT_EQ(reader.get_list<std::string>(), "twelve bytes");
   EXPECT_TRUE(reader.is_at_end());
   EXPECT_THROW((void)reader.get<int>(), Error);
-  EXPECT_THROW((void)again.get_list<glm::vec3>(), Error) << "twelve points";
+  EXPECT_THROW((void)again.get_list<std::vector<glm::vec3>>(), Error) << "twelve points";
   using Longer = std::array<char, 21>;
   EXPECT_THROW((void)beyond.get<Longer>(), Error);
 }

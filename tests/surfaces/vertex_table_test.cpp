@@ -71,7 +71,7 @@ TEST(VertexTable, PadsToWholeVectorsWithinItsBounds) {
   EXPECT_TRUE(table.bounds().is_empty());
   for (int i = 0; i < 17; ++i) intern(table, {float(i), float(-i), float(100 + i)});
   EXPECT_EQ(table.pad(), 32u);
-  EXPECT_EQ(table.x()[31], 16.0f);
+  EXPECT_EQ(table.axis(0)[31], 16.0f);
   EXPECT_EQ(table.bounds().low, glm::vec3(0, -16, 100));
   EXPECT_EQ(table.bounds().high, glm::vec3(16, 0, 116));
 }

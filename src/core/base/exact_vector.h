@@ -256,7 +256,7 @@ struct DoubleDouble {
   return value > error ? 1 : value < -error ? -1 : 0;
 }
 
-/// Whether two vectors surely lie along one line. False if a component of theirs is not exact as a double.
+/// Whether two vectors surely lie along one line. False unless their components are doubles without rounding.
 [[nodiscard]] inline bool are_parallel(const Leg& a, const Leg& b) {
   double v[2][3];
   for (int axis = 0; axis < 3; ++axis) {

@@ -27,8 +27,7 @@ namespace frontmost {
   static constexpr decltype(&HWY_STATIC_DISPATCH(function)) function##Kernels[] = {HWY_CHOOSE_TARGET_LIST(function), \
                                                                                    HWY_CHOOSE_FALLBACK(function)}
 
-/// The entry of a FRONTMOST_KERNELS table for `isa`. Reads no global choice, so two threads may run different
-/// instruction sets.
+/// The entry of a FRONTMOST_KERNELS table for `isa`. Two threads may run different instruction sets.
 template <class Function, std::size_t size>
 [[nodiscard]] Function kernel_for(Function const (&table)[size], Isa isa) {
   static_assert(size == HWY_MAX_DYNAMIC_TARGETS + 1);

@@ -23,8 +23,7 @@ HWY_BEFORE_NAMESPACE();
 namespace frontmost::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// \returns a mask as bits: lane i is bit i. The bytes are read in the size in which they are stored, because a wider
-/// read would wait until the store has reached the cache.
+/// Lane i in bit i. The bytes are read in the size in which they are stored; a wider read would wait for the store.
 template <class D>
 HWY_INLINE std::uint64_t BitsOf(D d, hn::Mask<D> mask) {
   using Bits = std::conditional_t<(hn::MaxLanes(D()) > 8), std::uint16_t, std::uint8_t>;

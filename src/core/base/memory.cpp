@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <new>
+#include <span>
 
 #include "base/parallel.h"
 #include "frontmost/base.h"
@@ -28,32 +29,22 @@ constexpr std::size_t kMostArena = std::size_t(28) << 20;
 
 constexpr std::size_t round_up(std::size_t bytes, std::size_t unit) { return (bytes + unit - 1) / unit * unit; }
 
-/// The small pages that lie wholly in a range.
-class Pages {
- public:
-  Pages(void* start, std::size_t bytes) {
-    const auto first = reinterpret_cast<std::uintptr_t>(start);
-    const std::uintptr_t begin = round_up(first, kSmallPage);
-    begin_ = static_cast<char*>(start) + (begin - first);
-    size_ = (first + bytes) / kSmallPage * kSmallPage - begin;
-  }
-  [[nodiscard]] char* begin() const { return begin_; }
-  [[nodiscard]] std::size_t size() const { return size_; }
-
- private:
-  static constexpr std::size_t kSmallPage = 4096;
-  char* begin_;
-  std::size_t size_;
-};
+/// The whole small pages of a range.
+[[maybe_unused]] std::span<char> pages_of(void* start, std::size_t bytes) {
+  constexpr std::size_t small_page = 4096;
+  const auto first = reinterpret_cast<std::uintptr_t>(start);
+  const std::uintptr_t begin = round_up(first, small_page);
+  return {static_cast<char*>(start) + (begin - first), (first + bytes) / small_page * small_page - begin};
+}
 
 }  // namespace
 
 void want_large_pages(void* start, std::size_t bytes) {
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
   if (bytes < kWorthLargePages) return;
-  const Pages pages(start, bytes);
+  const std::span<char> pages = pages_of(start, bytes);
   // If small pages are larger than the range, the system refuses.
-  (void)madvise(pages.begin(), pages.size(), MADV_HUGEPAGE);
+  (void)madvise(pages.data(), pages.size(), MADV_HUGEPAGE);
 #else
   (void)start, (void)bytes;
 #endif
@@ -62,9 +53,9 @@ void want_large_pages(void* start, std::size_t bytes) {
 void populate_pages(void* start, std::size_t bytes, const Execution& execution) {
 #if defined(__linux__) && defined(MADV_POPULATE_WRITE)
   if (bytes < kWorthLargePages) return;
-  const Pages pages(start, bytes);
+  const std::span<char> pages = pages_of(start, bytes);
   parallel_for(execution, pages.size(), kLargePage, [&](std::size_t begin, std::size_t end) {
-    (void)madvise(pages.begin() + begin, end - begin, MADV_POPULATE_WRITE);
+    (void)madvise(pages.data() + begin, end - begin, MADV_POPULATE_WRITE);
   });
 #else
   (void)start, (void)bytes, (void)execution;

@@ -49,8 +49,8 @@ struct Slab;
 /// too. Arenas must be destroyed in the reverse order of their making, on the same thread.
 class Arena {
  public:
-  /// False under AddressSanitizer, which finds reads beyond a Buffer's end only if nothing lies beside the Buffer.
-  /// False in WebAssembly, which has no pages to touch; besides, some of its modules have no thread-local memory.
+  /// False under AddressSanitizer, which finds reads beyond a Buffer only if nothing lies beside it. False in
+  /// WebAssembly, which has no pages, and where code for threads runs in modules without thread-local memory.
   static constexpr bool has_room =
 #if defined(__SANITIZE_ADDRESS__) || defined(__wasm__)
       false;

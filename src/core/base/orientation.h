@@ -21,8 +21,7 @@ namespace detail {
 [[nodiscard]] int exact_orientation(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c);
 }  // namespace detail
 
-/// +1 if a, b, c turn left (counter-clockwise), -1 if they turn right, 0 if they lie on one line. Exact for all finite
-/// coordinates.
+/// +1 if a, b, c turn left (counter-clockwise), -1 if right, 0 if on one line. Exact for all finite coordinates.
 [[nodiscard]] inline int orientation(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c) {
   const double ax = a.x, ay = a.y;
   const double plus = (double(b.x) - ax) * (double(c.y) - ay), minus = (double(b.y) - ay) * (double(c.x) - ax);
@@ -33,8 +32,7 @@ namespace detail {
   return detail::exact_orientation(a, b, c);
 }
 
-/// Whether the area of a triangle in space is exactly zero, for its floats as they are. Precondition: the floats are
-/// finite.
+/// Whether the area of a triangle in space is exactly zero. Precondition: the floats are finite.
 [[nodiscard]] inline bool are_collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   return orientation({a.x, a.y}, {b.x, b.y}, {c.x, c.y}) == 0 && orientation({a.y, a.z}, {b.y, b.z}, {c.y, c.z}) == 0 &&
          orientation({a.z, a.x}, {b.z, b.x}, {c.z, c.x}) == 0;

@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <system_error>
+#include <utility>
 
 #include "frontmost/base.h"
 
@@ -76,7 +77,8 @@ OutputFile::OutputFile(const std::string& path, Staging staging)
   if (exists && S_ISDIR(status.st_mode)) throw Error(ErrorCode::file_unwritable, name_, "", "is a folder");
   // Devices and pipes are written to, not replaced: /dev/null must not become a file.
   if (exists && !S_ISREG(status.st_mode)) {
-    open_direct();
+    descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor_ < 0) fail("cannot open");
     return;
   }
   if (exists) {
@@ -84,7 +86,9 @@ OutputFile::OutputFile(const std::string& path, Staging staging)
     if (::access(target_.c_str(), W_OK) != 0) fail("cannot write");
     mode_ = status.st_mode & 0777;
   }
-  open_staged(staging);
+  if (!target_.has_filename()) throw Error(ErrorCode::file_unwritable, name_, "", "is not a file name");
+  // A file without a name vanishes when the process ends, however it ends; a hidden file would stay behind.
+  if (staging == Staging::named || !open_unnamed()) open_named();
 }
 
 OutputFile::~OutputFile() {
@@ -96,18 +100,6 @@ void OutputFile::fail(const char* doing) const {
   // errno is read first, as making a string may change it.
   const int code = errno;
   throw Error(ErrorCode::file_unwritable, name_, "", doing + (": " + std::generic_category().message(code)));
-}
-
-void OutputFile::open_direct() {
-  kind_ = Kind::direct;
-  descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
-  if (descriptor_ < 0) fail("cannot open");
-}
-
-void OutputFile::open_staged(Staging staging) {
-  if (!target_.has_filename()) throw Error(ErrorCode::file_unwritable, name_, "", "is not a file name");
-  // A file without a name vanishes when the process ends, however it ends; a hidden file would stay behind.
-  if (staging == Staging::named || !open_unnamed()) open_named();
 }
 
 bool OutputFile::open_unnamed() {
@@ -153,7 +145,8 @@ void OutputFile::commit() {
   // file gave.
   if (mode_ && kind_ != Kind::direct && ::fchmod(descriptor_, *mode_) != 0) fail("cannot set permissions");
   if (kind_ == Kind::unnamed) give_name();
-  close();
+  // Some file systems report only now that the disk is full.
+  if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail("cannot write");
   if (temporary_.empty()) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot replace");
   temporary_.clear();
@@ -172,13 +165,6 @@ void OutputFile::give_name() {
   temporary_ = make_beside(target_, link_to);
   if (temporary_.empty()) fail("cannot create");
 #endif
-}
-
-void OutputFile::close() {
-  // Some file systems report only now that the disk is full.
-  const int descriptor = descriptor_;
-  descriptor_ = -1;
-  if (::close(descriptor) != 0 && errno != EINTR) fail("cannot write");
 }
 
 void save_text(std::string_view text, const std::string& path) {

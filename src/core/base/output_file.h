@@ -37,12 +37,9 @@ class OutputFile {
   enum class Kind { standard_output, direct, unnamed, named };
 
   [[noreturn]] void fail(const char* doing) const;
-  void open_direct();
-  void open_staged(Staging staging);
   bool open_unnamed();
   void open_named();
   void give_name();
-  void close();
 
   std::string name_;
   std::filesystem::path target_;

@@ -18,64 +18,39 @@
 #include "base/crew.h"
 
 namespace frontmost {
-namespace {
-
-// Chunks of one loop, handed out in order to free threads.
-class ChunkQueue {
- public:
-  ChunkQueue(const Execution& execution, std::size_t count, std::size_t grain, detail::ChunkFunction function,
-             void* context)
-      : execution_(execution), count_(count), grain_(grain), function_(function), context_(context) {}
-
-  [[nodiscard]] std::size_t chunk_count() const { return (count_ + grain_ - 1) / grain_; }
-
-  // Runs chunks until none is left or one has failed.
-  void drain() noexcept {
-    const IeeeScope ieee;
-    for (;;) {
-      // Relaxed, as only the number matters. At the end of the loop the caller sees everything that the bodies wrote.
-      const std::size_t chunk = next_.fetch_add(1, std::memory_order_relaxed);
-      if (chunk >= chunk_count() || failed_.load(std::memory_order_relaxed)) return;
-      try {
-        check_cancelled(execution_);
-        function_(context_, chunk * grain_, std::min(count_, (chunk + 1) * grain_));
-      } catch (...) {
-        const std::lock_guard lock(mutex_);
-        if (!error_) error_ = std::current_exception();
-        failed_.store(true, std::memory_order_relaxed);
-      }
-    }
-  }
-
-  void rethrow() const {
-    if (error_) std::rethrow_exception(error_);
-  }
-
- private:
-  const Execution& execution_;
-  std::size_t count_, grain_;
-  detail::ChunkFunction function_;
-  void* context_;
-  std::atomic<std::size_t> next_{0};
-  std::atomic<bool> failed_{false};
-  std::mutex mutex_;
-  std::exception_ptr error_;
-};
-
-}  // namespace
 
 void detail::run_chunks(const Execution& execution, std::size_t count, std::size_t grain, ChunkFunction function,
                         void* context) {
   if (count == 0) return;
-  ChunkQueue queue(execution, count, std::max<std::size_t>(grain, 1), function, context);
-  const int threads =
-      static_cast<int>(std::min<std::size_t>(std::size_t(thread_count(execution)), queue.chunk_count()));
-  if (threads <= 1) {
-    queue.drain();
-  } else {
-    Crew::of_process().run(threads - 1, [&] { queue.drain(); });
-  }
-  queue.rethrow();
+  grain = std::max<std::size_t>(grain, 1);
+  const std::size_t chunks = (count + grain - 1) / grain;
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> failed{false};
+  std::mutex mutex;
+  std::exception_ptr error;
+  // Runs chunks until none is left or one has failed.
+  const auto drain = [&]() noexcept {
+    const IeeeScope ieee;
+    for (;;) {
+      // Relaxed, as only the number matters. At the end of the loop the caller sees everything that the bodies wrote.
+      const std::size_t chunk = next.fetch_add(1, std::memory_order_relaxed);
+      if (chunk >= chunks || failed.load(std::memory_order_relaxed)) return;
+      try {
+        check_cancelled(execution);
+        function(context, chunk * grain, std::min(count, (chunk + 1) * grain));
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!error) error = std::current_exception();
+        failed.store(true, std::memory_order_relaxed);
+      }
+    }
+  };
+  const int threads = static_cast<int>(std::min(std::size_t(thread_count(execution)), chunks));
+  if (threads <= 1)
+    drain();
+  else
+    Crew::of_process().run(threads - 1, [&] { drain(); });
+  if (error) std::rethrow_exception(error);
 }
 
 int thread_count(const Execution& execution) {

@@ -2,8 +2,7 @@
 // The sRGB function by roots instead of powers, and its tables, which are computed at compile time.
 //
 // srgb8_of_linear() looks up a float by the upper half of its bits. A bucket holds at most one threshold from one byte
-// to the next. Its entry is such that adding the lower half of the bits carries into the byte exactly from the
-// threshold on:
+// to the next. Adding the lower half of the bits to its entry carries into the byte exactly from the threshold on:
 //
 //   entry            | byte     | 65536 - threshold |
 //   + lower half     | 0        | bits              |
@@ -110,8 +109,7 @@ class Parabolas {
   }
   /// \returns the value, with an error of at most 1e-4.
   [[nodiscard]] double operator()(float linear) const {
-    std::uint32_t bits;
-    std::memcpy(&bits, &linear, sizeof bits);
+    const auto bits = bits_as<std::uint32_t>(linear);
     const Piece& piece = pieces_[(bits >> 16) - kFirst];
     const double t = double(bits & 0xFFFFu) * (1.0 / 65536);
     return piece.at_start + t * (piece.slope + t * piece.bend);
@@ -123,12 +121,7 @@ class Parabolas {
   };
   static constexpr std::uint32_t kFirst = 0x3B4D2E1Cu >> 16;  // kLinearEnd as a float
 
-  static double start(std::size_t i) {
-    const std::uint32_t bits = (kFirst + std::uint32_t(i)) << 16;
-    float value;
-    std::memcpy(&value, &bits, sizeof value);
-    return double(value);
-  }
+  static double start(std::size_t i) { return double(bits_as<float>((kFirst + std::uint32_t(i)) << 16)); }
 
   std::array<Piece, (detail::one_bits >> 16) - kFirst> pieces_;
 };

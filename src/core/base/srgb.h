@@ -6,7 +6,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
+
+#include "base/memory.h"
 
 namespace frontmost {
 
@@ -20,9 +21,7 @@ inline constexpr std::uint32_t least_srgb8_bits = 0x39000000u;
 inline constexpr std::uint32_t one_bits = 0x3F800000u;
 inline constexpr std::size_t srgb8_bucket_count = ((one_bits - least_srgb8_bits) >> 16) + 1;
 
-/// Buckets of 65536 neighbouring floats are so narrow that none holds more than one of the 255 thresholds between the
-/// bytes. The high half of an entry is the bucket's first byte. From the threshold on, adding the low bits of a float
-/// to the entry's low half carries into the high half, so lookup, comparison and step are one addition.
+/// One entry for 65536 neighbouring floats: see srgb.cpp.
 extern const std::array<std::uint32_t, srgb8_bucket_count> srgb8_buckets;
 extern const std::array<float, 256> srgb8_linears;
 
@@ -32,8 +31,7 @@ extern const std::array<float, 256> srgb8_linears;
 [[nodiscard]] inline std::uint8_t srgb8_of_linear(float linear) {
   const float above = linear > detail::least_srgb8 ? linear : detail::least_srgb8;  // false for NaN
   const float clamped = above < 1.0f ? above : 1.0f;
-  std::uint32_t bits;
-  std::memcpy(&bits, &clamped, sizeof bits);
+  const auto bits = bits_as<std::uint32_t>(clamped);
   const std::uint32_t entry = detail::srgb8_buckets[(bits - detail::least_srgb8_bits) >> 16];
   return std::uint8_t((entry + (bits & 0xFFFFu)) >> 16);
 }

@@ -3,8 +3,7 @@
 // through memory. They reduce the time of a whole frame to a quarter.
 //
 // These are overloads in Highway's own namespace, so that kernels are written once for every target. The order of
-// arguments of minimum and maximum is that of Highway's floats: of a NaN and a number the result is the second
-// argument, as in SSE.
+// arguments of minimum and maximum is that of Highway's floats: a NaN and a number give the second, as in SSE.
 
 // Included once for every target.
 #if defined(FRONTMOST_BASE_WASM_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)

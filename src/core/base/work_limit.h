@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts work, so that work that would take hours ends with an error: after the same amount on every machine, and never
-// by a clock.
+// Ends work that would take hours with an error: after the same amount on every machine, never by a clock.
 #pragma once
 
 #include <atomic>

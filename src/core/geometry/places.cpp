@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <cstring>
 #include <numeric>
 #include <tuple>
 #include <vector>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 
 namespace frontmost {
@@ -51,9 +51,7 @@ class PlaceTable {
     const glm::vec3 p = position + 0.0f;  // -0 becomes +0
     std::uint64_t h = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      std::uint32_t bits;
-      std::memcpy(&bits, &p[axis], sizeof bits);
-      h = (h ^ bits) * 0x9E3779B97F4A7C15u;
+      h = (h ^ bits_as<std::uint32_t>(p[axis])) * 0x9E3779B97F4A7C15u;
       h ^= h >> 29;
     }
     return std::size_t(h);

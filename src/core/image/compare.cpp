@@ -11,14 +11,7 @@ namespace {
 
 bool is_color(std::string_view name) { return name == "R" || name == "G" || name == "B" || name == "A"; }
 
-std::string names_of(const Image& image) {
-  std::string list;
-  for (const Channel& channel : image.channels) list += (list.empty() ? "" : ", ") + channel.name;
-  return list;
-}
-
-/// The difference of two values; 0 for equal values and for two NaNs. Equal infinities are tested first, because their
-/// difference would be NaN.
+/// Equal values, or two NaNs, differ by 0: the difference of two infinities would be NaN.
 double difference(float a, float b) {
   if (a == b || (a != a && b != b)) return 0;
   const double result = std::fabs(double(a) - double(b));
@@ -42,7 +35,7 @@ class ImagePair {
     if (!pair_maps(image, reference) || !pair_maps(reference, image) ||
         colors_[0].has_value() != colors_[1].has_value())
       throw Error(ErrorCode::bad_argument, "comparison",
-                  "the image has channels " + names_of(image) + ", the reference " + names_of(reference));
+                  "the image has channels " + channel_list(image) + ", the reference " + channel_list(reference));
     maps_.resize(maps_.size() / 2);  // each pair was found from both sides
   }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <set>
 #include <utility>
 
@@ -25,11 +24,7 @@ class WordHash {
     for (const char c : text) add(std::uint32_t(static_cast<unsigned char>(c)));
   }
   /// Machines differ in the bits of a NaN that an operation makes, so all NaNs hash alike.
-  void add(float number) {
-    std::uint32_t bits = 0x7FC00000u;
-    if (number == number) std::memcpy(&bits, &number, sizeof bits);
-    add(bits);
-  }
+  void add(float number) { add(number == number ? bits_as<std::uint32_t>(number) : 0x7FC00000u); }
   [[nodiscard]] std::uint64_t value() const {
     // The low bits of a word reach only the high bits of the product, so the high bits are folded back.
     return value_ ^ (value_ >> 32);
@@ -63,8 +58,14 @@ void add(WordHash& hash, const AnyImage& image) {
   }
 }
 
-std::size_t value_count(const Channel& channel) {
-  return channel.is_integer() ? channel.integers().size() : channel.floats().size();
+/// A file stores its channels by name, and find() would never reach the second of one name.
+void check_channels(const std::vector<Channel>& channels, std::size_t value_count, const char* expected) {
+  std::set<std::string_view> names;
+  for (const Channel& channel : channels) {
+    if ((channel.is_integer() ? channel.integers().size() : channel.floats().size()) != value_count)
+      fail("channel " + channel.name + " does not have " + expected);
+    if (!names.insert(channel.name).second) fail("two channels are named " + channel.name);
+  }
 }
 
 }  // namespace
@@ -81,11 +82,7 @@ void validate(const Image& image) {
   validate_size(image.width, image.height);
   if (image.channels.empty()) fail("no channels");
   const std::size_t count = std::size_t(image.width) * std::size_t(image.height);
-  for (const Channel& channel : image.channels) {
-    if (value_count(channel) != count) fail("channel " + channel.name + " does not have width x height values");
-    // A file stores its channels by name, and find() would never return the second channel of a name.
-    if (image.find(channel.name) != &channel) fail("two channels are named " + channel.name);
-  }
+  check_channels(image.channels, count, "width x height values");
 }
 
 void validate(const DeepImage& image) {
@@ -94,13 +91,8 @@ void validate(const DeepImage& image) {
   const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
   if (image.first.size() != pixels + 1 || image.first[0] != 0 ||
       !std::is_sorted(image.first.begin(), image.first.end()))
-    fail("a deep image needs the index of each pixel's first sample, ascending from 0, and the number of all samples");
-  std::set<std::string_view> names;
-  for (const Channel& channel : image.channels) {
-    if (value_count(channel) != image.first[pixels])
-      fail("channel " + channel.name + " does not have one value for each sample");
-    if (!names.insert(channel.name).second) fail("two channels are named " + channel.name);
-  }
+    fail("a deep image needs ascending beginnings, one for each pixel, and the end");
+  check_channels(image.channels, image.first[pixels], "one value for each sample");
 }
 
 void validate(const Bitmap& bitmap) {
@@ -124,8 +116,8 @@ std::uint64_t content_hash(const DeepImage& image) {
 
 namespace {
 
-Image one_channel(const Visible& visible, Channel channel) {
-  Image image{visible.view.width, visible.view.height, {}};
+Image one_channel(int width, int height, Channel channel) {
+  Image image{width, height, {}};
   image.channels.push_back(std::move(channel));
   return image;
 }
@@ -142,40 +134,12 @@ Image map_of_depths(const Visible& visible, const char* name, float background, 
     for (int x = 0; x < view.width; ++x, ++i)
       values[i] =
           visible.primitives[i] == no_primitive ? background : depth_at(x, y, depth_of_key(view, visible.keys[i]));
-  return one_channel(visible, {name, std::move(values)});
+  return one_channel(view.width, view.height, {name, std::move(values)});
 }
-
-/// For the ray through the first sample of each pixel: the distance along the ray at a planar distance of 1.
-class RayLengths {
- public:
-  explicit RayLengths(const View& view) : projection_(view.projection) {
-    const glm::ivec2 offset = sample_offsets(view.samples)[0];
-    first_ = glm::dvec2(offset) / 256.0;
-    step_ = {(projection_.right - projection_.left) / view.width, (projection_.top - projection_.bottom) / view.height};
-  }
-  [[nodiscard]] double at(int x, int y) const {
-    const double right = projection_.left + (x + first_.x) * step_.x;
-    const double up = projection_.top - (y + first_.y) * step_.y;
-    return std::sqrt(1 + right * right + up * up);
-  }
-
- private:
-  const Projection& projection_;
-  glm::dvec2 first_{0}, step_{0};
-};
 
 std::uint32_t id_of(const Scene& scene, const PrimitiveSource& source, IdKind kind) {
   if (kind == IdKind::object) return source.instance;
   return scene.meshes[source.mesh].material_of(source.triangle);
-}
-
-const char* channel_name(IdKind kind) {
-  switch (kind) {
-    case IdKind::primitive: return "primitive";
-    case IdKind::object: return "object";
-    case IdKind::material: return "material";
-  }
-  return "";
 }
 
 }  // namespace
@@ -185,10 +149,14 @@ Image depth_image(const Visible& visible, float background) {
 }
 
 Image ray_distance_image(const Visible& visible, float background) {
-  const bool parallel = visible.view.projection.orthographic;
-  const RayLengths lengths(visible.view);
+  const View& view = visible.view;
+  const Projection& p = view.projection;
+  // The ray passes through the first sample of the pixel.
+  const glm::dvec2 first = glm::dvec2(sample_offsets(view.samples)[0]) / 256.0;
+  const glm::dvec2 step((p.right - p.left) / view.width, (p.top - p.bottom) / view.height);
   return map_of_depths(visible, "distance", background, [&](int x, int y, float depth) {
-    return parallel ? depth : float(double(depth) * lengths.at(x, y));
+    const double right = p.left + (x + first.x) * step.x, up = p.top - (y + first.y) * step.y;
+    return p.orthographic ? depth : float(double(depth) * std::sqrt(1 + right * right + up * up));
   });
 }
 
@@ -217,9 +185,8 @@ Image id_image(const Surfaces& surfaces, const glm::ivec2& size, std::span<const
     }
     ids[i] = last_id;
   }
-  Image image{size.x, size.y, {}};
-  image.channels.push_back({channel_name(kind), std::move(ids)});
-  return image;
+  constexpr const char* names[] = {"primitive", "object", "material"};  // by IdKind
+  return one_channel(size.x, size.y, {names[int(kind)], std::move(ids)});
 }
 
 std::vector<std::uint64_t> count_pixels(const Image& ids, std::size_t count) {
@@ -274,6 +241,12 @@ std::optional<ColorPlanes> color_planes(const Image& image) {
   for (const float* color : planes.color)
     if (!color) return std::nullopt;
   return planes;
+}
+
+std::string channel_list(const Image& image) {
+  std::string list;
+  for (const Channel& channel : image.channels) list += (list.empty() ? "" : ", ") + channel.name;
+  return list;
 }
 
 void srgb8_row(const ColorPlanes& planes, int y, bool with_alpha, std::uint8_t* row) {

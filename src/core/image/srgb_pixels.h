@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The colours of an image in the form of screens and PNG: sRGB, straight alpha.
+// The colours of an image in the form of screens and PNG: sRGB, straight alpha. Also the names of its channels.
 #pragma once
 
 #include <limits>
@@ -23,8 +23,10 @@ struct ColorPlanes {
 /// The planes R, G, B and, if there is one, A. None if one of R, G, B is missing or holds integers.
 [[nodiscard]] std::optional<ColorPlanes> color_planes(const Image& image);
 
-/// A fraction from 0 to 1 as an integer from 0 to the greatest Value, rounded. Values out of range are clamped, NaN
-/// gives 0.
+/// The image's channel names as "R, G, B", for messages.
+[[nodiscard]] std::string channel_list(const Image& image);
+
+/// A fraction of 0 to 1 as 0 to `most`, rounded. Values out of range are clamped, NaN gives 0.
 template <class Value>
 [[nodiscard]] Value rounded_fraction(float fraction) {
   constexpr float most = float(std::numeric_limits<Value>::max());
@@ -48,8 +50,7 @@ void store_srgb(const float (&color)[3], float alpha, Value* out) {
   }
 }
 
-/// Writes row y as bytes R, G, B, or R, G, B, A. Values out of range are clamped, NaN gives 0, and pixels with alpha 0
-/// are black.
+/// Row y as bytes R, G, B, or R, G, B, A. Values out of range are clamped, NaN gives 0, alpha 0 gives black.
 void srgb8_row(const ColorPlanes& planes, int y, bool with_alpha, std::uint8_t* row);
 /// Like srgb8_row(), with 16 bits a value.
 void srgb16_row(const ColorPlanes& planes, int y, bool with_alpha, std::uint16_t* row);

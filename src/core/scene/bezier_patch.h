@@ -37,8 +37,7 @@ struct PatchParameter {
 }
 
 /// The point of a patch at (u, v). Uses only +, * and sqrt, so the bits are the same on every machine. Points on a
-/// common edge of two patches are bit-equal if the control points of the edge are, in whichever direction each patch
-/// runs along the edge.
+/// common edge of two patches are bit-equal if their control points are, in whichever direction each runs.
 [[nodiscard]] PatchPoint evaluate(const BezierPatch& patch, PatchParameter u, PatchParameter v);
 
 /// The 32 patches of the classic teapot, y up, standing on y = 0, spout towards +x: rim, upper and lower body, knob,

@@ -6,8 +6,7 @@
 //                                                    ^ the roundest number near here
 //
 // This number becomes the origin if the distance is so much greater than the extent that floats would round the
-// details. The search is over as soon as one point is so near to zero, or so far from the others, that no other point
-// matters.
+// details. The search ends when a point is so near to zero, or so far from the others, that no other one matters.
 #include "scene/origin.h"
 
 #include <algorithm>
@@ -74,49 +73,26 @@ glm::dvec3 OriginSearch::origin() const {
   return origin;
 }
 
-namespace {
-
-/// The points of instances, relative to the file's zero.
-class PlacedPoints {
- public:
-  explicit PlacedPoints(const Scene& scene) : scene_(scene), bounds_(scene.meshes.size()) {}
-
-  void include(const Instance& instance, OriginSearch& search) {
-    std::optional<Box>& bounds = bounds_[instance.mesh];
-    // A mesh with many instances is searched once.
-    if (bounds) return include_corners(*bounds, instance.world_from_mesh, search);
-    bounds.emplace();
-    for (const glm::vec3& p : scene_.meshes[instance.mesh].positions) {
-      search.include(placed(instance.world_from_mesh, glm::dvec3(p)));
-      if (search.is_home()) return;
-      if (is_finite(p)) bounds->include(p);
-    }
-  }
-
- private:
-  [[nodiscard]] glm::dvec3 placed(const glm::dmat4& m, const glm::dvec3& p) const {
-    return scene_.origin + glm::dvec3(m * glm::dvec4(p, 1));
-  }
-  void include_corners(const Box& box, const glm::dmat4& world_from_mesh, OriginSearch& search) const {
-    if (box.is_empty()) return;
-    for (int corner = 0; corner < 8; ++corner)
-      search.include(placed(world_from_mesh,
-                            {double((corner & 1 ? box.high : box.low).x), double((corner & 2 ? box.high : box.low).y),
-                             double((corner & 4 ? box.high : box.low).z)}));
-  }
-
-  const Scene& scene_;
-  std::vector<std::optional<Box>> bounds_;  ///< by mesh; set for meshes that were searched
-};
-
-}  // namespace
-
 glm::dvec3 fitting_origin(const Scene& scene) {
   OriginSearch search;
-  PlacedPoints points(scene);
+  std::vector<std::optional<Box>> bounds(scene.meshes.size());  // bounds of the meshes searched so far
   for (const Instance& instance : scene.instances) {
+    const auto include = [&](const glm::vec3& p) {
+      search.include(scene.origin + glm::dvec3(instance.world_from_mesh * glm::dvec4(p, 1)));
+    };
+    std::optional<Box>& box = bounds[instance.mesh];
+    if (box) {  // a mesh with many instances is searched once
+      for (int k = 0; k < 8 && !box->is_empty(); ++k)
+        include({(k & 1 ? box->high : box->low).x, (k & 2 ? box->high : box->low).y, (k & 4 ? box->high : box->low).z});
+    } else {
+      box.emplace();
+      for (const glm::vec3& p : scene.meshes[instance.mesh].positions) {
+        include(p);
+        if (search.is_home()) break;
+        if (is_finite(p)) box->include(p);
+      }
+    }
     if (search.is_home()) break;
-    points.include(instance, search);
   }
   return search.origin();
 }

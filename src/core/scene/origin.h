@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the zero of a scene should lie: at the file's own zero, or among points that are so far from it that floats
-// would round their details.
+// Where the zero of a scene should lie: at the file's zero, or among points so far from it that floats round details.
 #pragma once
 
 #include "frontmost/scene.h"
@@ -15,8 +14,7 @@ namespace frontmost {
 /// On axes on which the points are four extents from zero, the origin is the roundest number near them: a multiple of
 /// the greatest possible power of ten (below one: of two). So models that were moved by a round number are put back
 /// where they were, to the bit. "Near" means within four extents, and within a quarter of the way to zero. So
-/// subtracting the origin from a float leaves a float, without rounding (Sterbenz), and no point is farther from the
-/// origin than five extents.
+/// subtracting the origin from a float leaves a float, without rounding (Sterbenz), and no point is five extents away.
 class OriginSearch {
  public:
   /// Adds a point, in any order. Ignores points that are not finite, or not within the range of floats.

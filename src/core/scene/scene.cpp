@@ -18,10 +18,17 @@ std::string place_in(const Scene& scene) { return scene.name.empty() ? "" : scen
 
 namespace {
 
+[[noreturn]] void fail(const Scene& scene, const std::string& what, const std::string& reason) {
+  throw Error(ErrorCode::file_malformed, place_in(scene) + what, reason);
+}
+
+/// "mesh 3 (lid)".
+std::string numbered(const char* kind, std::size_t number, const std::string& name) {
+  return std::string(kind) + " " + std::to_string(number) + (name.empty() ? "" : " (" + name + ")");
+}
+
 [[noreturn]] void fail(const Scene& scene, std::size_t mesh, const std::string& reason) {
-  const std::string& name = scene.meshes[mesh].name;
-  throw Error(ErrorCode::file_malformed,
-              place_in(scene) + "mesh " + std::to_string(mesh) + (name.empty() ? "" : " (" + name + ")"), reason);
+  fail(scene, numbered("mesh", mesh, scene.meshes[mesh].name), reason);
 }
 
 void check_corners(const Scene& scene, std::size_t mesh, const std::vector<glm::uvec3>& triangles, std::size_t count,
@@ -54,10 +61,6 @@ void check_attribute(const Scene& scene, std::size_t m, const Attribute<T>& attr
   }
 }
 
-void check_vertices(const Scene& scene, std::size_t m) {
-  check_corners(scene, m, scene.meshes[m].triangles, scene.meshes[m].positions.size(), "vertex");
-}
-
 void check_mesh(const Scene& scene, std::size_t m) {
   const Mesh& mesh = scene.meshes[m];
   check_attribute(scene, m, mesh.normals, "normal");
@@ -81,19 +84,17 @@ void check_use(const Scene& scene, const Material& material, const TextureUse& u
   if (!use.is_set()) return;
   const std::string who = "material " + material.name;
   if (use.texture >= scene.textures.size())
-    throw Error(ErrorCode::file_malformed, place_in(scene) + who,
-                "texture " + std::to_string(use.texture) + " does not exist");
+    fail(scene, who, "texture " + std::to_string(use.texture) + " does not exist");
   if (use.set >= max_texcoord_sets)
-    throw Error(ErrorCode::file_malformed, place_in(scene) + who,
-                "texture coordinates " + std::to_string(use.set) + ", there are at most " +
-                    std::to_string(max_texcoord_sets) + " sets");
+    fail(scene, who,
+         "texture coordinates " + std::to_string(use.set) + ", there are at most " + std::to_string(max_texcoord_sets) +
+             " sets");
 }
 
 void check_instances(const Scene& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const auto refuse = [&](const char* what, std::uint32_t number) {
-      throw Error(ErrorCode::file_malformed, place_in(scene) + "instance " + std::to_string(i),
-                  std::string(what) + " " + std::to_string(number) + " does not exist");
+      fail(scene, numbered("instance", i, ""), std::string(what) + " " + std::to_string(number) + " does not exist");
     };
     const Instance& instance = scene.instances[i];
     if (instance.mesh >= scene.meshes.size()) refuse("mesh", instance.mesh);
@@ -128,11 +129,7 @@ const char* fault_of(const Light& light) {
 
 void check_lights(const Scene& scene) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
-    if (const char* fault = fault_of(scene.lights[i])) {
-      const std::string& name = scene.lights[i].name;
-      throw Error(ErrorCode::file_malformed,
-                  place_in(scene) + "light " + std::to_string(i) + (name.empty() ? "" : " (" + name + ")"), fault);
-    }
+    if (const char* fault = fault_of(scene.lights[i])) fail(scene, numbered("light", i, scene.lights[i].name), fault);
 }
 
 }  // namespace
@@ -157,7 +154,8 @@ std::uint64_t triangle_count(const Scene& scene) {
 }
 
 void validate(const Scene& scene) {
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m) check_vertices(scene, m);
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+    check_corners(scene, m, scene.meshes[m].triangles, scene.meshes[m].positions.size(), "vertex");
   validate_besides_vertices(scene);
 }
 
@@ -168,8 +166,7 @@ void validate_besides_vertices(const Scene& scene) {
   for (const Texture& texture : scene.textures)
     if (texture.width < 0 || texture.height < 0 ||
         texture.pixels.size() != std::size_t(texture.width) * std::size_t(texture.height))
-      throw Error(ErrorCode::file_malformed, place_in(scene) + "texture " + texture.name,
-                  "pixels do not match its size");
+      fail(scene, "texture " + texture.name, "pixels do not match its size");
   check_instances(scene);
   check_lights(scene);
   // The greatest id stands for "nothing seen", so there is one id fewer than there are numbers.
@@ -188,19 +185,16 @@ void move_all(std::vector<T>& from, std::vector<T>& to) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
-/// The number of a category in the scene; adds the category if it is new.
-std::uint32_t number_of(const Category& category, std::vector<Category>& categories) {
-  const auto found = std::find_if(categories.begin(), categories.end(), [&](const Category& there) {
-    return there.name == category.name && there.number == category.number;
-  });
-  const auto number = std::uint32_t(found - categories.begin());
-  if (found == categories.end()) categories.push_back(category);
-  return number;
-}
-
+/// Adds the categories that are new, and numbers those of the part's instances by the whole list.
 void merge_categories(Scene& part, std::vector<Category>& categories) {
   std::vector<std::uint32_t> numbers;
-  for (const Category& category : part.categories) numbers.push_back(number_of(category, categories));
+  for (const Category& category : part.categories) {
+    const auto found = std::find_if(categories.begin(), categories.end(), [&](const Category& there) {
+      return there.name == category.name && there.number == category.number;
+    });
+    numbers.push_back(std::uint32_t(found - categories.begin()));
+    if (found == categories.end()) categories.push_back(category);
+  }
   for (Instance& instance : part.instances)
     if (instance.category < numbers.size()) instance.category = numbers[instance.category];
 }

@@ -18,25 +18,7 @@
 namespace frontmost {
 namespace {
 
-// The number of grid point (i, j) among the stored points.
-struct GridNumbers {
-  explicit GridNumbers(const SurfaceGrid& shape)
-      : grid(shape),
-        rows(shape.closed_rows ? shape.rows : shape.rows + 1),
-        columns(shape.closed_columns ? shape.columns : shape.columns + 1) {}
-
-  [[nodiscard]] std::uint32_t operator()(int i, int j) const {
-    if (!grid.poles) return std::uint32_t((i % rows) * columns + j % columns);
-    if (i == 0) return 0;
-    const int inner = std::min(i, grid.rows) - 1;
-    return std::uint32_t(1 + inner * columns + (i == grid.rows ? 0 : j % columns));
-  }
-
-  SurfaceGrid grid;
-  int rows, columns;
-};
-
-// Adds both triangles of a quad, except a triangle that a pole has contracted to a line.
+// Adds both triangles of a quad, less one that a pole has contracted to a line.
 void add_quad(const glm::uvec4& corners, const glm::uvec4& texcoords, Mesh& mesh) {
   const glm::uvec4 &c = corners, &t = texcoords;
   if (c[0] != c[1]) {
@@ -52,10 +34,16 @@ void add_quad(const glm::uvec4& corners, const glm::uvec4& texcoords, Mesh& mesh
 }  // namespace
 
 Mesh surface(const SurfaceGrid& grid, const std::function<SurfacePoint(int i, int j)>& point) {
-  const GridNumbers number(grid);
+  const int rows = grid.closed_rows ? grid.rows : grid.rows + 1;
+  const int columns = grid.closed_columns ? grid.columns : grid.columns + 1;
+  // The number of grid point (i, j) among the stored points.
+  const auto number = [&](int i, int j) {
+    if (!grid.poles) return std::uint32_t((i % rows) * columns + j % columns);
+    return std::uint32_t(i == 0 ? 0 : 1 + (i - 1) * columns + (i == grid.rows ? 0 : j % columns));
+  };
   Mesh mesh;
-  for (int i = 0; i < number.rows; ++i)
-    for (int j = 0; j < number.columns; ++j) {
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j) {
       if (grid.poles && (i == 0 || i == grid.rows) && j > 0) continue;
       const SurfacePoint p = point(i, j);
       mesh.positions.emplace_back(p.position);

@@ -35,8 +35,7 @@ struct KnotShape {
 struct SurfacePoint {
   glm::dvec3 position, normal;
 };
-/// A rectangle of quads, bent so that its first and last row, or column, may coincide. Outer side: (along j) x (along
-/// i).
+/// A rectangle of quads, whose first and last row, or column, may coincide. Outer side: (along j) x (along i).
 struct SurfaceGrid {
   int rows = 1, columns = 1;    ///< rows and columns of quads; i counts rows, j columns
   bool closed_rows = false;     ///< row `rows` is row 0

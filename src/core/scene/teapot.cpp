@@ -7,8 +7,7 @@
 // numbers that are not reflections.
 //
 // Every patch becomes a grid of triangles, and points that two patches share are stored once. Patches of one part (body
-// with lid and bottom, handle, spout) are welded where their points agree to the bit, which evaluate() guarantees along
-// shared edges.
+// with lid and bottom, handle, spout) are welded where their points agree to the bit, as on shared edges.
 #include <algorithm>
 #include <map>
 #include <tuple>
@@ -94,15 +93,21 @@ void add_tube(std::vector<BezierPatch>& patches, const LoopTube& tube) {
     }
 }
 
-constexpr std::size_t kTubes = 24;  // the first patch of the handle; turned patches come before
+constexpr std::size_t kFirstHandlePatch = 24, kFirstSpoutPatch = 28;  // their first patches; turned patches come before
 
 void place_on_texture(BezierPatch& patch, std::size_t number) {
-  const bool is_turned = number < kTubes;
-  const std::size_t part = is_turned ? number : (number - kTubes) % 4;
+  const bool is_turned = number < kFirstHandlePatch;
+  const std::size_t part = is_turned ? number : (number - kFirstHandlePatch) % 4;
   const std::size_t columns = is_turned ? 4 : 2, rows = is_turned ? 6 : 2;
   patch.texture_low = {double(part % columns) / double(columns), double(part / columns) / double(rows)};
   patch.texture_size = {1.0 / double(columns), 1.0 / double(rows)};
 }
+
+struct ByCoordinates {
+  bool operator()(const glm::vec3& a, const glm::vec3& b) const {
+    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+  }
+};
 
 }  // namespace
 
@@ -115,62 +120,30 @@ std::vector<BezierPatch> teapot_patches() {
   return patches;
 }
 
-namespace {
-
-constexpr std::size_t kFirstHandlePatch = 24, kFirstSpoutPatch = 28;  // first patches; turned patches come before
-
-struct ByCoordinates {
-  bool operator()(const glm::vec3& a, const glm::vec3& b) const {
-    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-  }
-};
-
-// Stores each position of a part once, with the normal of the first patch that reaches it. Patches of one part are
-// tangent to each other where they meet, so their normals agree but for rounding. Parts are not tangent: the handle
-// touches the body in one point, (-2, 0.9, 0), at an angle.
-class Welder {
- public:
-  explicit Welder(Mesh& mesh) : mesh_(mesh) {}
-  void start_part() { numbers_.clear(); }
-  std::uint32_t add(const PatchPoint& point) {
-    // + 0.0f: reflected coordinates may be -0, which is the same place.
-    const glm::vec3 position = glm::vec3(point.position) + 0.0f;
-    const auto [place, is_new] = numbers_.try_emplace(position, std::uint32_t(mesh_.positions.size()));
-    if (is_new) {
-      mesh_.positions.push_back(position);
-      mesh_.normals.values.emplace_back(point.normal);
-    }
-    return place->second;
-  }
-
- private:
-  Mesh& mesh_;
-  std::map<glm::vec3, std::uint32_t, ByCoordinates> numbers_;
-};
-
-void add_triangle(const glm::uvec3& corners, const glm::uvec3& texcoords, std::uint32_t patch, Mesh& mesh) {
-  // At a pole one side of the quad is a point.
-  if (corners.x == corners.y || corners.y == corners.z || corners.z == corners.x) return;
-  mesh.triangles.push_back(corners);
-  mesh.texcoords.triangles.push_back(texcoords);
-  mesh.face_ids.push_back(patch);
-}
-
-}  // namespace
-
 Mesh teapot(int steps) {
   Mesh mesh;
-  Welder welder(mesh);
+  // Each position of a part is stored once, with the normal of the first patch that reaches it. Patches of one part are
+  // tangent to each other where they meet, so their normals agree but for rounding. Parts are not tangent: the handle
+  // touches the body in one point, (-2, 0.9, 0), at an angle.
+  std::map<glm::vec3, std::uint32_t, ByCoordinates> numbers;
   const std::vector<BezierPatch> patches = teapot_patches();
   const int side = steps + 1;
   std::vector<std::uint32_t> corners(std::size_t(side) * std::size_t(side));
   for (std::uint32_t p = 0; p < patches.size(); ++p) {
-    if (p == kFirstHandlePatch || p == kFirstSpoutPatch) welder.start_part();
+    if (p == kFirstHandlePatch || p == kFirstSpoutPatch) numbers.clear();
     const auto first_texcoord = std::uint32_t(mesh.texcoords.values.size());
     for (int i = 0; i <= steps; ++i)
       for (int j = 0; j <= steps; ++j) {
         const PatchParameter u = fraction(i, steps), v = fraction(j, steps);
-        corners[std::size_t(i * side + j)] = welder.add(evaluate(patches[p], u, v));
+        const PatchPoint point = evaluate(patches[p], u, v);
+        // + 0.0f: reflected coordinates may be -0, which is the same place.
+        const glm::vec3 position = glm::vec3(point.position) + 0.0f;
+        const auto [place, is_new] = numbers.try_emplace(position, std::uint32_t(mesh.positions.size()));
+        if (is_new) {
+          mesh.positions.push_back(position);
+          mesh.normals.values.emplace_back(point.normal);
+        }
+        corners[std::size_t(i * side + j)] = place->second;
         mesh.texcoords.values.emplace_back(patches[p].texture_low +
                                            patches[p].texture_size * glm::dvec2(v.value, u.value));
       }
@@ -178,7 +151,11 @@ Mesh teapot(int steps) {
       for (int j = 0; j < steps; ++j) {
         const auto at = std::uint32_t(i * side + j), below = at + std::uint32_t(side);
         const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-          add_triangle({corners[a], corners[b], corners[c]}, first_texcoord + glm::uvec3(a, b, c), p, mesh);
+          const glm::uvec3 t(corners[a], corners[b], corners[c]);
+          if (t.x == t.y || t.y == t.z || t.z == t.x) return;  // at a pole one side of the quad is a point
+          mesh.triangles.push_back(t);
+          mesh.texcoords.triangles.push_back(first_texcoord + glm::uvec3(a, b, c));
+          mesh.face_ids.push_back(p);
         };
         add(at, at + 1, below + 1);
         add(at, below + 1, below);

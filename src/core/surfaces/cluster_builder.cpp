@@ -31,7 +31,7 @@ struct ClusterPart {
   std::size_t begin = 0;          // first of the runs
   std::vector<Cluster> clusters;  // first_vertex and first_triangle relative to the part
   std::vector<Box> boxes;
-  std::vector<float> x, y, z;
+  std::array<std::vector<float>, 3> axes;
   std::array<std::vector<std::uint8_t>, 3> corners;
 };
 
@@ -64,7 +64,7 @@ class PartBuilder {
     const std::size_t count = 2 * (end - begin);
     part_.begin = begin;
     for (std::vector<std::uint8_t>& corners : part_.corners) corners.reserve(count);
-    for (auto* axis : {&part_.x, &part_.y, &part_.z}) axis->reserve(count);
+    for (std::vector<float>& axis : part_.axes) axis.reserve(count);
     start_cluster();
     for (std::size_t i = begin; i < end; ++i) {
       prefetch(i, end);
@@ -83,7 +83,7 @@ class PartBuilder {
   void start_cluster() {
     table_.clear();
     cluster_ = {};
-    cluster_.first_vertex = part_.x.size();
+    cluster_.first_vertex = part_.axes[0].size();
     cluster_.first_triangle = part_.corners[0].size();
   }
 
@@ -186,10 +186,8 @@ class PartBuilder {
     cluster_.vertex_count = static_cast<std::uint16_t>(table_.size());
     // Kernels load whole vectors, so the padding behind the last vertex or triangle must be harmless.
     const std::size_t vertices = table_.pad(), triangles = padded_to_lanes(cluster_.triangle_count);
-    part_.x.insert(part_.x.end(), table_.x(), table_.x() + vertices);
-    part_.y.insert(part_.y.end(), table_.y(), table_.y() + vertices);
-    part_.z.insert(part_.z.end(), table_.z(), table_.z() + vertices);
     for (std::size_t k = 0; k < 3; ++k) {
+      part_.axes[k].insert(part_.axes[k].end(), table_.axis(k), table_.axis(k) + vertices);
       std::fill(corners_[k].begin() + cluster_.triangle_count, corners_[k].begin() + triangles, std::uint8_t(0));
       part_.corners[k].insert(part_.corners[k].end(), corners_[k].begin(), corners_[k].begin() + triangles);
     }
@@ -212,11 +210,6 @@ struct Place {
   std::size_t cluster = 0, vertex = 0, triangle = 0;
 };
 
-template <class T>
-void place(const std::vector<T>& part, Buffer<T>& whole, std::size_t at) {
-  std::copy(part.begin(), part.end(), whole.data() + at);
-}
-
 /// Writes the ids of a part's clusters: the ids of its runs, padded like the triangles.
 void place_ids(const ClusterPart& part, const SpatialOrder& order, PrimitiveId* ids) {
   const std::uint64_t* next = order.runs.data() + part.begin;
@@ -236,13 +229,15 @@ void gather(ClusterSet& set, std::vector<ClusterPart>& parts, const SpatialOrder
   // All places are known before anything is copied, so parts are copied at the same time and in any order.
   std::vector<Place> places(parts.size() + 1);
   for (std::size_t i = 0; i < parts.size(); ++i)
-    places[i + 1] = {places[i].cluster + parts[i].clusters.size(), places[i].vertex + parts[i].x.size(),
+    places[i + 1] = {places[i].cluster + parts[i].clusters.size(), places[i].vertex + parts[i].axes[0].size(),
                      places[i].triangle + parts[i].corners[0].size()};
   const Place& total = places.back();
   set.clusters.resize(total.cluster);
   set.boxes = BoxArrays(total.cluster);
-  for (Buffer<float>* axis : {&set.x, &set.y, &set.z}) *axis = Buffer<float>(total.vertex);
-  for (Buffer<std::uint8_t>* corners : {&set.i0, &set.i1, &set.i2}) *corners = Buffer<std::uint8_t>(total.triangle);
+  Buffer<float>* const axes[3] = {&set.x, &set.y, &set.z};
+  Buffer<std::uint8_t>* const corners[3] = {&set.i0, &set.i1, &set.i2};
+  for (Buffer<float>* axis : axes) *axis = Buffer<float>(total.vertex);
+  for (Buffer<std::uint8_t>* corner : corners) *corner = Buffer<std::uint8_t>(total.triangle);
   set.id = Buffer<PrimitiveId>(total.triangle);
 
   parallel_for(execution, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -250,12 +245,10 @@ void gather(ClusterSet& set, std::vector<ClusterPart>& parts, const SpatialOrder
       // The part is moved out, so that its memory is freed as soon as it is copied: the whole set never exists twice.
       const ClusterPart part = std::move(parts[i]);
       const Place& at = places[i];
-      place(part.x, set.x, at.vertex);
-      place(part.y, set.y, at.vertex);
-      place(part.z, set.z, at.vertex);
-      place(part.corners[0], set.i0, at.triangle);
-      place(part.corners[1], set.i1, at.triangle);
-      place(part.corners[2], set.i2, at.triangle);
+      for (std::size_t k = 0; k < 3; ++k) {
+        std::copy(part.axes[k].begin(), part.axes[k].end(), axes[k]->data() + at.vertex);
+        std::copy(part.corners[k].begin(), part.corners[k].end(), corners[k]->data() + at.triangle);
+      }
       place_ids(part, order, set.id.data() + at.triangle);
       for (std::size_t c = 0; c < part.clusters.size(); ++c) {
         Cluster cluster = part.clusters[c];
@@ -268,8 +261,7 @@ void gather(ClusterSet& set, std::vector<ClusterPart>& parts, const SpatialOrder
   });
 }
 
-/// Moves triangles that may have holes to the end of the order; runs with triangles of both kinds are split. \returns
-/// the number of the first run with cutouts.
+/// Moves triangles that may have holes to the end, and splits runs of both kinds. \returns the first run with cutouts.
 std::size_t part_cutouts(const Cutouts* cutouts, Buffer<std::uint64_t>& runs) {
   if (!cutouts) return runs.size();
   std::vector<std::uint64_t> kinds[2];
@@ -284,13 +276,6 @@ std::size_t part_cutouts(const Cutouts* cutouts, Buffer<std::uint64_t>& runs) {
   runs = Buffer<std::uint64_t>(kinds[0].size() + kinds[1].size());
   std::copy(kinds[1].begin(), kinds[1].end(), std::copy(kinds[0].begin(), kinds[0].end(), runs.begin()));
   return kinds[0].size();
-}
-
-/// The number of clusters before the cluster whose first triangle is `id`.
-std::size_t clusters_before(const ClusterSet& set, PrimitiveId id) {
-  std::size_t count = 0;
-  while (count < set.clusters.size() && set.id[set.clusters[count].first_triangle] != id) ++count;
-  return count;
 }
 
 }  // namespace
@@ -322,9 +307,13 @@ ClusterSet build_clusters(const PlacedScene& placed, const Execution& execution)
   });
   report_progress(execution, "surfaces", 0.9);
   gather(set, parts, order, execution);
-  set.first_cutout = first_cutout < order.runs.size()
-                         ? clusters_before(set, TriangleRun::unpacked(order.runs[first_cutout]).first)
-                         : set.clusters.size();
+  set.first_cutout = set.clusters.size();
+  if (first_cutout < order.runs.size()) {
+    const PrimitiveId first = TriangleRun::unpacked(order.runs[first_cutout]).first;
+    const auto begins = [&](const Cluster& cluster) { return set.id[cluster.first_triangle] == first; };
+    set.first_cutout =
+        std::size_t(std::find_if(set.clusters.begin(), set.clusters.end(), begins) - set.clusters.begin());
+  }
   report_progress(execution, "surfaces", 1);
   return set;
 }

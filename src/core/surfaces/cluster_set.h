@@ -148,8 +148,7 @@ class LazyClusters {
   [[nodiscard]] const ClusterSet& get(const PlacedScene& placed, const Execution& execution) const;
   /// The clusters, or null if they have not been made.
   [[nodiscard]] const ClusterSet* made() const { return made_.load(); }
-  /// Moves an instance of existing clusters to its place in the scene, or drops the clusters. Not while another call
-  /// runs.
+  /// Moves an instance of existing clusters to its place in the scene, or drops them. Not while another call runs.
   void follow(const PlacedScene& placed, const InstanceMove& move, Isa isa);
   /// Drops the clusters' reference to cutouts, so that cutouts need not be copied before they move.
   void leave_cutouts() {

@@ -3,8 +3,7 @@
 //
 // There are two passes over a cluster. The first finds the unit normals, whose bounding box has the axis in its middle;
 // the second finds the least cosine between the axis and a normal. A cone must never be too narrow. So a cluster gets
-// no cone if rounding could reverse a direction: for needles, boxes without extent, and normals that open to a half
-// turn.
+// no cone if rounding could reverse a direction: for needles, flat boxes, and normals that open to a half turn.
 
 #include <cmath>
 #include <limits>

@@ -5,8 +5,7 @@
 //   ranges     | 2048 | 2048 | rest |  | 2048 | 2048 | rest |  | rest |           triangles that follow one another
 //   boxes      one for 64 triangles each, in world space
 //
-// Nothing is copied: positions stay in the scene's meshes and go through to_world() at every read. Frequent readers use
-// clusters.
+// Positions are not copied: they stay in the meshes and go through to_world() when read. Frequent readers use clusters.
 #pragma once
 
 #include <algorithm>
@@ -65,8 +64,7 @@ struct NumberRange {
 
 /// Consecutive triangles of one instance.
 struct MeshRange {
-  /// Drawing so many triangles takes long compared with handing them to a thread, and their vertices stay in the
-  /// second-level cache.
+  /// Drawing so many takes long compared with handing them over; their vertices stay in the second-level cache.
   static constexpr std::uint32_t most_triangles = 2048;
   /// Triangles in a box of PlacedScene::boxes.
   static constexpr std::uint32_t triangles_in_box = 64;
@@ -92,8 +90,7 @@ class MoveLog {
     }
     instances_.push_back(instance);
   }
-  /// Calls visit(instance) for all instances that may have moved since the log had `seen` moves, and sets `seen` to
-  /// count().
+  /// Calls visit(instance) for instances that may have moved after the first `seen` moves, and sets `seen` to count().
   template <class Visit>
   void visit_since(std::uint64_t& seen, std::size_t instance_count, const Visit& visit) const {
     if (seen < first_)
@@ -134,8 +131,6 @@ struct PlacedScene {
   [[nodiscard]] PrimitiveId first_id(const MeshRange& range) const {
     return first_primitives[range.instance] + range.begin;
   }
-  /// Whether triangles of an instance may have holes.
-  [[nodiscard]] bool has_cutouts(std::uint32_t instance) const;
   /// Moves an instance to its place in the scene.
   void follow(std::uint32_t instance, Isa isa);
   /// Makes the levels, and from them the bounds. O(instances * log(instances)).
@@ -143,8 +138,7 @@ struct PlacedScene {
   /// Updates the levels and the bounds for one instance. O(log(instances)).
   void follow_bounds(std::uint32_t instance);
 
-  /// Calls visit(vertex) for the world-space vertices of a box's triangles, except those that a triangle shares with
-  /// the one before.
+  /// Calls visit(vertex) for the world-space vertices of a box's triangles, but those shared with the triangle before.
   template <class Visit>
   void visit_box(std::size_t box, const Visit& visit) const;
 };
@@ -153,13 +147,11 @@ struct PlacedScene {
 [[nodiscard]] const PlacedScene& placed_scene(const Surfaces& surfaces);
 
 /// Numbers the triangles and finds their boxes. Precondition: validate_besides_vertices(scene) and
-/// check_transforms(scene) have passed. O(triangles), in parallel: 3 ns a triangle on one thread. \throws Error as
-/// validate(scene) does for the number of a vertex that does not exist.
+/// check_transform() of all instances have passed. O(triangles), in parallel: 3 ns a triangle on one thread. \throws
+/// Error as validate(scene) does for the number of a vertex that does not exist.
 [[nodiscard]] PlacedScene place_scene(const Scene& scene, const Execution& execution);
 
-/// \throws Error bad_argument if a transform is not finite.
-void check_transforms(const Scene& scene);
-/// check_transforms() for a new transform of one instance.
+/// \throws Error bad_argument if a transform, which need not be that of the instance yet, is not finite.
 void check_transform(const Scene& scene, std::size_t instance, const glm::dmat4& world_from_mesh);
 
 /// Triangles of a range in world space. Borrows from the scene, or from the scratch memory.
@@ -216,8 +208,7 @@ void place_vertices(const glm::dmat4& world_from_mesh, std::span<const glm::vec3
 
 /// The least and greatest vertex number. Precondition: not empty.
 [[nodiscard]] NumberRange range_of_numbers(std::span<const glm::uvec3> corners, Isa isa);
-/// Finds a box for each MeshRange::triangles_in_box triangles. Triangles with vertices that are not finite are in no
-/// box.
+/// Finds a box for each MeshRange::triangles_in_box triangles. Triangles with non-finite vertices are in none.
 void find_boxes(const WorldTriangles& triangles, Isa isa, Box* boxes);
 
 }  // namespace frontmost

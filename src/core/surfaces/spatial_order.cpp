@@ -22,6 +22,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
@@ -57,9 +58,7 @@ void sort_by_digit(const Buffer<std::uint64_t>& from, Buffer<std::uint64_t>& to,
   // Sums go by digit first and chunk second: equal digits keep the order of the chunks, which makes the sort stable.
   for (std::size_t value = 0; value < kDigits; ++value)
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
-      std::uint32_t& entry = places[chunk * kDigits + value];
-      const std::uint32_t count = entry;
-      entry = place;
+      const std::uint32_t count = std::exchange(places[chunk * kDigits + value], place);
       place += count;
     }
   parallel_for(execution, from.size(), kChunk, [&](std::size_t begin, std::size_t end) {
@@ -88,11 +87,6 @@ struct InstancePart {
   std::uint32_t instance = 0;
   std::uint32_t begin = 0, end = 0;
 };
-
-void append_parts(std::vector<InstancePart>& parts, std::uint32_t instance, std::uint64_t count) {
-  for (std::uint64_t begin = 0; begin < count; begin += kItemsPerPart)
-    parts.push_back({instance, std::uint32_t(begin), std::uint32_t(std::min(begin + kItemsPerPart, count))});
-}
 
 /// Spreads the low 10 bits to every third place.
 constexpr std::uint32_t spread(std::uint32_t x) {
@@ -208,8 +202,11 @@ SpatialOrder spatial_order(const PlacedScene& placed, const Execution& execution
   const int bits = bits_per_axis(placed.first_primitives.back());
   const Grid grid(placed.bounds, bits);
   std::vector<InstancePart> parts;
-  for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
-    append_parts(parts, i, scene.meshes[scene.instances[i].mesh].triangles.size());
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const std::uint64_t count = scene.meshes[scene.instances[i].mesh].triangles.size();
+    for (std::uint64_t begin = 0; begin < count; begin += kItemsPerPart)
+      parts.push_back({i, std::uint32_t(begin), std::uint32_t(std::min(begin + kItemsPerPart, count))});
+  }
   std::vector<PartRuns> runs(parts.size());
   parallel_for(execution, parts.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {

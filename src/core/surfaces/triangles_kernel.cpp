@@ -26,8 +26,7 @@ namespace frontmost {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// On targets without vectors, Highway converts doubles beyond the range of floats to the greatest float, not to
-// infinity.
+// Without vectors, Highway converts doubles beyond the range of floats to the greatest float, not to infinity.
 #if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
 
 void PlaceVertices(const glm::dmat4& m, std::span<const glm::vec3> from, glm::vec3* to) {
@@ -109,8 +108,7 @@ class BoxFinder {
   explicit BoxFinder(const WorldTriangles& triangles)
       : positions_(&triangles.positions.data()->x), first_(std::int32_t(triangles.first_position)) {}
 
-  /// Finds the box of consecutive triangles, at least one. \returns false if a vertex may not be finite; the box is
-  /// then undefined.
+  /// The box of consecutive triangles, at least one. \returns false, with any box, if a vertex may not be finite.
   bool Find(std::span<const glm::uvec3> corners, Box& box) {
     const DF d;
     for (std::size_t axis = 0; axis < 3; ++axis) {

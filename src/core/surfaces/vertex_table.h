@@ -52,25 +52,25 @@ class VertexTable {
     const bool found = is_at(guess, bits);
     const std::uint32_t number = found ? guess : count_;
     keys_[number] = bits;
-    x_[number] = p.x, y_[number] = p.y, z_[number] = p.z;
+    axes_[0][number] = p.x, axes_[1][number] = p.y, axes_[2][number] = p.z;
     guess = static_cast<std::uint8_t>(number);
     count_ += !found;
     return static_cast<std::uint8_t>(number);
   }
-  [[nodiscard]] glm::vec3 operator[](std::size_t i) const { return {x_[i], y_[i], z_[i]}; }
+  [[nodiscard]] glm::vec3 operator[](std::size_t i) const { return {axes_[0][i], axes_[1][i], axes_[2][i]}; }
 
   /// Repeats the last vertex to fill whole vectors. \returns the new size, 0 for an empty table.
   std::size_t pad() {
     if (count_ == 0) return 0;
     const std::size_t end = padded_to_lanes(count_);
-    for (auto* axis : {&x_, &y_, &z_}) std::fill(axis->begin() + count_, axis->begin() + end, (*axis)[count_ - 1]);
+    for (auto& axis : axes_) std::fill(axis.begin() + count_, axis.begin() + end, axis[count_ - 1]);
     return end;
   }
   /// Bounds of all vertices. Precondition: pad() was called after the last vertex was added.
   [[nodiscard]] Box bounds() const {
     Box box;
     for (int k = 0; k < 3; ++k) {
-      const auto& axis = k == 0 ? x_ : k == 1 ? y_ : z_;
+      const auto& axis = axes_[std::size_t(k)];
       // Lanes are independent, so that the compiler can use vectors and no comparison waits for the one before.
       std::array<float, Cluster::lanes> low, high;
       low.fill(std::numeric_limits<float>::infinity());
@@ -86,9 +86,8 @@ class VertexTable {
     }
     return box;
   }
-  [[nodiscard]] const float* x() const { return x_.data(); }
-  [[nodiscard]] const float* y() const { return y_.data(); }
-  [[nodiscard]] const float* z() const { return z_.data(); }
+  /// x, y or z of all vertices.
+  [[nodiscard]] const float* axis(std::size_t k) const { return axes_[k].data(); }
 
  private:
   using Bits = std::array<std::uint32_t, 4>;
@@ -113,7 +112,7 @@ class VertexTable {
 
   std::array<std::uint8_t, std::size_t(1) << kHashBits> guesses_{};
   std::array<Bits, Cluster::max_vertices> keys_{};  // a guess may name a vertex that does not exist
-  std::array<float, Cluster::max_vertices> x_, y_, z_;
+  std::array<std::array<float, Cluster::max_vertices>, 3> axes_;
   std::uint32_t count_ = 0;
 };
 

@@ -17,8 +17,7 @@ namespace frontmost {
 void check_planes(const Visible& visible, const char* who);
 
 /// \throws Error bad_argument, beginning with `who`, unless every id is less than `primitive_count` or no_primitive.
-/// Ids of other surfaces, or of the same surfaces before an edit, would be read beyond all arrays. O(ids), as fast as
-/// memory.
+/// Ids of other surfaces, or of the same surfaces before an edit, would be read beyond all arrays. O(ids).
 void check_ids(std::span<const PrimitiveId> ids, std::uint32_t primitive_count, const char* who,
                const Execution& execution);
 

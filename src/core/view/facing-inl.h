@@ -18,8 +18,7 @@ namespace frontmost::view_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The lanes of `asked` whose triangles are double-sided. `ids` has a value for each lane; lanes that are not asked for
-/// may hold any value.
+/// The lanes of `asked` whose triangles are double-sided. `ids` has a value for each lane, any in lanes not asked for.
 template <class D, class Ids>
 HWY_NOINLINE hn::Mask<D> DoubleSided(D d, const FacingRule& rule, hn::Mask<D> asked, Ids ids) {
   const hn::RebindToSigned<D> di;

@@ -5,22 +5,17 @@
 //       | key, a float | id, inverted |      floats that are not negative are ordered like their bits
 #pragma once
 
-#include <cstring>
-
-#include "frontmost/base.h"
+#include "base/memory.h"
 
 namespace frontmost {
 
 [[nodiscard]] inline std::uint64_t packed_sample(PrimitiveId id, float key) {
-  std::uint32_t bits;
-  std::memcpy(&bits, &key, sizeof bits);
-  return id == no_primitive ? 0 : std::uint64_t(bits) << 32 | std::uint32_t(~id);
+  return id == no_primitive ? 0 : std::uint64_t(bits_as<std::uint32_t>(key)) << 32 | std::uint32_t(~id);
 }
 
 inline void unpack_sample(std::uint64_t packed, PrimitiveId& id, float& key) {
-  const auto bits = std::uint32_t(packed >> 32);
   id = ~std::uint32_t(packed);
-  std::memcpy(&key, &bits, sizeof key);
+  key = bits_as<float>(std::uint32_t(packed >> 32));
 }
 
 }  // namespace frontmost

@@ -16,7 +16,13 @@ namespace frontmost {
 /// The start and the direction of the ray through a point on the screen, in world axes.
 class ScreenRays {
  public:
-  explicit ScreenRays(const View& view);
+  explicit ScreenRays(const View& view)
+      : parallel_(view.projection.orthographic), eye_(view.eye()), forward_(view.forward()) {
+    const Projection& p = view.projection;
+    corner_ = p.left * view.right() + p.top * view.up() + (parallel_ ? glm::dvec3(0) : forward_);
+    step_x_ = (p.right - p.left) / view.width * view.right();
+    step_y_ = (p.bottom - p.top) / view.height * view.up();
+  }
 
   [[nodiscard]] bool is_parallel() const { return parallel_; }
   [[nodiscard]] const glm::dvec3& eye() const { return eye_; }
@@ -38,14 +44,6 @@ class ScreenRays {
   glm::dvec3 corner_;  ///< at() at the screen's origin
   glm::dvec3 step_x_, step_y_;
 };
-
-inline ScreenRays::ScreenRays(const View& view)
-    : parallel_(view.projection.orthographic), eye_(view.eye()), forward_(view.forward()) {
-  const Projection& p = view.projection;
-  corner_ = p.left * view.right() + p.top * view.up() + (parallel_ ? glm::dvec3(0) : forward_);
-  step_x_ = (p.right - p.left) / view.width * view.right();
-  step_y_ = (p.bottom - p.top) / view.height * view.up();
-}
 
 /// For each vertex, the volume spanned by the ray and the other two vertices at some screen position, and its change
 /// per pixel.

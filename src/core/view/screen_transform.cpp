@@ -43,8 +43,7 @@ ScreenTransform::ScreenTransform(const View& view) {
   x_row = as_row(scale_x * view.right() + per_distance * axis_x * view.forward());
   y_row = as_row(-scale_y * view.up() + per_distance * axis_y * view.forward());
   d_row = as_row(view.forward());
-  // Floats subtract the rounded eye from a position. The rest of the eye, at most half a unit in the last place, is
-  // multiplied by the rows once, in doubles.
+  // Floats subtract the rounded eye. The rest, at most half a unit in the last place, goes through the rows in doubles.
   const glm::dvec3 rest = view.eye() - glm::dvec3(eye[0], eye[1], eye[2]);
   x_offset = float((1 - per_distance) * axis_x) - dot(x_row, rest);
   y_offset = float((1 - per_distance) * axis_y) - dot(y_row, rest);
@@ -74,8 +73,7 @@ constexpr ClipPlane kPlanes[] = {ClipPlane::near,  ClipPlane::far, ClipPlane::le
 
 double w_of(const ScreenTransform& t, const ClipVertex& v) { return t.orthographic ? 1.0 : v.d; }
 
-/// Distance from a plane, not negative inside. A vertex that can be snapped is inside every plane, whatever doubles
-/// say.
+/// Distance from a plane, not negative inside. Vertices that can be snapped are inside, whatever doubles say.
 double distance(const ScreenTransform& t, ClipPlane plane, const ClipVertex& v) {
   const double reach = kGuardBand * w_of(t, v);
   double distance = 0;
@@ -141,8 +139,7 @@ int clip_by(const ScreenTransform& t, ClipPlane plane, const ClipCorners& in, in
   return std::min(kept, ClippedPolygon::max_corners);
 }
 
-/// A coordinate in 1/256 pixel. Ties go to the even number, as in every kernel; a cut on the guard band must not round
-/// beyond it.
+/// A coordinate in 1/256 pixel. Ties go to the even number, as in kernels; a cut on the guard band stays there.
 std::int32_t snap_coordinate(double homogeneous, double w) {
   const double limit = kGuardBand;
   return static_cast<std::int32_t>(std::nearbyint(std::clamp(homogeneous / w, -limit, limit)));

@@ -53,8 +53,7 @@ inline HomogeneousVertex transform(const ScreenTransform& t, const glm::vec3& po
           ((t.d_row[0] * dx + t.d_row[1] * dy) + t.d_row[2] * dz) + t.d_offset};
 }
 
-/// True if the vertex lies between near and far and within the guard band, so that it can be snapped as it is. False
-/// for NaN.
+/// True if the vertex lies between near and far and within the guard band, so that it can be snapped. False for NaN.
 inline bool is_plain(const ScreenTransform& t, const HomogeneousVertex& v) {
   // Far away the product overflows. Without the limit, an infinite coordinate would count as within an infinite reach.
   const float reach = std::fmin(float(kGuardBand) * (t.orthographic ? 1.0f : v.d), std::numeric_limits<float>::max());

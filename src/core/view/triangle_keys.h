@@ -23,8 +23,7 @@ template <class Triangle>
   return std::int64_t(t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - std::int64_t(t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
 }
 
-/// The key of a triangle that is not steep, as a plane: the key at (x, y) is (k0 + (x - x0) * gx) + (y - y0) * gy,
-/// limited to [k_min, k_max].
+/// The key of a triangle that is not steep: (k0 + (x - x0) * gx) + (y - y0) * gy at (x, y), limited to [k_min, k_max].
 struct KeyPlane {
   /// Triangles with smaller keys count as steep, because float products with such keys might not be normal numbers.
   static constexpr float least_key = 1e-30f;

@@ -4,12 +4,10 @@
 //
 //   (key, id) wins over (key', id')  where  key > key',  or  key == key' and id < id'
 //
-// The rule depends neither on order nor on repetition, so parts of a scene may be merged in any order, twice, or by a
-// tree of machines.
+// The rule depends neither on order nor on repetition: parts of a scene may be merged in any order, or twice.
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <cstring>
 #include <string>
 
 #include "base/parallel.h"
@@ -36,10 +34,13 @@ bool same_view(const View& a, const View& b) {
          a.culling == b.culling && same_projection(a.projection, b.projection);
 }
 
-constexpr std::size_t packed_at_once = 1u << 16;
+constexpr std::size_t samples_at_once = 1u << 16;
 
-/// Merges a run of samples, without branches, so that the compiler uses vectors. \returns the greatest new id of all
-/// seen.
+[[noreturn]] void fail_too_many(const char* who) {
+  throw Error(ErrorCode::limit_exceeded, who, "more than 4294967294 triangles, the most that ids can number");
+}
+
+/// Merges a run of samples, without branches, so that the compiler uses vectors. \returns the greatest new id.
 std::uint64_t merge_run(Visible& into, const Visible& other, PrimitiveId first_id, std::size_t begin, std::size_t end) {
   PrimitiveId* ids = into.primitives.data();
   float* keys = into.keys.data();
@@ -106,10 +107,8 @@ std::uint64_t content_hash(const Visible& visible) {
   hash_word(hash, std::uint64_t(visible.view.height));
   hash_word(hash, std::uint64_t(visible.view.samples));
   for (std::size_t i = 0; i < visible.keys.size(); ++i) {
-    std::uint32_t key;
-    // The bits are hashed, not the number: two pictures are equal only if all bits are.
-    std::memcpy(&key, &visible.keys[i], sizeof key);
-    hash_word(hash, std::uint64_t(key) << 32 | visible.primitives[i]);
+    // The bits, not the number: two pictures are equal only to the last bit.
+    hash_word(hash, std::uint64_t(bits_as<std::uint32_t>(visible.keys[i])) << 32 | visible.primitives[i]);
   }
   return hash;
 }
@@ -128,19 +127,17 @@ void merge(Visible& into, const Visible& other, PrimitiveId first_id, const Exec
   // Whether ids run out is tested once a run instead of at every sample. An error is rare, and the merged samples are
   // lost then anyway.
   std::atomic<bool> is_full{false};
-  constexpr std::size_t samples_at_once = 1u << 16;
   parallel_for(execution, into.keys.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
     if (merge_run(into, other, first_id, begin, end) >= no_primitive) is_full = true;
   });
-  if (is_full)
-    throw Error(ErrorCode::limit_exceeded, "merge", "more than 4294967294 triangles, the most that ids can number");
+  if (is_full) fail_too_many("merge");
 }
 
 Buffer<std::uint64_t> pack(const Visible& visible, PrimitiveId first_id, const Execution& execution) {
   check_planes(visible, "pack");
   Buffer<std::uint64_t> packed(visible.keys.size());
   std::atomic<bool> is_full{false};
-  parallel_for(execution, packed.size(), packed_at_once, [&](std::size_t begin, std::size_t end) {
+  parallel_for(execution, packed.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
     std::uint64_t greatest = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const PrimitiveId id = visible.primitives[i];
@@ -149,8 +146,7 @@ Buffer<std::uint64_t> pack(const Visible& visible, PrimitiveId first_id, const E
     }
     if (greatest >= no_primitive) is_full = true;
   });
-  if (is_full)
-    throw Error(ErrorCode::limit_exceeded, "pack", "more than 4294967294 triangles, the most that ids can number");
+  if (is_full) fail_too_many("pack");
   return packed;
 }
 
@@ -161,7 +157,7 @@ Visible unpack(const View& view, std::span<const std::uint64_t> packed, const Ex
                 "the number of packed values is not the number of samples of the view");
   Visible visible{view, Buffer<PrimitiveId>(packed.size()), Buffer<float>(packed.size())};
   std::atomic<bool> is_wrong{false};
-  parallel_for(execution, packed.size(), packed_at_once, [&](std::size_t begin, std::size_t end) {
+  parallel_for(execution, packed.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
     constexpr std::uint32_t bits_of_one = 0x3F800000u;  // bits of floats in [0, 1] are ordered like the floats
     std::uint32_t greatest = 0;
     for (std::size_t i = begin; i < end; ++i) {

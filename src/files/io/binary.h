@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstring>
 #include <string>
+#include <type_traits>
 
 #include "base/output_file.h"
 #include "frontmost/files.h"
@@ -31,27 +32,20 @@ template <class T>
 
 namespace detail {
 
-inline void append_bytes(std::string& bytes, std::uint32_t word) {
-  for (int shift = 0; shift < 32; shift += 8) bytes += char(word >> shift & 0xFF);
-}
-
-inline void append_bytes(std::string& bytes, float value) {
-  std::uint32_t word;
-  std::memcpy(&word, &value, sizeof word);
-  append_bytes(bytes, word);
-}
-
-inline void append_bytes(std::string& bytes, double value) {
-  std::uint64_t word;
-  std::memcpy(&word, &value, sizeof word);
-  append_bytes(bytes, std::uint32_t(word));
-  append_bytes(bytes, std::uint32_t(word >> 32));
+/// A number in little-endian order.
+template <class T>
+void append_bytes(std::string& bytes, T value) {
+  static_assert(std::is_arithmetic_v<T>);
+  char raw[sizeof(T)];
+  std::memcpy(raw, &value, sizeof(T));
+  if (native_endian == Endian::big) std::reverse(raw, raw + sizeof(T));
+  bytes.append(raw, sizeof(T));
 }
 
 /// Appends one number of a column.
 inline void append_bytes(std::string& bytes, const TableColumn& column, std::size_t row) {
   if (const auto* small = std::get_if<std::vector<std::uint8_t>>(&column.values))
-    bytes += char((*small)[row]);
+    append_bytes(bytes, (*small)[row]);
   else if (const auto* words = std::get_if<std::vector<std::uint32_t>>(&column.values))
     append_bytes(bytes, (*words)[row]);
   else

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole file is mapped into memory if that pays off, else read. The limit on its size is checked before memory is
-// allocated.
+// A whole file is mapped if that pays off, else read, with a limit that is checked before memory is allocated.
 #include "io/input_file.h"
 
 #include <fcntl.h>
@@ -77,19 +76,15 @@ InputFile InputFile::open(const std::filesystem::path& path, const std::string& 
   if (!S_ISREG(status.st_mode) || size < mapping_threshold)
     return read_stream(number, name, std::min(max_bytes, max_stream_bytes));
   check_size(size, max_bytes, name);
-  return map(number, std::size_t(size), name);
+  void* start = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, number, 0);
+  if (start == MAP_FAILED) fail_to_read_by_errno(name, "cannot map");
+  ::madvise(start, size, MADV_SEQUENTIAL);  // only advice
+  return {Data(static_cast<const std::byte*>(start), Delete{size}), size};
 }
 
 InputFile InputFile::open_input(const std::string& path, std::uint64_t max_bytes) {
   if (path != "-") return open(path, path, max_bytes);
   return read_stream(STDIN_FILENO, input_name(path), std::min(max_bytes, max_stream_bytes));
-}
-
-InputFile InputFile::map(int descriptor, std::size_t size, const std::string& name) {
-  void* start = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
-  if (start == MAP_FAILED) fail_to_read_by_errno(name, "cannot map");
-  ::madvise(start, size, MADV_SEQUENTIAL);  // only advice
-  return {Data(static_cast<const std::byte*>(start), Delete{size}), size};
 }
 
 InputFile InputFile::read_stream(int descriptor, const std::string& name, std::uint64_t max_bytes) {

@@ -48,7 +48,6 @@ class InputFile {
 
   InputFile(Data data, std::size_t size) : data_(std::move(data)), size_(size) {}
   static InputFile read_stream(int descriptor, const std::string& name, std::uint64_t max_bytes);
-  static InputFile map(int descriptor, std::size_t size, const std::string& name);
 
   Data data_;
   std::size_t size_ = 0;
@@ -93,8 +92,7 @@ class ByteStream {
 
 /// \throws Error file_unreadable: "name: reason".
 [[noreturn]] void fail_to_read(const std::string& name, const std::string& reason);
-/// \throws Error file_unreadable with the system's text for errno. Precondition: errno is unchanged since the failed
-/// call.
+/// \throws Error file_unreadable with the system's text for errno, which is unchanged since the failed call.
 [[noreturn]] void fail_to_read_by_errno(const std::string& name, const char* doing);
 
 }  // namespace frontmost

@@ -28,6 +28,9 @@ struct Excerpt::Parts {
 
 namespace streaming {
 
+/// Samples of a loop on threads.
+inline constexpr std::size_t samples_at_once = 1u << 16;
+
 /// Kept triangles of one piece, each with three vertices of its own.
 struct Kept {
   PiecePlace place;
@@ -84,7 +87,6 @@ class IdMap {
 
   /// Replaces ids by their indices.
   void apply(std::span<PrimitiveId> ids, const Execution& execution) const {
-    constexpr std::size_t samples_at_once = 1u << 16;
     parallel_for(execution, ids.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
       PrimitiveId last = no_primitive, place = no_primitive;
       for (PrimitiveId& id : ids.subspan(begin, end - begin)) {

@@ -64,8 +64,7 @@ class OutlineFinder {
     points.insert(points.end(), std::begin(ends_), std::end(ends_));
     return points;
   }
-  /// The kept points as triangles without area. Surfaces of this scene have the model's bounds, and frame() returns the
-  /// same view for them.
+  /// The points as triangles without area. Its surfaces have the model's bounds, and frame() frames them alike.
   [[nodiscard]] Scene scene() const {
     Scene scene;
     if (bounds_.is_empty()) return scene;

@@ -52,18 +52,17 @@ Models::Models(const std::vector<std::string>& paths, const LoadOptions& options
 }
 
 void Models::add(Model model) {
-  const Scene& part = model.stream->scene();
+  Scene part = model.stream->scene();
   if (models_.empty()) {
     scene_.name = part.name;
     scene_.up = part.up;
   }
   model.object = std::uint32_t(scene_.instances.size());
   model.first_material = std::uint32_t(scene_.materials.size());
-  Scene without_warnings = part;
   // Warnings may come with every piece, and are taken over one by one.
-  without_warnings.warnings.clear();
-  frontmost::add(scene_, std::move(without_warnings));
-  if (!part.instances.empty()) {
+  part.warnings.clear();
+  frontmost::add(scene_, std::move(part));
+  if (scene_.instances.size() > model.object) {
     // Pieces are moved into place when they are parsed, so that surfaces made of them need no transforms.
     glm::dmat4& place = scene_.instances.back().world_from_mesh;
     model.moved = glm::dvec3(place[3]);
@@ -126,14 +125,13 @@ bool Models::can_rewind() const {
 }
 
 double Models::fraction() const {
-  double sum = 0;
-  std::size_t count = 0;
+  double sum = 0, count = 0;
   for (std::size_t i = 0; i < models_.size(); ++i) {
     if (!is_read_here(i)) continue;
     sum += models_[i].stream->fraction();
     ++count;
   }
-  return count == 0 ? 1 : sum / double(count);
+  return count == 0 ? 1 : sum / count;
 }
 
 void Models::rewind() {
@@ -184,61 +182,39 @@ void Models::parse(StreamPiece& piece, const PiecePlace& place) const {
     for (glm::vec3& position : piece.mesh.positions) position = glm::vec3(glm::dvec3(position) + model.moved);
 }
 
-namespace {
-
-/// Hands out pieces, and remembers the error of the earliest piece that failed.
-class Queue {
- public:
-  Queue(Models& models, std::uint32_t triangles) : models_(models), triangles_(triangles) {}
-
-  bool fetch(StreamPiece& piece, PiecePlace& place, const Execution& execution) {
-    const std::lock_guard lock(mutex_);
-    if (error_) return false;
-    place.number = fetched_;  // for an error of this fetch
-    const bool got = models_.fetch(piece, place, triangles_);
-    if (got) fetched_ = place.number + 1;
-    report_progress(execution, "stream", models_.fraction());
-    return got;
-  }
-  void fail(std::size_t number) {
-    const std::lock_guard lock(mutex_);
-    // The error of the earliest piece is kept, as with a single thread, so messages do not depend on threads.
-    if (error_ && number_ <= number) return;
-    error_ = std::current_exception();
-    number_ = number;
-  }
-  void rethrow() const {
-    if (error_) std::rethrow_exception(error_);
-  }
-
- private:
-  Models& models_;
-  std::uint32_t triangles_;
-  std::mutex mutex_;
-  std::size_t fetched_ = 0, number_ = 0;
-  std::exception_ptr error_;
-};
-
-}  // namespace
-
-void for_each_piece(Models& models, const LoopOptions& options, const Execution& execution,
+void for_each_piece(Models& models, std::uint32_t triangles, int workers, const Execution& execution,
                     const std::function<void(int, StreamPiece&, const PiecePlace&)>& work) {
-  Queue queue(models, options.triangles_at_once);
+  std::mutex mutex;
+  std::size_t fetched = 0, failed = 0;  // pieces that were fetched, and the earliest one that failed
+  std::exception_ptr error;
+  const auto fetch = [&](StreamPiece& piece, PiecePlace& place) {
+    const std::lock_guard lock(mutex);
+    if (error) return false;
+    place.number = fetched;  // for an error of this fetch
+    const bool got = models.fetch(piece, place, triangles);
+    if (got) fetched = place.number + 1;
+    report_progress(execution, "stream", models.fraction());
+    return got;
+  };
   // One index per worker and not per piece, because the number of pieces is known only at the end.
-  parallel_for(execution, std::size_t(options.workers), 1, [&](std::size_t worker, std::size_t) {
+  parallel_for(execution, std::size_t(workers), 1, [&](std::size_t worker, std::size_t) {
     StreamPiece piece;
     PiecePlace place;
     try {
-      while (queue.fetch(piece, place, execution)) {
+      while (fetch(piece, place)) {
         models.parse(piece, place);
         work(int(worker), piece, place);
         check_cancelled(execution);
       }
     } catch (...) {
-      queue.fail(place.number);
+      const std::lock_guard lock(mutex);
+      // The earliest piece counts, as for a single thread: messages do not depend on threads.
+      if (error && failed <= place.number) return;
+      error = std::current_exception();
+      failed = place.number;
     }
   });
-  queue.rethrow();
+  if (error) std::rethrow_exception(error);
 }
 
 }  // namespace frontmost::streaming

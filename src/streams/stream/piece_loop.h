@@ -5,8 +5,7 @@
 //   parse and work             +-- worker 0 --------+           +-- worker 0 ...
 //                                         +-- worker 1 ---------------+
 //
-// Fetching only reads bytes, so files are read from front to back. Each worker has memory of its own, which its pieces
-// reuse.
+// Fetching only reads bytes, so files are read from front to back. Each worker has memory of its own.
 #pragma once
 
 #include <exception>
@@ -94,14 +93,9 @@ class Models {
   std::uint64_t next_ = 0, shared_pieces_ = 0;
 };
 
-struct LoopOptions {
-  std::uint32_t triangles_at_once = 1;
-  int workers = 1;
-};
-
-/// Calls work(worker, piece, place) for every piece. If several pieces fail, the error of the earliest is thrown, for
-/// any number of threads.
-void for_each_piece(Models& models, const LoopOptions& options, const Execution& execution,
+/// Calls work(worker, piece, place) for every piece of about `triangles`. If several pieces fail, the error of the
+/// earliest is thrown, for any number of threads.
+void for_each_piece(Models& models, std::uint32_t triangles, int workers, const Execution& execution,
                     const std::function<void(int worker, StreamPiece&, const PiecePlace&)>& work);
 
 }  // namespace frontmost::streaming

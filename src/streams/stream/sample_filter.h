@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "frontmost/scene.h"
@@ -41,9 +42,8 @@ struct PixelBounds {
 
 class SampleFilter {
  public:
-  explicit SampleFilter(const View& view) : transform_(view), width_(view.width), height_(view.height) {
-    for (const glm::ivec2& offset : sample_offsets(view.samples)) offsets_.push_back(offset);
-  }
+  explicit SampleFilter(const View& view)
+      : transform_(view), width_(view.width), height_(view.height), offsets_(sample_offsets(view.samples)) {}
 
   /// Marks every triangle that may cover a sample: all that do, and few others. \returns the pixels that marked
   /// triangles may cover.
@@ -123,8 +123,8 @@ class SampleFilter {
 
   ScreenTransform transform_;
   int width_, height_;
-  std::vector<glm::ivec2> offsets_;  ///< sample positions within a pixel
-  std::vector<Corner> corners_;      ///< vertices of the current mesh
+  std::span<const glm::ivec2> offsets_;  ///< sample positions within a pixel
+  std::vector<Corner> corners_;          ///< vertices of the current mesh
 };
 
 }  // namespace frontmost::streaming

@@ -17,7 +17,7 @@ Ranks::Message message_of(const PassFacts& facts) {
   writer.put(std::uint64_t(facts.warnings.size()));
   for (const FileWarning& warning : facts.warnings) {
     writer.put(warning.file);
-    writer.put_text(warning.text);
+    writer.put_list(warning.text);
   }
   return writer.take();
 }
@@ -25,11 +25,11 @@ Ranks::Message message_of(const PassFacts& facts) {
 PassFacts facts_of(const Ranks::Message& message) {
   MessageReader reader(message);
   PassFacts facts;
-  facts.triangle_counts = reader.get_list<std::uint64_t>();
+  facts.triangle_counts = reader.get_list<std::vector<std::uint64_t>>();
   facts.bounds = reader.get<Box>();
   for (auto left = reader.get<std::uint64_t>(); left > 0; --left) {
     const auto file = reader.get<std::uint32_t>();
-    facts.warnings.push_back({file, reader.get_text()});
+    facts.warnings.push_back({file, reader.get_list<std::string>()});
   }
   return facts;
 }
@@ -62,7 +62,7 @@ Kept get_kept(MessageReader& reader) {
   Kept kept;
   kept.place.first = reader.get<PrimitiveId>();
   kept.place.object = reader.get<std::uint32_t>();
-  for_each_list(kept, [&]<class T>(std::vector<T>& list) { list = reader.get_list<T>(); });
+  for_each_list(kept, [&]<class T>(std::vector<T>& list) { list = reader.get_list<std::vector<T>>(); });
   // Each triangle has three vertices of its own, in order.
   kept.mesh.triangles.reserve(kept.triangles.size());
   for (std::uint32_t t = 0; t < kept.triangles.size(); ++t)
@@ -92,16 +92,16 @@ std::vector<glm::vec3> share(Ranks& ranks, const std::vector<glm::vec3>& mine) {
   writer.put_list(mine);
   std::vector<glm::vec3> all;
   for (const Ranks::Message& message : ranks.gather(writer.take())) {
-    const std::vector<glm::vec3> part = MessageReader(message).get_list<glm::vec3>();
+    const std::vector<glm::vec3> part = MessageReader(message).get_list<std::vector<glm::vec3>>();
     all.insert(all.end(), part.begin(), part.end());
   }
   whole.put_list(all);
-  return MessageReader(ranks.broadcast(whole.take())).get_list<glm::vec3>();
+  return MessageReader(ranks.broadcast(whole.take())).get_list<std::vector<glm::vec3>>();
 }
 
 void share(Ranks& ranks, Visible& visible, const Execution& execution) {
-  // Planes are merged in runs, because a whole plane at once would take as much memory again, and would not be faster.
-  constexpr std::size_t run = 1u << 20, samples_at_once = 1u << 16;
+  // Merging in runs: the whole plane at once would take as much memory again, and would not be faster.
+  constexpr std::size_t run = 1u << 20;
   PrimitiveId* const ids = visible.primitives.data();
   float* const keys = visible.keys.data();
   const std::size_t count = visible.keys.size();
@@ -157,7 +157,6 @@ PrimitiveId IdShift::operator()(PrimitiveId id) const {
 }
 
 void IdShift::apply(std::span<PrimitiveId> ids, const Execution& execution) const {
-  constexpr std::size_t samples_at_once = 1u << 16;
   if (std::all_of(files_.begin(), files_.end(), [](const File& file) { return file.shift == 0; })) return;
   parallel_for(execution, ids.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)

@@ -29,14 +29,11 @@ class MessageWriter {
   void put(const T& value) {
     append(&value, 1);
   }
-  template <class T>
-  void put_list(const std::vector<T>& values) {
+  /// A vector or a text.
+  template <class List>
+  void put_list(const List& values) {
     put(std::uint64_t(values.size()));
     append(values.data(), values.size());
-  }
-  void put_text(const std::string& text) {
-    put(std::uint64_t(text.size()));
-    append(text.data(), text.size());
   }
   [[nodiscard]] Ranks::Message take() { return std::move(bytes_); }
 
@@ -63,26 +60,20 @@ class MessageReader {
     copy(&value, 1);
     return value;
   }
-  template <class T>
-  [[nodiscard]] std::vector<T> get_list() {
-    std::vector<T> values(count_of(sizeof(T)));
+  /// A vector or a text.
+  template <class List>
+  [[nodiscard]] List get_list() {
+    const auto count = get<std::uint64_t>();
+    if (count > (bytes_.size() - at_) / sizeof(typename List::value_type)) fail();
+    List values;
+    values.resize(std::size_t(count));
     copy(values.data(), values.size());
     return values;
-  }
-  [[nodiscard]] std::string get_text() {
-    std::string text(count_of(1), '\0');
-    copy(text.data(), text.size());
-    return text;
   }
 
  private:
   [[noreturn]] static void fail() {
     throw Error(ErrorCode::file_malformed, "stream", "the ranks do not read the same files");
-  }
-  [[nodiscard]] std::size_t count_of(std::size_t size) {
-    const auto count = get<std::uint64_t>();
-    if (count > (bytes_.size() - at_) / size) fail();
-    return std::size_t(count);
   }
   template <class T>
   void copy(T* to, std::size_t count) {

@@ -113,46 +113,16 @@ void SightGatherer::forget_hidden() {
   }
 }
 
-Selection Drawer::select(const Mesh& mesh, const SightGatherer& sight) {
-  Selection selection;
-  marks_.assign(mesh.triangles.size(), 0);
+void Drawer::draw(StreamPiece& piece, const PiecePlace& place, const Scene& frame, SightGatherer& sight,
+                  const Execution& execution) {
+  Selection selection;  // triangles that may cover a sample of one of the views
+  marks_.assign(piece.mesh.triangles.size(), 0);
   for (std::size_t i = 0; i < sight.view_count(); ++i) {
     if (filters_.size() == i) filters_.emplace_back(sight.view(i));
-    selection.pixels.push_back(filters_[i].mark(mesh, marks_));
+    selection.pixels.push_back(filters_[i].mark(piece.mesh, marks_));
   }
   for (std::uint32_t t = 0; t < marks_.size(); ++t)
     if (marks_[t]) selection.numbers.push_back(t);
-  return selection;
-}
-
-namespace {
-
-/// Calls tell() for all triangles of a mesh. Corners are copied, a few triangles at a time, because the mesh's own
-/// arrays do not have this layout.
-void tell_corners(const Mesh& mesh, const std::function<void(CornerSpan)>& tell) {
-  std::vector<std::array<glm::vec3, 3>> corners;
-  constexpr std::size_t at_once = 1024;
-  for (std::size_t begin = 0; begin < mesh.triangles.size(); begin += at_once) {
-    corners.clear();
-    for (std::size_t t = begin; t < std::min(begin + at_once, mesh.triangles.size()); ++t) {
-      const glm::uvec3& triangle = mesh.triangles[t];
-      corners.push_back({mesh.positions[triangle.x], mesh.positions[triangle.y], mesh.positions[triangle.z]});
-    }
-    tell(corners);
-  }
-}
-
-}  // namespace
-
-void Drawer::draw(StreamPiece& piece, const PiecePlace& place, const Scene& frame, SightGatherer& sight,
-                  const Execution& execution) {
-  draw_selection(piece, place, frame, sight, execution);
-  if (sight.needs().unseen && sight.is_blank()) tell_corners(piece.mesh, sight.needs().unseen);
-}
-
-void Drawer::draw_selection(StreamPiece& piece, const PiecePlace& place, const Scene& frame, SightGatherer& sight,
-                            const Execution& execution) {
-  const Selection selection = select(piece.mesh, sight);
   if (sight.needs().bounds) sight.include(finite_bounds(piece.mesh, 0, piece.mesh.triangles.size()));
   if (selection.numbers.empty()) return;
   if (scene_.instances.empty()) {

@@ -9,7 +9,6 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
 #include <mutex>
 #include <vector>
 
@@ -30,9 +29,8 @@ struct Selection {
 
 /// Facts needed besides the visible samples.
 struct SightNeeds {
-  bool triangles = false;                            ///< copies of the visible triangles
-  bool bounds = false;                               ///< bounds of all triangles
-  std::function<void(CornerSpan)> unseen = nullptr;  ///< as in StreamNeeds
+  bool triangles = false;  ///< copies of the visible triangles
+  bool bounds = false;     ///< bounds of all triangles
 };
 
 /// Gathers what the workers draw.
@@ -81,11 +79,6 @@ class Drawer {
             const Execution& execution);
 
  private:
-  void draw_selection(StreamPiece& piece, const PiecePlace& place, const Scene& frame, SightGatherer& sight,
-                      const Execution& execution);
-  /// Selects the triangles that may cover a sample of one of the views.
-  [[nodiscard]] Selection select(const Mesh& mesh, const SightGatherer& sight);
-
   Scene scene_;
   std::vector<ZBuffer> buffers_;
   std::vector<SampleFilter> filters_;

@@ -61,6 +61,20 @@ std::vector<glm::vec3> large_corners(const KeptPieces& kept, const std::vector<V
   return corners;
 }
 
+/// Passes on a few triangles at a time, because the mesh's own arrays do not have this layout.
+void tell_corners(const Mesh& mesh, const std::function<void(CornerSpan)>& tell) {
+  std::vector<std::array<glm::vec3, 3>> corners;
+  constexpr std::size_t at_once = 1024;
+  for (std::size_t begin = 0; begin < mesh.triangles.size(); begin += at_once) {
+    corners.clear();
+    for (std::size_t t = begin; t < std::min(begin + at_once, mesh.triangles.size()); ++t) {
+      const glm::uvec3& triangle = mesh.triangles[t];
+      corners.push_back({mesh.positions[triangle.x], mesh.positions[triangle.y], mesh.positions[triangle.z]});
+    }
+    tell(corners);
+  }
+}
+
 }  // namespace
 
 struct Stream::State {
@@ -105,18 +119,19 @@ struct Stream::State {
     if (execution.watch) quiet.cancelled = execution.watch->cancelled;
     const Execution of_worker{std::max(1, thread_count(execution) / workers), execution.isa, &quiet};
     for_each_piece(
-        models, {options.triangles_at_once, workers}, execution,
+        models, options.triangles_at_once, workers, execution,
         [&](int worker, StreamPiece& piece, const PiecePlace& place) { work(worker, piece, place, of_worker); });
   }
 
   /// The first pass of look(): finds what is visible on any rank, and keeps copies of the triangles read here.
   KeptPieces find_visible(const std::vector<View>& views, const StreamNeeds& needs, Excerpt& excerpt,
                           const Execution& execution) {
-    SightGatherer sight(views, {.triangles = true, .bounds = !bounds, .unseen = needs.unseen});
+    SightGatherer sight(views, {.triangles = true, .bounds = !bounds});
     std::vector<Drawer> drawers(std::size_t(thread_count(execution)));
     pass(sight.sample_count(), execution,
          [&](int worker, StreamPiece& piece, const PiecePlace& place, const Execution& each) {
            drawers[std::size_t(worker)].draw(piece, place, models.scene(), sight, each);
+           if (needs.unseen && sight.is_blank()) tell_corners(piece.mesh, needs.unseen);
          });
     Box found = bounds.value_or(sight.bounds());
     if (options.ranks) sight.share(*options.ranks, share_facts(found), execution);

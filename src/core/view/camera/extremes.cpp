@@ -3,8 +3,7 @@
 //
 // The search begins with the boxes that reach farthest in each direction. The points found bound a polygon in each of
 // two planes (Core): a point within both polygons reaches less far than the kept points. Most boxes lie wholly in the
-// core and are passed over. Each vertex of other boxes is tested, and the core is made anew once it has become too
-// small.
+// core and are passed over. Each vertex of other boxes is tested, and the core is made anew if it is too small.
 //
 //     . - - - - - - *   --> direction k: the farthest point is kept
 //    /             /
@@ -87,12 +86,11 @@ void Extremes::include(const glm::vec3& point) {
 }
 
 void Extremes::offer(int direction, double reach, const glm::vec3& point) {
-  Kept& kept = kept_[direction];
-  // Points that reach equally far are kept by a fixed order, so that the result does not depend on which came first.
+  // Points that reach equally far are kept by a fixed order, so that the result does not depend on who came first.
   if (reach < reach_[direction]) return;
-  if (kept.is_set && reach == reach_[direction] && !comes_before(point, kept.point)) return;
+  if (reach == reach_[direction] && !comes_before(point, kept_[direction])) return;
   reach_[direction] = reach;
-  kept = {point, true};
+  kept_[direction] = point;
 }
 
 /// A box as centre and half size, enlarged by more than all rounding, so that no point that would tie is passed over.
@@ -104,8 +102,7 @@ struct Extremes::Extent {
     middle = 0.5 * (low + high);
     half = 0.5 * (high - low);
     const glm::dvec3 size = glm::abs(middle) + half;
-    // Coordinates are floats, exact in double. A reach is three products and two sums of them, and errs by less than
-    // 1e-15 of this sum.
+    // Coordinates are floats, exact in double. A reach, a sum of three products, errs by less than 1e-15 of this sum.
     half += 1e-12 * (size.x + size.y + size.z);
   }
 };
@@ -221,8 +218,7 @@ class Extremes::Core {
   Polygon polygons_[2];
 };
 
-/// Visits the boxes that reach farthest in each direction, and then all boxes that are not within the core of the
-/// points found.
+/// Visits the boxes that reach farthest in each direction, then all that are not within the core of the points found.
 template <class Parts>
 class Extremes::Search {
  public:
@@ -336,8 +332,8 @@ void Extremes::include(const ClusterSet& set) { Search<ClusterParts>({set}, *thi
 
 std::vector<glm::vec3> Extremes::points() const {
   std::vector<glm::vec3> points;
-  for (const Kept& kept : kept_)
-    if (kept.is_set) points.push_back(kept.point);
+  for (int i = 0; i < direction_count; ++i)
+    if (reach_[i] != -kInfinity) points.push_back(kept_[i]);
   std::sort(points.begin(), points.end(), comes_before);
   points.erase(std::unique(points.begin(), points.end()), points.end());
   return points;

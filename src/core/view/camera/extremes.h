@@ -32,10 +32,9 @@ struct FilledFrustum {
   FilledFrustum(const glm::dmat4& world_from_eye, const Projection& sides, double margin);
 };
 
-/// Keeps, of any number of points, those that lie farthest in some fixed directions: exactly the directions in which
-/// the sides of a frustum move, and 64 directions around each of the two planes in which two of the sides are lines.
-/// The kept points depend on the set of points alone, not on their order. So a model in pieces is framed to the bit
-/// like the whole model.
+/// Keeps, of any number of points, those that lie farthest in some fixed directions: the directions in which the sides
+/// of a frustum move, exactly, and 64 around each of the two planes in which its sides can be drawn. The kept points
+/// depend on the set of points alone, not on their order. So a model in pieces is framed like the whole one.
 class Extremes {
  public:
   explicit Extremes(const FilledFrustum& frustum);
@@ -73,18 +72,13 @@ class Extremes {
   /// False if the point would not be kept.
   [[nodiscard]] bool may_change_by(const Projected& point) const;
 
-  struct Kept {
-    glm::vec3 point{0};
-    bool is_set = false;
-  };
-
   glm::dvec3 across_[2], back_;
   glm::dvec2 spread_;
   double cosine_[around], sine_[around];
   double x_[direction_count], y_[direction_count], z_[direction_count];              ///< directions in world axes
   double abs_x_[direction_count], abs_y_[direction_count], abs_z_[direction_count];  ///< absolute values
-  double reach_[direction_count];
-  Kept kept_[direction_count];
+  double reach_[direction_count];  ///< minus infinity until a point is kept
+  glm::vec3 kept_[direction_count]{};
 };
 
 }  // namespace frontmost

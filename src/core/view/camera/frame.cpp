@@ -148,35 +148,26 @@ Subject find_subject(const Surfaces& surfaces) {
 
 namespace {
 
-/// The model's own axes. `up` is as the format defines it; NamedView::front looks at the side `front`.
-struct ModelAxes {
-  glm::dvec3 right, up, front;  ///< right-handed; front points from the model to the viewer
-};
-
-ModelAxes model_axes(Axis up_axis) {
-  const glm::dvec3 up = direction(up_axis);
-  // Front of a y-up model is +z (glTF), of a z-up model -y (CAD), of an x-up model +z.
-  const bool along_z = up_axis == Axis::z || up_axis == Axis::minus_z;
-  const glm::dvec3 front = along_z ? glm::dvec3(0, -1, 0) : glm::dvec3(0, 0, 1);
-  return {glm::cross(up, front), up, front};
-}
-
 struct Gaze {
   glm::dvec3 towards_viewer, up;
 };
 
-Gaze gaze(NamedView view, const ModelAxes& axes) {
+Gaze gaze(NamedView view, Axis up_axis) {
+  const glm::dvec3 up = direction(up_axis);
+  // Front of a y-up model is +z (glTF), of a z-up model -y (CAD), of an x-up model +z.
+  const bool along_z = up_axis == Axis::z || up_axis == Axis::minus_z;
+  const glm::dvec3 front = along_z ? glm::dvec3(0, -1, 0) : glm::dvec3(0, 0, 1), right = glm::cross(up, front);
   switch (view) {
-    case NamedView::front: return {axes.front, axes.up};
-    case NamedView::back: return {-axes.front, axes.up};
-    case NamedView::left: return {-axes.right, axes.up};
-    case NamedView::right: return {axes.right, axes.up};
-    case NamedView::top: return {axes.up, -axes.front};
-    case NamedView::bottom: return {-axes.up, axes.front};
-    case NamedView::iso: return {axes.right + axes.up + axes.front, axes.up};
-    case NamedView::three_quarter: return {0.55 * axes.right + 0.42 * axes.up + axes.front, axes.up};
+    case NamedView::front: return {front, up};
+    case NamedView::back: return {-front, up};
+    case NamedView::left: return {-right, up};
+    case NamedView::right: return {right, up};
+    case NamedView::top: return {up, -front};
+    case NamedView::bottom: return {-up, front};
+    case NamedView::iso: return {right + up + front, up};
+    case NamedView::three_quarter: return {0.55 * right + 0.42 * up + front, up};
   }
-  return {axes.front, axes.up};
+  return {front, up};
 }
 
 std::array<glm::dvec3, 8> corners_of(const Box& box) {
@@ -188,7 +179,7 @@ std::array<glm::dvec3, 8> corners_of(const Box& box) {
 }
 
 /// The box that is framed if a scene has nothing to show.
-Box unit_box() { return {glm::vec3(-0.5f), glm::vec3(0.5f)}; }
+const Box unit_box{glm::vec3(-0.5f), glm::vec3(0.5f)};
 
 /// A frustum moved so that it just holds all included points. With p = (x, y, towards) along its axes, a point is left
 /// of the right side if x <= spread * (eye_towards - towards) + eye_x. So each side requires one sum of the eye's
@@ -265,43 +256,31 @@ class Fit {
   double nearest_ = -kInfinity;
 };
 
-/// The extremes of a model in the picture of an eye, as slopes from the picture's middle, and their distances.
-class Spread {
- public:
-  Spread(const glm::dvec3& eye, const glm::dvec3& across, const glm::dvec3& back)
-      : eye_(eye), across_(across), back_(back) {}
-
-  void include(const glm::dvec3& p) {
-    const glm::dvec3 d = p - eye_;
-    const double distance = -glm::dot(d, back_), slope = glm::dot(d, across_) / distance;
-    if (slope < low_.slope) low_ = {slope, distance};
-    if (slope > high_.slope) high_ = {slope, distance};
-  }
-  /// How far the eye must move for the two extremes to lie equally far from the picture's middle.
-  [[nodiscard]] double to_centre() const {
-    // After a move by m, a point at distance w has slope s - m / w: the result is the m for which the new slopes add up
-    // to 0.
-    return (low_.slope + high_.slope) / (1 / low_.distance + 1 / high_.distance);
-  }
-
- private:
+/// How far along `across` an eye must move for the extremes of the points to lie equally far from the picture's middle.
+double to_centre(const glm::dvec3& eye, const glm::dvec3& across, const glm::dvec3& back,
+                 const std::vector<glm::vec3>& points) {
+  // The extremes, as slopes from the picture's middle, and their distances.
   struct Extreme {
     double slope, distance;
-  };
-  glm::dvec3 eye_, across_, back_;
-  Extreme low_{std::numeric_limits<double>::infinity(), 1}, high_{-std::numeric_limits<double>::infinity(), 1};
-};
+  } low{std::numeric_limits<double>::infinity(), 1}, high{-std::numeric_limits<double>::infinity(), 1};
+  for (const glm::vec3& p : points) {
+    const glm::dvec3 d = glm::dvec3(p) - eye;
+    const double distance = -glm::dot(d, back), slope = glm::dot(d, across) / distance;
+    if (slope < low.slope) low = {slope, distance};
+    if (slope > high.slope) high = {slope, distance};
+  }
+  // After a move by m, a point at distance w has slope s - m / w: the new slopes add up to 0 for this m.
+  return (low.slope + high.slope) / (1 / low.distance + 1 / high.distance);
+}
 
 /// Moves the eye across until the model is in the middle of the picture. Only the looser direction moves, as the tight
 /// one is in the middle already.
 void centre(glm::dmat4& pose, const FilledFrustum& frustum, const std::vector<glm::vec3>& points) {
   constexpr int kSteps = 3;  // each step leaves a small error, because the distances of the extremes change
   for (int step = 0; step < kSteps; ++step)
-    for (int axis = 0; axis < 2; ++axis) {
-      Spread spread(glm::dvec3(pose[3]), glm::dvec3(frustum.axes[axis]), glm::dvec3(frustum.axes[2]));
-      for (const glm::vec3& p : points) spread.include(glm::dvec3(p));
-      pose[3] += pose[axis] * spread.to_centre();
-    }
+    for (int axis = 0; axis < 2; ++axis)
+      pose[3] += pose[axis] *
+                 to_centre(glm::dvec3(pose[3]), glm::dvec3(frustum.axes[axis]), glm::dvec3(frustum.axes[2]), points);
 }
 
 std::vector<glm::vec3> extremes_of(const Surfaces& surfaces, const Subject& subject, const FilledFrustum& frustum) {
@@ -316,7 +295,7 @@ std::vector<glm::vec3> extremes_of(const Surfaces& surfaces, const Subject& subj
 
 Subject subject_for(const Surfaces& surfaces, FramedObjects objects) {
   Subject subject = objects == FramedObjects::all ? Subject{surfaces.bounds(), {}} : find_subject(surfaces);
-  if (subject.bounds.is_empty()) subject.bounds = unit_box();
+  if (subject.bounds.is_empty()) subject.bounds = unit_box;
   return subject;
 }
 
@@ -345,7 +324,7 @@ void check(int width, int height, const FrameOptions& options) {
 }  // namespace
 
 ClipDistances fit_clip(const Box& bounds, const glm::dmat4& world_from_eye, bool orthographic) {
-  const Box box = bounds.is_empty() ? unit_box() : bounds;
+  const Box box = bounds.is_empty() ? unit_box : bounds;
   const glm::dvec3 eye(world_from_eye[3]), forward(-glm::dvec3(world_from_eye[2]));
   double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest, size = 0;
   for (const glm::dvec3& corner : corners_of(box)) {
@@ -370,7 +349,7 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
   check(width, height, options);
   const Subject subject = subject_for(surfaces, options.objects);
   const Box& box = subject.bounds;
-  const Gaze look = gaze(options.direction, model_axes(surfaces.scene().up));
+  const Gaze look = gaze(options.direction, surfaces.scene().up);
   const glm::dvec3 forward = options.forward.value_or(-look.towards_viewer);
   glm::dmat4 pose = look_at(-glm::normalize(forward), glm::dvec3(0), options.up.value_or(look.up));
 

@@ -137,13 +137,15 @@ void check_clip(const ClipDistances& clip, bool orthographic) {
   if (!(clip.far > clip.near)) throw Error(ErrorCode::bad_argument, "far", "must be greater than near");
 }
 
-void check_sides(double left, double right, double bottom, double top) {
-  check_finite(left, "left");
-  check_finite(right, "right");
-  check_finite(bottom, "bottom");
-  check_finite(top, "top");
-  if (!(left < right)) throw Error(ErrorCode::bad_argument, "right", "must be greater than left");
-  if (!(bottom < top)) throw Error(ErrorCode::bad_argument, "top", "must be greater than bottom");
+/// The sides of a perspective projection may be those at any distance.
+void check_projection(const Projection& p) {
+  check_finite(p.left, "left");
+  check_finite(p.right, "right");
+  check_finite(p.bottom, "bottom");
+  check_finite(p.top, "top");
+  if (!(p.left < p.right)) throw Error(ErrorCode::bad_argument, "right", "must be greater than left");
+  if (!(p.bottom < p.top)) throw Error(ErrorCode::bad_argument, "top", "must be greater than bottom");
+  check_clip(p.clip, p.orthographic);
 }
 
 void check_size(int width, int height) {
@@ -186,16 +188,15 @@ Projection make_projection(double min_fov, double aspect, const ClipDistances& c
 }
 
 Projection make_frustum(double left, double right, double bottom, double top, const ClipDistances& clip) {
-  check_sides(left, right, bottom, top);
-  check_clip(clip, false);
+  check_projection({false, left, right, bottom, top, clip});
   const double n = clip.near;
   return {false, left / n, right / n, bottom / n, top / n, clip};
 }
 
 Projection make_orthographic(double left, double right, double bottom, double top, const ClipDistances& clip) {
-  check_sides(left, right, bottom, top);
-  check_clip(clip, true);
-  return {true, left, right, bottom, top, clip};
+  const Projection projection{true, left, right, bottom, top, clip};
+  check_projection(projection);
+  return projection;
 }
 
 Projection make_projection(const Intrinsics& k, int width, int height, const ClipDistances& clip) {
@@ -215,20 +216,12 @@ Intrinsics intrinsics_of(const Projection& projection, int width, int height, Pi
 }
 
 View make_view(const Intrinsics& intrinsics, int width, int height) {
-  View view;
-  view.width = width;
-  view.height = height;
-  view.projection = make_projection(intrinsics, width, height, {});
-  return view;
+  return {.width = width, .height = height, .projection = make_projection(intrinsics, width, height, {})};
 }
 
 View make_view(double min_fov, int width, int height) {
   check_size(width, height);
-  View view;
-  view.width = width;
-  view.height = height;
-  view.projection = make_projection(min_fov, double(width) / height, {});
-  return view;
+  return {.width = width, .height = height, .projection = make_projection(min_fov, double(width) / height, {})};
 }
 
 View View::between(double near, double far) const {
@@ -261,37 +254,23 @@ double distance_of_depth(const Projection& projection, const DepthConvention& de
 
 namespace {
 
-// Places of samples in units of 1/16 pixel from the pixel's centre; x points right, y down.
-constexpr std::array<glm::ivec2, 1> kOne{{{0, 0}}};
-constexpr std::array<glm::ivec2, 2> kTwo{{{4, 4}, {-4, -4}}};
-constexpr std::array<glm::ivec2, 4> kFour{{{-2, -6}, {6, -2}, {-6, 2}, {2, 6}}};
-constexpr std::array<glm::ivec2, 8> kEight{{{1, -3}, {-1, 3}, {5, 1}, {-3, -5}, {-5, 5}, {-7, -1}, {3, 7}, {7, -7}}};
-constexpr std::array<glm::ivec2, 16> kSixteen{{{1, 1},
-                                               {-1, -3},
-                                               {-3, 2},
-                                               {4, -1},
-                                               {-5, -2},
-                                               {2, 5},
-                                               {5, 3},
-                                               {3, -5},
-                                               {-2, 6},
-                                               {0, -7},
-                                               {-4, -6},
-                                               {-6, 4},
-                                               {-8, 0},
-                                               {7, -4},
-                                               {6, 7},
-                                               {-7, -8}}};
-
-template <std::size_t count>
-constexpr std::array<glm::ivec2, count> in_fixed_point(const std::array<glm::ivec2, count>& sixteenths) {
-  std::array<glm::ivec2, count> offsets{};
-  for (std::size_t i = 0; i < count; ++i) offsets[i] = {128 + 16 * sixteenths[i].x, 128 + 16 * sixteenths[i].y};
+// Samples in units of 1/256 pixel from the pixel's corner; x points right, y down. Patterns of 1, 2, 4, 8 and 16
+// samples follow one another, so that a pattern begins at its number of samples less one.
+constexpr auto kSampleOffsets = [] {
+  // In units of 1/16 pixel from the pixel's centre.
+  constexpr int sixteenths[31][2] = {{0, 0},                                // 1 sample
+                                     {4, 4},   {-4, -4},                    // 2 samples
+                                     {-2, -6}, {6, -2},  {-6, 2},  {2, 6},  // 4
+                                     {1, -3},  {-1, 3},  {5, 1},   {-3, -5}, {-5, 5},  {-7, -1}, {3, 7}, {7, -7},  // 8
+                                     {1, 1},   {-1, -3}, {-3, 2},  {4, -1},  {-5, -2}, {2, 5},   {5, 3}, {3, -5},  // 16
+                                     {-2, 6},  {0, -7},  {-4, -6}, {-6, 4},  {-8, 0},  {7, -4},  {6, 7}, {-7, -8}};
+  std::array<glm::ivec2, 31> offsets{};
+  for (std::size_t i = 0; i < offsets.size(); ++i)
+    offsets[i] = {128 + 16 * sixteenths[i][0], 128 + 16 * sixteenths[i][1]};
   return offsets;
-}
+}();
 
-/// A value that is too large exceeds a limit of the library, and one that is too small is an error of the caller.
-/// Messages name both ends of the range.
+/// A value that is too large exceeds a limit of the library, a value too small is an error of the caller.
 void check_range(double value, double low, double high, const char* what) {
   if (!(value >= low && value <= high))
     throw Error(value > high ? ErrorCode::limit_exceeded : ErrorCode::bad_argument, std::string(what),
@@ -321,19 +300,9 @@ void check_float_range(const View& view) {
 }  // namespace
 
 std::span<const glm::ivec2> sample_offsets(int samples) {
-  static constexpr auto one = in_fixed_point(kOne);
-  static constexpr auto two = in_fixed_point(kTwo);
-  static constexpr auto four = in_fixed_point(kFour);
-  static constexpr auto eight = in_fixed_point(kEight);
-  static constexpr auto sixteen = in_fixed_point(kSixteen);
-  switch (samples) {
-    case 1: return one;
-    case 2: return two;
-    case 4: return four;
-    case 8: return eight;
-    case 16: return sixteen;
-    default: throw Error(ErrorCode::bad_argument, "samples", "must be 1, 2, 4, 8 or 16");
-  }
+  if (samples != 1 && samples != 2 && samples != 4 && samples != 8 && samples != 16)
+    throw Error(ErrorCode::bad_argument, "samples", "must be 1, 2, 4, 8 or 16");
+  return {kSampleOffsets.data() + samples - 1, std::size_t(samples)};
 }
 
 void validate(const View& view) {
@@ -345,15 +314,7 @@ void validate(const View& view) {
   if (view.sample_count() > most_samples)
     throw Error(ErrorCode::limit_exceeded, "samples",
                 "at most " + std::to_string(most_samples) + " in all pixels together");
-  // These checks are made by constructing the projection again.
-  const Projection& p = view.projection;
-  if (p.orthographic) {
-    (void)make_orthographic(p.left, p.right, p.bottom, p.top, p.clip);
-  } else {
-    // make_frustum() takes sides at the near plane. These sides, at distance 1, are passed unscaled: if they were
-    // scaled by a wrong near plane, the error would name the sides.
-    (void)make_frustum(p.left, p.right, p.bottom, p.top, p.clip);
-  }
+  check_projection(view.projection);
   (void)world_from_eye(view.world_from_eye, PoseConvention::opengl_camera_to_world);
   check_float_range(view);
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fineness of curved primitives, and the triangles of a mesh of patches, without gaps between patches of different
-// fineness.
+// The fineness of curved primitives, and triangles without gaps between patches of different fineness.
 //
 //   a cell of a patch's grid beside a neighbour that is twice as fine: a fan about the cell's middle joins all points
 //
@@ -26,8 +25,7 @@
 namespace frontmost {
 
 /// A close upper bound of the number of triangles that tessellate() would make for the curved meshes, without making
-/// any. The number may exceed the limit of tessellate(), and may be infinite. O(size of the scene). \throws Error as
-/// tessellate() does, except for the limit.
+/// any. May exceed its limit, and be infinite. O(size of the scene). \throws Error as tessellate(), but for the limit.
 [[nodiscard]] double tessellated_count(const Scene& scene, const View& view, double pixels);
 
 /// Steps of a grid over a patch.

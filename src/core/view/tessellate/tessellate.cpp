@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Curved meshes as triangles that are fine enough for one view. Levels are chosen first, so that limits are checked
-// before any triangle is made.
+// Curved meshes as triangles fine enough for one view: first the levels, so that limits are known, then triangles.
 //
 //   scene, view --Plan--> a level for every instance of a curved mesh --> one mesh for every pair of mesh and level
 //                         count of triangles, or an error                 instances refer to theirs
 //
 // A model may place a sphere a thousand times at the same size; instances that need the same fineness share a mesh. A
-// patch becomes a grid whose rims are as fine as the neighbours need: rows of quads inside, fans of triangles along
-// finer rims.
+// patch becomes a grid whose rims are as fine as the neighbours need: quads inside, fans of triangles along finer rims.
 //
 // A level is the first at which the error of the grid does not exceed the tolerated displacement:
 //
@@ -38,8 +36,7 @@ namespace {
 
 constexpr int kFewestRings = 4;
 
-/// An upper bound of the factor by which a matrix can lengthen a vector (Gershgorin's circles about M^T M); exact for
-/// rotations with a scale.
+/// How much a matrix can lengthen a vector, at most (Gershgorin's circles about M^T M); exact for scaled rotations.
 double greatest_stretch(const glm::dmat3& m) {
   const glm::dmat3 squares = glm::transpose(m) * m;
   double most = 0;
@@ -126,8 +123,7 @@ PatchLevel PatchBending::level_within(double tolerance) const {
   // A control point is infinite or NaN: tessellate() leaves such patches out.
   if (!std::isfinite(error(level))) return level;  // never seen
   while (error(level) > tolerance && (level.u < finest_level || level.v < finest_level)) {
-    // The cells are halved in the direction with the greater share of the error. This quarters that share, and divides
-    // no triangle in the other direction.
+    // The direction with the greater share of the error is halved. This quarters its share, and keeps the other.
     const double by_u = uu_ / level.u / level.u, by_v = vv_ / level.v / level.v;
     // If only the twist remains, the longer cells are halved.
     const bool is_u = by_u != by_v ? by_u > by_v : level.u <= level.v;
@@ -174,14 +170,12 @@ namespace {
 
 using EdgePoints = std::array<glm::dvec3, 4>;
 
-bool comes_before(const glm::dvec3& a, const glm::dvec3& b) {
-  return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-}
-
-/// Orders edges. Two edges are equal if all four control points are equal to the bit; points that differ by a rounding
-/// make different edges.
+/// Edges are equal if all four control points are, to the bit; points that differ by a rounding are apart.
 struct EdgeOrder {
   bool operator()(const EdgePoints& a, const EdgePoints& b) const {
+    const auto comes_before = [](const glm::dvec3& p, const glm::dvec3& q) {
+      return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+    };
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), comes_before);
   }
 };
@@ -274,9 +268,8 @@ class GridBuilder {
 
 /// Whether the patch can be tessellated: all its points are finite.
 bool is_finite(const BezierPatch& patch) {
-  for (const glm::dvec3& p : patch.points)
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return false;
-  return true;
+  return std::all_of(patch.points.begin(), patch.points.end(),
+                     [](const glm::dvec3& p) { return frontmost::is_finite(p); });
 }
 
 }  // namespace
@@ -335,11 +328,13 @@ Mesh make_triangles(const Mesh& curved, const MeshLevel& level) {
   return mesh;
 }
 
-/// The fineness of each instance of a curved mesh, known before anything is made; instances that are alike share
-/// meshes.
-class Plan {
- public:
+/// The fineness of each instance of a curved mesh, known before anything is made; equal instances share meshes.
+struct Plan {
   using Key = std::pair<std::uint32_t, MeshLevel>;  ///< a mesh, and its level
+
+  std::vector<std::optional<Key>> keys;  ///< by instance; none if the mesh is not curved
+  std::vector<double> counts;            ///< by instance: triangles made for this and all earlier instances
+  double triangle_count = 0;
 
   Plan(const Scene& scene, const View& view, double pixels) {
     if (!(pixels > 0))
@@ -347,74 +342,34 @@ class Plan {
     validate(scene);
     validate(view);
     const ScreenTolerance tolerance(view, pixels);
+    std::set<Key> seen;
     for (const Instance& instance : scene.instances) {
-      counts_.push_back(triangles_);
-      keys_.emplace_back();
-      if (!scene.meshes[instance.mesh].is_curved()) continue;
-      const MeshLevel level = level_of(scene.meshes[instance.mesh], instance.world_from_mesh, tolerance);
-      keys_.back().emplace(instance.mesh, level);
-      if (seen_.insert(*keys_.back()).second) triangles_ += level.triangle_count();
-      counts_.back() = triangles_;
+      const Mesh& mesh = scene.meshes[instance.mesh];
+      std::optional<Key>& key = keys.emplace_back();
+      if (mesh.is_curved()) {
+        key.emplace(instance.mesh, level_of(mesh, instance.world_from_mesh, tolerance));
+        if (seen.insert(*key).second) triangle_count += key->second.triangle_count();
+      }
+      counts.push_back(triangle_count);
     }
   }
-  /// None if the instance's mesh is not curved.
-  [[nodiscard]] const std::optional<Key>& key(std::size_t instance) const { return keys_[instance]; }
-  [[nodiscard]] double triangle_count() const { return triangles_; }
 
   void check_limit(const Scene& scene) const {
-    const auto over = std::find_if(counts_.begin(), counts_.end(), [](double n) { return !(n <= kMostTriangles); });
-    if (over == counts_.end()) return;
-    const auto instance = std::size_t(over - counts_.begin());
+    const auto over = std::find_if(counts.begin(), counts.end(), [](double n) { return !(n <= kMostTriangles); });
+    if (over == counts.end()) return;
+    const auto instance = std::size_t(over - counts.begin());
     throw Error(ErrorCode::limit_exceeded,
                 place_in(scene) + "instance " + std::to_string(instance) + ", mesh " +
                     std::to_string(scene.instances[instance].mesh),
                 "this tessellation error needs more than 2^26 triangles; give a larger one");
   }
-
- private:
-  std::vector<std::optional<Key>> keys_;  ///< by instance
-  std::vector<double> counts_;            ///< by instance: triangles made for this and all earlier instances
-  std::set<Key> seen_;
-  double triangles_ = 0;
-};
-
-/// Gives every instance of a curved mesh the tessellation that it needs.
-class Tessellator {
- public:
-  explicit Tessellator(const Scene& scene) : out_(scene), is_made_(scene.meshes.size()) {}
-
-  void place(std::uint32_t number, const Plan::Key& key) {
-    const auto [made, is_new] = made_.try_emplace(key, 0u);
-    if (is_new) made->second = make(key);
-    out_.instances[number].mesh = made->second;
-  }
-  [[nodiscard]] Scene take() { return std::move(out_); }
-
- private:
-  /// Makes the mesh of a key. The first level of a mesh takes the place of the mesh itself. \returns the number of the
-  /// made mesh.
-  std::uint32_t make(const Plan::Key& key) {
-    const auto& [mesh, level] = key;
-    Mesh triangles = make_triangles(out_.meshes[mesh], level);
-    if (is_made_[mesh]) {
-      out_.meshes.push_back(std::move(triangles));
-      return std::uint32_t(out_.meshes.size() - 1);
-    }
-    is_made_[mesh] = true;
-    out_.meshes[mesh] = std::move(triangles);
-    return mesh;
-  }
-
-  Scene out_;
-  std::vector<bool> is_made_;                ///< by mesh of the scene: it has new triangles
-  std::map<Plan::Key, std::uint32_t> made_;  ///< number of the mesh made for a key
 };
 
 }  // namespace
 
 double tessellated_count(const Scene& scene, const View& view, double pixels) {
   const IeeeScope ieee;
-  return Plan(scene, view, pixels).triangle_count();
+  return Plan(scene, view, pixels).triangle_count;
 }
 
 bool has_curved(const Scene& scene) {
@@ -427,10 +382,26 @@ Scene tessellate(const Scene& scene, const View& view, double pixels) {
   const IeeeScope ieee;
   const Plan plan(scene, view, pixels);
   plan.check_limit(scene);
-  Tessellator tessellator(scene);
-  for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
-    if (plan.key(i)) tessellator.place(i, *plan.key(i));
-  return tessellator.take();
+  Scene out = scene;
+  std::vector<bool> is_made(scene.meshes.size());  // meshes of the scene that have new triangles
+  std::map<Plan::Key, std::uint32_t> made;         // number of the mesh made for a key
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    if (!plan.keys[i]) continue;
+    const auto& [mesh, level] = *plan.keys[i];
+    const auto [entry, is_new] = made.try_emplace(*plan.keys[i], mesh);
+    if (is_new) {
+      Mesh triangles = make_triangles(scene.meshes[mesh], level);
+      if (is_made[mesh]) {
+        entry->second = std::uint32_t(out.meshes.size());
+        out.meshes.push_back(std::move(triangles));
+      } else {  // the first level takes the place of the mesh itself
+        is_made[mesh] = true;
+        out.meshes[mesh] = std::move(triangles);
+      }
+    }
+    out.instances[i].mesh = entry->second;
+  }
+  return out;
 }
 
 }  // namespace frontmost

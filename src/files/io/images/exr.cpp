@@ -32,17 +32,13 @@ namespace {
 constexpr std::uint64_t most_exr_channels = 1024;
 constexpr std::size_t exr_value_size = 4;
 
-[[noreturn]] void fail_exr(const std::string& name, const std::string& reason) {
-  throw Error(ErrorCode::file_malformed, name, "EXR", reason);
-}
-
 /// Reads forward through a header, never past its end.
 class ExrCursor {
  public:
   ExrCursor(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
   std::span<const std::byte> take(std::size_t count) {
-    if (count > bytes_.size()) fail_exr(name_, "the header is cut short");
+    if (count > bytes_.size()) fail_image(name_, "EXR", "the header is cut short");
     const auto taken = bytes_.first(count);
     bytes_ = bytes_.subspan(count);
     return taken;
@@ -90,7 +86,7 @@ void read_window(ExrCursor window, ExrSizes& sizes) {
 void read_channels(ExrCursor list, ExrSizes& sizes, const std::string& name) {
   constexpr std::size_t record = 16;  // type, linearity and sampling
   for (; !list.text().empty(); ++sizes.channels) list.take(record);
-  if (!list.at_end()) fail_exr(name, "the channel list ends before its attribute");
+  if (!list.at_end()) fail_image(name, "EXR", "the channel list ends before its attribute");
 }
 
 /// The library reads most attributes by their type and ignores the size that the file states. If size and type
@@ -109,7 +105,7 @@ void check_attribute(std::string_view type, std::size_t size, const std::string&
   for (const auto& [known, its_size] : attribute_sizes) {
     if (type != known) continue;
     if (its_size != any_size && size != its_size)
-      fail_exr(name, "an attribute's size does not fit its type " + std::string(type));
+      fail_image(name, "EXR", "an attribute's size does not fit its type " + std::string(type));
     return;
   }
   throw Error(ErrorCode::unsupported, name, "EXR", "attributes of type " + std::string(type) + " are not read");
@@ -120,7 +116,7 @@ ExrSizes read_sizes(ExrCursor header, const std::string& name) {
   for (std::string_view key = header.text(); !key.empty(); key = header.text()) {
     const std::string_view type = header.text();
     const std::int32_t size = header.number();
-    if (size < 0) fail_exr(name, "attribute " + std::string(key) + " has a negative size");
+    if (size < 0) fail_image(name, "EXR", "attribute " + std::string(key) + " has a negative size");
     check_attribute(type, std::size_t(size), name);
     ExrCursor value(header.take(std::size_t(size)), name);
     if (key == "dataWindow") read_window(value, sizes);
@@ -144,8 +140,9 @@ void check_exr_header(std::span<const std::byte> bytes, const std::string& name)
                 std::to_string(sizes.channels) + " channels; expected 1 to 1024");
   check_image_size(name, sizes.width, sizes.height, bytes.size(), std::numeric_limits<double>::infinity(), "EXR");
   if (sizes.width * sizes.height * sizes.channels * 4 > sizes.most_memory(bytes.size()))
-    fail_exr(name, std::to_string(bytes.size()) + " bytes cannot hold " + std::to_string(sizes.width) + " x " +
-                       std::to_string(sizes.height) + " pixels of " + std::to_string(sizes.channels) + " channels");
+    fail_image(name, "EXR",
+               std::to_string(bytes.size()) + " bytes cannot hold " + std::to_string(sizes.width) + " x " +
+                   std::to_string(sizes.height) + " pixels of " + std::to_string(sizes.channels) + " channels");
 }
 
 /// A file in memory. The library goes back to fill in its table of offsets, which standard output does not allow.
@@ -251,9 +248,7 @@ struct RowStrip {
   std::size_t start = 0;  ///< start of the compressed rows, behind the header and a table with one offset per chunk
 };
 
-enum class Pixels : bool { left_out, written };
-
-RowStrip make_strip(Image& image, int first, int end, Pixels pixels, const std::string& name) {
+RowStrip make_strip(Image& image, int first, int end, bool with_pixels, const std::string& name) {
   Imf::Header header(image.width, image.height);
   header.dataWindow() = Imath::Box2i({0, first}, {image.width - 1, end - 1});
   header.compression() = Imf::ZIP_COMPRESSION;
@@ -264,7 +259,7 @@ RowStrip make_strip(Image& image, int first, int end, Pixels pixels, const std::
   {
     Imf::OutputFile out(memory, header, 0);
     strip.start = std::size_t(memory.tellp());
-    if (pixels == Pixels::written) {
+    if (with_pixels) {
       out.setFrameBuffer(frame_buffer(image, 0, 0));
       out.writePixels(end - first);
     }
@@ -353,9 +348,9 @@ void save_exr(const Image& image, OutputFile& file, const Execution& execution) 
   RowStrip head;
   with_named_errors(file.name(), ErrorCode::unsupported, [&] {
     // A file of all rows without pixels has the header and the table of offsets of the whole file.
-    head = make_strip(planes, 0, image.height, Pixels::left_out, file.name());
+    head = make_strip(planes, 0, image.height, false, file.name());
     parallel_for(execution, std::size_t(image.height), strip_rows, [&](std::size_t first, std::size_t end) {
-      strips[first / strip_rows] = make_strip(planes, int(first), int(end), Pixels::written, file.name());
+      strips[first / strip_rows] = make_strip(planes, int(first), int(end), true, file.name());
     });
   });
   fill_in_offsets(head, strips, image.height);

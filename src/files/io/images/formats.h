@@ -26,8 +26,7 @@ inline constexpr std::uint64_t max_image_pixels = std::uint64_t(1) << 28;
 [[nodiscard]] Texture decode_texture(std::span<const std::byte> bytes, const std::string& name,
                                      const ImageDecoder* decoder = nullptr);
 
-/// Returns width and height as `decoder` or the file's header states them, without decoding the pixels. Limits and
-/// errors are those of decode_texture().
+/// Width and height, by `decoder` or by the file's header, without decoding. Limits and errors as decode_texture().
 [[nodiscard]] glm::ivec2 texture_size(std::span<const std::byte> bytes, const std::string& name,
                                       const ImageDecoder* decoder = nullptr);
 
@@ -38,8 +37,7 @@ inline constexpr std::uint64_t max_image_pixels = std::uint64_t(1) << 28;
 
 namespace frontmost::detail {
 
-/// The writers expect images whose planes have the right sizes. \throws Error unsupported before anything is written;
-/// the message names the file and what the format cannot hold.
+/// Writers get valid images. \throws Error unsupported, before anything is written, with what the format cannot hold.
 void save_png(const Image& image, const SaveOptions& options, OutputFile& file, const Execution& execution);
 void save_png(const Bitmap& bitmap, OutputFile& file, const Execution& execution);
 void save_exr(const Image& image, OutputFile& file, const Execution& execution);
@@ -89,6 +87,14 @@ enum class ImagePart : std::uint8_t { size, pixels };
 [[nodiscard]] Texture decode_jpeg(std::span<const std::byte> bytes, const std::string& name, ImagePart part);
 [[nodiscard]] Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, ImagePart part);
 [[nodiscard]] bool has_webp();
+/// A decoder's result before decoding, with room for the pixels unless only the size is wanted.
+[[nodiscard]] Texture texture_of_size(const std::string& name, int width, int height, ImagePart part);
+
+/// \throws Error limit_exceeded if a side has more pixels than the format holds.
+void check_sides(const PictureRows& picture, int most, const char* format, const OutputFile& file);
+
+/// \throws Error file_malformed "name: format: reason".
+[[noreturn]] void fail_image(const std::string& name, const char* format, const std::string& reason);
 
 /// Checks a size before any pixel is decoded; every decoder calls this function after it has read the header. `densest`
 /// is the greatest number of pixels that one byte of a valid file can hold. A header that claims more belongs to a
@@ -108,8 +114,5 @@ inline constexpr const char* png_ids_key = "frontmost:ids";  ///< marks an id ma
   return channel.is_integer() ? reinterpret_cast<const std::byte*>(channel.integers().data())
                               : reinterpret_cast<const std::byte*>(channel.floats().data());
 }
-
-/// Returns the image's channel names as "R, G, B", for messages.
-[[nodiscard]] std::string channel_list(const Image& image);
 
 }  // namespace frontmost::detail

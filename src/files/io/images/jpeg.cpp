@@ -22,8 +22,6 @@
 namespace frontmost::detail {
 namespace {
 
-constexpr int most_jpeg_side = 65500;
-
 class JpegWriter {
  public:
   JpegWriter() {
@@ -185,10 +183,7 @@ void inks_to_rgb(Texture& texture, bool inverted) {
 }  // namespace
 
 void save_jpeg(const PictureRows& picture, int quality, OutputFile& file, const Execution& execution) {
-  if (std::max(picture.width, picture.height) > most_jpeg_side)
-    throw Error(
-        ErrorCode::limit_exceeded, file.name(), "",
-        "JPEG holds at most 65500 pixels on a side, not " + std::to_string(std::max(picture.width, picture.height)));
+  check_sides(picture, 65500, "JPEG", file);
   if (picture.with_alpha)
     throw Error(ErrorCode::unsupported, file.name(), "",
                 "JPEG holds no alpha, and parts of the picture are transparent; write PNG or WebP");
@@ -215,12 +210,8 @@ Texture decode_jpeg(std::span<const std::byte> bytes, const std::string& name, I
   // Each block of 64 luminance samples takes at least one bit.
   check_image_size(name, width, height, bytes.size(), 64 * 8);
 
-  Texture texture;
-  texture.name = name;
-  texture.width = int(width);
-  texture.height = int(height);
+  Texture texture = texture_of_size(name, int(width), int(height), part);
   if (part == ImagePart::size) return texture;
-  texture.pixels.resize(width * height);
   if (!read_rows(reader, reinterpret_cast<unsigned char*>(texture.pixels.data()), width * 4)) fail_jpeg(reader, name);
   if (reader.jpeg.out_color_space == JCS_CMYK) inks_to_rgb(texture, reader.jpeg.saw_Adobe_marker != 0);
   return texture;

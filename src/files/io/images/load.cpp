@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads images and textures: recognizes their formats, holds the limits that all decoders share, and converts
-// environments to the one layout that lighting expects.
+// Images and textures in: their formats, the limits of all decoders, and environments in the layout of lighting.
 #include <algorithm>
 #include <cstring>
 #include <limits>
 #include <string_view>
 #include <utility>
 
+#include "image/srgb_pixels.h"
 #include "io/images/formats.h"
 #include "io/input_file.h"
 
@@ -21,9 +21,8 @@ struct Signature {
 
 using namespace std::string_view_literals;
 
-/// Formats that occur in models but are not read; messages name them instead of calling them broken. Literals with a
-/// zero byte inside use the suffix sv, because a plain literal would end at the zero. "MM" alone begins many
-/// texts.
+/// Formats that occur in models but are not read; messages name them. Literals with a zero byte inside use the suffix
+/// sv, because a plain literal would end at the zero. "MM" alone begins many texts.
 constexpr Signature foreign_formats[] = {
     {1, "KTX 20", "KTX2"},
     {1, "KTX 11", "KTX"},
@@ -79,7 +78,7 @@ Buffer<float> take_light(Image& image, const char* name, const std::string& file
   if (is_grey) channel = image.find("Y");
   if (channel == nullptr || channel->is_integer())
     throw Error(ErrorCode::unsupported, file, "",
-                "an environment has channels R, G and B, or Y, not " + detail::channel_list(image));
+                "an environment has channels R, G and B, or Y, not " + channel_list(image));
   return is_grey ? channel->floats() : std::move(channel->floats());
 }
 
@@ -100,23 +99,33 @@ Image environment_of(Image image, const std::string& file) {
 
 namespace detail {
 
+void fail_image(const std::string& name, const char* format, const std::string& reason) {
+  throw Error(ErrorCode::file_malformed, name, format, reason);
+}
+
+Texture texture_of_size(const std::string& name, int width, int height, ImagePart part) {
+  Texture texture;
+  texture.name = name;
+  texture.width = width;
+  texture.height = height;
+  if (part == ImagePart::pixels) texture.pixels.resize(std::size_t(width) * std::size_t(height));
+  return texture;
+}
+
 void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height, std::size_t byte_count,
                       double densest, const char* format) {
   const std::string size = std::to_string(width) + " x " + std::to_string(height);
   if (width == 0 || height == 0)
-    throw Error(ErrorCode::file_malformed, name, format,
-                "the image has " + size + " pixels; width and height must be at least 1");
+    fail_image(name, format, "the image has " + size + " pixels; width and height must be at least 1");
   // The sides are checked first, so that their product stays far below 64 bits.
   if (width > std::uint64_t(max_image_side) || height > std::uint64_t(max_image_side) ||
       width * height > max_image_pixels)
     throw Error(ErrorCode::limit_exceeded, name, format,
                 size + " pixels, more than " + std::to_string(max_image_side) + " on a side or " +
                     std::to_string(max_image_pixels) + " in all");
-  // A file of some hundred bytes may claim the greatest size. Memory is allocated only if the bytes can hold the
-  // pixels.
+  // A small file may claim the greatest size. Memory is allocated only if the bytes can hold the pixels.
   if (double(width * height) > densest * double(byte_count))
-    throw Error(ErrorCode::file_malformed, name, format,
-                std::to_string(byte_count) + " bytes cannot hold " + size + " pixels");
+    fail_image(name, format, std::to_string(byte_count) + " bytes cannot hold " + size + " pixels");
 }
 
 }  // namespace detail

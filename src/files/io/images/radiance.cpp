@@ -15,12 +15,7 @@
 namespace frontmost::detail {
 namespace {
 
-[[noreturn]] void fail_radiance(const std::string& name, const std::string& reason,
-                                ErrorCode code = ErrorCode::file_malformed) {
-  throw Error(code, name, "Radiance", reason);
-}
-
-/// Returns the start of a text of the file, in quotes for messages.
+/// The start of a text of the file, quoted for messages.
 std::string quoted(std::string_view text) {
   std::string quote(1, '"');
   quote += text.substr(0, 40);
@@ -37,14 +32,14 @@ class RadianceBytes {
   std::string_view line() {
     const auto* text = reinterpret_cast<const char*>(rest_.data());
     const void* end = rest_.empty() ? nullptr : std::memchr(text, '\n', rest_.size());
-    if (end == nullptr) fail_radiance(name_, "the header is cut short");
+    if (end == nullptr) fail_image(name_, "Radiance", "the header is cut short");
     const auto length = std::size_t(static_cast<const char*>(end) - text);
     rest_ = rest_.subspan(length + 1);
     return {text, length > 0 && text[length - 1] == '\r' ? length - 1 : length};
   }
   /// Takes the next `count` bytes. Messages name `row`.
   const std::uint8_t* take(std::size_t count, std::size_t row) {
-    if (count > rest_.size()) fail_radiance(name_, "row " + std::to_string(row) + " is cut short");
+    if (count > rest_.size()) fail_image(name_, "Radiance", "row " + std::to_string(row) + " is cut short");
     const auto* taken = reinterpret_cast<const std::uint8_t*>(rest_.data());
     rest_ = rest_.subspan(count);
     return taken;
@@ -68,11 +63,11 @@ RadianceSize size_of(std::string_view line, const std::string& name) {
   for (const char axis : {'Y', 'X'}) {
     const bool is_signed = end - place > 3 && (place[0] == '-' || place[0] == '+') && place[2] == ' ';
     if (is_signed && axis == 'Y' && place[1] == 'X')
-      fail_radiance(name, "pictures stored column by column are not supported", ErrorCode::unsupported);
+      throw Error(ErrorCode::unsupported, name, "Radiance", "pictures stored column by column are not supported");
     std::uint32_t pixels = 0;
     const auto [rest, error] = std::from_chars(is_signed ? place + 3 : place, end, pixels);
     if (!is_signed || place[1] != axis || error != std::errc())
-      fail_radiance(name, quoted(line) + " is not a size such as -Y 512 +X 1024");
+      fail_image(name, "Radiance", quoted(line) + " is not a size such as -Y 512 +X 1024");
     (axis == 'Y' ? size.height : size.width) = pixels;
     (axis == 'Y' ? size.bottom_row_first : size.right_column_first) = *place == (axis == 'Y' ? '+' : '-');
     place = rest;
@@ -89,9 +84,9 @@ RadianceSize read_radiance_header(RadianceBytes& bytes, const std::string& name)
     if (!line.starts_with(format_key)) continue;
     const std::string_view format = line.substr(format_key.size());
     if (format == rgbe) continue;
-    std::string reason = quoted(format);
-    reason += " is not supported, only " + std::string(rgbe);
-    fail_radiance(name, "format " + reason, ErrorCode::unsupported);
+    const std::string found = quoted(format);
+    throw Error(ErrorCode::unsupported, name, "Radiance",
+                "format " + found + " is not supported, only " + std::string(rgbe));
   }
   return size_of(bytes.line(), name);
 }
@@ -111,8 +106,9 @@ void read_packed(RadianceBytes& bytes, RadianceRow& row, const std::string& name
       const bool repeats = code > 128;
       const std::size_t count = repeats ? code - 128 : code;
       if (count == 0 || count > component.size() - x)
-        fail_radiance(name, "row " + std::to_string(row.number) + ": a run of " + std::to_string(count) + " bytes at " +
-                                std::to_string(x) + " of " + std::to_string(component.size()));
+        fail_image(name, "Radiance",
+                   "row " + std::to_string(row.number) + ": a run of " + std::to_string(count) + " bytes at " +
+                       std::to_string(x) + " of " + std::to_string(component.size()));
       const std::uint8_t* values = bytes.take(repeats ? 1 : count, row.number);
       for (std::size_t i = 0; i < count; ++i) component[x + i] = values[repeats ? 0 : i];
       x += count;
@@ -130,8 +126,9 @@ void read_plain(RadianceBytes& bytes, RadianceRow& row, const std::string& name)
     const std::size_t count = repeats ? pixel[3] * unit : 1;
     // Errors: nothing to repeat, a factor that would grow without end, or more pixels than the row has.
     if (repeats && (x == 0 || unit > width || count > width - x))
-      fail_radiance(name, "row " + std::to_string(row.number) + ": a run of " + std::to_string(count) + " pixels at " +
-                              std::to_string(x) + " of " + std::to_string(width));
+      fail_image(name, "Radiance",
+                 "row " + std::to_string(row.number) + ": a run of " + std::to_string(count) + " pixels at " +
+                     std::to_string(x) + " of " + std::to_string(width));
     for (std::size_t k = 0; k < 4; ++k) {
       std::vector<std::uint8_t>& component = row.components[k];
       const std::uint8_t value = repeats ? component[x - 1] : pixel[k];
@@ -152,8 +149,9 @@ void read_row(RadianceBytes& bytes, RadianceRow& row, const std::string& name) {
   if (!packed) return read_plain(bytes, row, name);
   bytes.take(4, row.number);
   if ((byte(2) << 8 | byte(3)) != width)
-    fail_radiance(name, "row " + std::to_string(row.number) + " has " + std::to_string(byte(2) << 8 | byte(3)) +
-                            " pixels, not " + std::to_string(width));
+    fail_image(name, "Radiance",
+               "row " + std::to_string(row.number) + " has " + std::to_string(byte(2) << 8 | byte(3)) +
+                   " pixels, not " + std::to_string(width));
   read_packed(bytes, row, name);
 }
 

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "image/srgb_pixels.h"
 #include "io/images/formats.h"
 
 namespace frontmost::detail {
@@ -80,9 +81,9 @@ Image read_raw(std::span<const std::byte> bytes, const RawLayout& layout, const 
   const std::size_t expected = layout.height * layout.row_values() * value_size;
   // Too many bytes are as wrong as too few: a misread header would give a picture shifted by some bytes.
   if (bytes.size() != expected)
-    throw Error(ErrorCode::file_malformed, name, format,
-                "the header asks for " + std::to_string(expected) + " bytes of numbers, but " +
-                    std::to_string(bytes.size()) + " follow");
+    fail_image(name, format,
+               "the header asks for " + std::to_string(expected) + " bytes of numbers, but " +
+                   std::to_string(bytes.size()) + " follow");
   Image image{int(layout.width), int(layout.height), {}};
   for (std::string& channel : default_channel_names(layout.channels, layout.integers)) {
     const std::size_t count = layout.width * layout.height;
@@ -107,10 +108,6 @@ constexpr std::size_t prefix_size = 10;  // magic, version, length of the dictio
 // The numbers are aligned as NumPy aligns them since version 1.14, so that files can be mapped.
 constexpr std::size_t alignment = 64;
 
-[[noreturn]] void fail_npy(const std::string& name, const std::string& reason) {
-  throw Error(ErrorCode::file_malformed, name, "NPY", reason);
-}
-
 std::string shape_of(const Image& image) {
   std::string shape = std::to_string(image.height) + ", " + std::to_string(image.width);
   if (image.channels.size() > 1) shape += ", " + std::to_string(image.channels.size());
@@ -125,7 +122,7 @@ struct Dictionary {
 
 Dictionary dictionary(std::span<const std::byte> bytes, const std::string& name) {
   const auto byte = [&](std::size_t i) { return std::to_integer<std::size_t>(bytes[i]); };
-  if (bytes.size() < prefix_size + 2) fail_npy(name, "the header is cut short");
+  if (bytes.size() < prefix_size + 2) fail_image(name, "NPY", "the header is cut short");
   const std::size_t version = byte(6);
   // Version 3 differs from 2 only in UTF-8 names, which the arrays read here do not have.
   if (version < 1 || version > 3)
@@ -134,7 +131,7 @@ Dictionary dictionary(std::span<const std::byte> bytes, const std::string& name)
   const std::size_t start = version == 1 ? prefix_size : prefix_size + 2;
   std::size_t length = byte(8) + (byte(9) << 8);
   if (version > 1) length += (byte(10) << 16) + (byte(11) << 24);
-  if (length > bytes.size() - start) fail_npy(name, "the header is cut short");
+  if (length > bytes.size() - start) fail_image(name, "NPY", "the header is cut short");
   return {{reinterpret_cast<const char*>(bytes.data()) + start, length}, start + length};
 }
 
@@ -144,31 +141,28 @@ std::string_view value_of(std::string_view text, std::string_view key, const std
   const std::size_t place = text.find(key);
   const std::size_t colon = place == text.npos ? text.npos : text.find(':', place);
   const std::size_t value = colon == text.npos ? text.npos : text.find_first_not_of(' ', colon + 1);
-  if (value == text.npos) fail_npy(name, "the header has no " + std::string(key));
+  if (value == text.npos) fail_image(name, "NPY", "the header has no " + std::string(key));
   return text.substr(value);
 }
 
 std::vector<std::size_t> shape(std::string_view text, const std::string& name) {
   const std::size_t end = text.find(')');
-  if (text[0] != '(' || end == text.npos) fail_npy(name, "the shape is not a tuple");
+  if (text[0] != '(' || end == text.npos) fail_image(name, "NPY", "the shape is not a tuple");
   std::vector<std::size_t> sizes;
   const char* place = text.data() + 1;
   const char* const stop = text.data() + end;
   while (place < stop) {
     std::uint32_t size = 0;
     const auto [rest, error] = std::from_chars(place, stop, size);
-    if (error != std::errc() || sizes.size() == 3) fail_npy(name, "the shape is not (height, width[, channels])");
+    if (error != std::errc() || sizes.size() == 3)
+      fail_image(name, "NPY", "the shape is not (height, width[, channels])");
     sizes.push_back(size);
     place = rest;
     // A tuple of one number ends with a comma, and longer tuples may, too.
     while (place < stop && (*place == ',' || *place == ' ')) ++place;
   }
-  if (sizes.size() < 2) fail_npy(name, "the shape is not (height, width[, channels])");
+  if (sizes.size() < 2) fail_image(name, "NPY", "the shape is not (height, width[, channels])");
   return sizes;
-}
-
-[[noreturn]] void fail_pfm(const std::string& name, const std::string& reason) {
-  throw Error(ErrorCode::file_malformed, name, "PFM", reason);
 }
 
 /// Takes words off the front of the file. Exactly one blank ends each word, because pixels may look like blanks.
@@ -182,7 +176,7 @@ class PfmHeader {
     const auto* text = reinterpret_cast<const char*>(bytes_.data());
     std::size_t end = 0;
     while (end < bytes_.size() && end < longest && !std::isspace(static_cast<unsigned char>(text[end]))) ++end;
-    if (end == 0 || end == bytes_.size() || end == longest) fail_pfm(name_, "the header is cut short");
+    if (end == 0 || end == bytes_.size() || end == longest) fail_image(name_, "PFM", "the header is cut short");
     bytes_ = bytes_.subspan(end + 1);
     return {text, end};
   }
@@ -191,7 +185,7 @@ class PfmHeader {
     const std::string_view text = word();
     std::uint32_t value = 0;
     const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || rest != text.data() + text.size()) fail_pfm(name_, "a size is not a number");
+    if (error != std::errc() || rest != text.data() + text.size()) fail_image(name_, "PFM", "a size is not a number");
     return value;
   }
 
@@ -258,17 +252,16 @@ void save_pfm(const Image& image, OutputFile& file) {
 Image load_pfm(std::span<const std::byte> bytes, const std::string& name) {
   PfmHeader header(bytes, name);
   RawLayout layout;
-  // Other programs have extended the format, for example PF4 with four channels. A prefix match would misread such
-  // files.
+  // Other programs have extended the format, such as PF4 with four channels. A prefix match would misread these.
   const std::string_view kind = header.word();
-  if (kind != "PF" && kind != "Pf") fail_pfm(name, "neither PF nor Pf");
+  if (kind != "PF" && kind != "Pf") fail_image(name, "PFM", "neither PF nor Pf");
   layout.channels = kind == "PF" ? 3 : 1;
   layout.width = header.size();
   layout.height = header.size();
   const std::string_view scale = header.word();
   // A scale of 0 is refused: its sign cannot give the byte order, because 0 and -0 are one number.
-  if (scale.find_first_of("123456789") == std::string_view::npos) fail_pfm(name, "the scale is not a number");
-  layout.big_endian = scale[0] != '-';  // the scale's magnitude has no agreed meaning and is ignored
+  if (scale.find_first_of("123456789") == std::string_view::npos) fail_image(name, "PFM", "the scale is not a number");
+  layout.big_endian = scale[0] != '-';  // the scale's size has no agreed meaning and is ignored
   layout.bottom_row_first = true;
   return read_raw(header.rest(), layout, name, "PFM");
 }

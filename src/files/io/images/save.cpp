@@ -36,7 +36,7 @@ int checked_quality(const SaveOptions& options, const std::string& name) {
 detail::PictureRows lossy_rows(const Image& image, const char* format, const std::string& name) {
   if (std::optional<detail::PictureRows> rows = detail::picture_rows(image)) return std::move(*rows);
   throw Error(ErrorCode::unsupported, name, "",
-              std::string(format) + " holds pictures, of R, G, B and A, not " + detail::channel_list(image) +
+              std::string(format) + " holds pictures, of R, G, B and A, not " + channel_list(image) +
                   "; write EXR, NPY or PNG");
 }
 
@@ -56,12 +56,6 @@ void write_file(const std::string& path, const Execution& execution, const Write
 
 namespace detail {
 
-std::string channel_list(const Image& image) {
-  std::string list;
-  for (const Channel& channel : image.channels) list += (list.empty() ? "" : ", ") + channel.name;
-  return list;
-}
-
 std::optional<PictureRows> picture_rows(const Image& image) {
   const std::optional<ColorPlanes> planes = color_planes(image);
   if (!planes || image.channels.size() != (planes->alpha ? 4u : 3u)) return std::nullopt;
@@ -69,6 +63,14 @@ std::optional<PictureRows> picture_rows(const Image& image) {
   return PictureRows{image.width, image.height, with_alpha, [planes = *planes, with_alpha](int y, std::uint8_t* row) {
                        srgb8_row(planes, y, with_alpha, row);
                      }};
+}
+
+void check_sides(const PictureRows& picture, int most, const char* format, const OutputFile& file) {
+  const int side = std::max(picture.width, picture.height);
+  if (side > most)
+    throw Error(ErrorCode::limit_exceeded, file.name(), "",
+                std::string(format) + " holds at most " + std::to_string(most) + " pixels on a side, not " +
+                    std::to_string(side));
 }
 
 PictureRows picture_rows(const Bitmap& bitmap) {

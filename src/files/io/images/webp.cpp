@@ -16,8 +16,6 @@
 namespace frontmost::detail {
 namespace {
 
-constexpr int most_webp_side = 16383;
-
 /// Callbacks for the library. Exceptions must not pass through the library, so the first one is kept and thrown later.
 struct WebpCalls {
   const Execution& execution;
@@ -82,10 +80,7 @@ const char* reason_of(VP8StatusCode status) {
 bool has_webp() { return true; }
 
 void save_webp(const PictureRows& picture, int quality, OutputFile& file, const Execution& execution) {
-  if (std::max(picture.width, picture.height) > most_webp_side)
-    throw Error(
-        ErrorCode::limit_exceeded, file.name(), "",
-        "WebP holds at most 16383 pixels on a side, not " + std::to_string(std::max(picture.width, picture.height)));
+  check_sides(picture, 16383, "WebP", file);
   WebPConfig config;
   if (!WebPConfigInit(&config)) throw Error(ErrorCode::unsupported, file.name(), "WebP", "another version of libwebp");
   config.quality = float(quality);
@@ -109,18 +104,14 @@ Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, I
   const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
   WebPBitstreamFeatures features;
   const VP8StatusCode header = WebPGetFeatures(data, bytes.size(), &features);
-  if (header != VP8_STATUS_OK) throw Error(ErrorCode::file_malformed, name, "WebP", reason_of(header));
+  if (header != VP8_STATUS_OK) fail_image(name, "WebP", reason_of(header));
   if (features.has_animation) throw Error(ErrorCode::unsupported, name, "WebP", "animations are not supported");
   // The pixels of a picture of one colour take no bits at all, so only the limits that check_image_size() knows apply.
   constexpr double any_density = double(max_image_pixels);
   check_image_size(name, std::uint64_t(features.width), std::uint64_t(features.height), bytes.size(), any_density);
 
-  Texture texture;
-  texture.name = name;
-  texture.width = features.width;
-  texture.height = features.height;
+  Texture texture = texture_of_size(name, features.width, features.height, part);
   if (part == ImagePart::size) return texture;
-  texture.pixels.resize(std::size_t(texture.width) * std::size_t(texture.height));
   WebPDecoderConfig config;
   if (!WebPInitDecoderConfig(&config)) throw Error(ErrorCode::unsupported, name, "WebP", "another version of libwebp");
   config.output.colorspace = MODE_RGBA;
@@ -129,7 +120,7 @@ Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, I
                           texture.pixels.size() * sizeof(glm::u8vec4)};
   const VP8StatusCode status = WebPDecode(data, bytes.size(), &config);
   if (status == VP8_STATUS_OUT_OF_MEMORY) throw std::bad_alloc();
-  if (status != VP8_STATUS_OK) throw Error(ErrorCode::file_malformed, name, "WebP", reason_of(status));
+  if (status != VP8_STATUS_OK) fail_image(name, "WebP", reason_of(status));
   return texture;
 }
 

@@ -23,8 +23,7 @@ namespace {
 using detail::append_bytes;
 using detail::FileBytes;
 
-/// The triangles of one object in the file's coordinates. Triangles of mirrored objects get the opposite winding, so
-/// that their outer side stays outside.
+/// One object's triangles in the file's coordinates. Mirrored ones get the opposite winding: outer sides stay outside.
 class PlacedMesh {
  public:
   PlacedMesh(const Scene& scene, const Instance& instance)
@@ -148,6 +147,7 @@ class GlbDocument {
   /// The whole JSON part except for the buffer, which is the file's second part.
   Json json = {{"asset", {{"version", "2.0"}, {"generator", "Frontmost"}}}};
   std::string buffer;
+  std::set<std::string> extensions;
 
   /// Appends bytes to the buffer, aligned to four. `target` is glTF's number for the use of the view, or 0. \returns
   /// the number of the view.
@@ -163,8 +163,7 @@ class GlbDocument {
     accessor["bufferView"] = add_view(bytes, target);
     return append("accessors", std::move(accessor));
   }
-  /// Returns the number that the scene's texture or material `number` has in the document; no_index is the default
-  /// material. The first request adds the texture or material to the document.
+  /// The document's number of the scene's texture or material (no_index: the default), added at the first request.
   std::size_t texture(std::uint32_t number) {
     const auto [place, is_new] = textures_.emplace(number, textures_.size());
     if (is_new) {
@@ -186,19 +185,16 @@ class GlbDocument {
   void pad_buffer() { buffer.resize((buffer.size() + 3) / 4 * 4, '\0'); }
   /// Notes that an extension is used. \returns its name.
   const char* uses(const char* extension) {
-    extensions_.insert(extension);
+    extensions.insert(extension);
     return extension;
   }
-  [[nodiscard]] const std::set<std::string>& extensions() const { return extensions_; }
 
  private:
   const Scene& scene_;
   std::map<std::uint32_t, std::size_t> textures_, materials_;
-  std::set<std::string> extensions_;
 };
 
-/// Writes a material. Each use of a texture is written in the JSON object that it belongs to. Values that equal glTF's
-/// defaults and layers that are absent are left out.
+/// Writes a material, with uses of textures where they belong. glTF's defaults and absent layers are left out.
 class MaterialWriter {
  public:
   explicit MaterialWriter(GlbDocument& document) : document_(document) {}
@@ -213,10 +209,14 @@ class MaterialWriter {
     surface["roughnessFactor"] = within(material.roughness, 0, 1);
     set(surface, "baseColorTexture", material.base_color_texture);
     set(surface, "metallicRoughnessTexture", material.metallic_roughness_texture);
-    set_scaled(json, "normalTexture", material.normal_texture, "scale", material.normal_scale);
-    set_scaled(json, "occlusionTexture", material.occlusion_texture, "strength",
-               within(material.occlusion_strength, 0, 1));
-    write_emission(json, material);
+    set(json, "normalTexture", material.normal_texture, "scale", material.normal_scale);
+    set(json, "occlusionTexture", material.occlusion_texture, "strength", within(material.occlusion_strength, 0, 1));
+    set(json, "emissiveTexture", material.emissive_texture);
+    const float most = std::max({material.emissive.x, material.emissive.y, material.emissive.z});
+    if (most > 0 && std::isfinite(most)) {
+      json["emissiveFactor"] = color_json(material.emissive / std::max(most, 1.0f));
+      if (most > 1) json["extensions"][document_.uses("KHR_materials_emissive_strength")]["emissiveStrength"] = most;
+    }
     if (material.alpha == Material::Alpha::mask) {
       json["alphaMode"] = "MASK";
       json["alphaCutoff"] = within(material.alpha_cutoff, 0, 1e30f);
@@ -229,13 +229,11 @@ class MaterialWriter {
   }
 
  private:
-  void set(Json& object, const char* key, const TextureUse& use) {
-    if (use.is_set()) object[key] = texture_json(use);
-  }
-  void set_scaled(Json& object, const char* key, const TextureUse& use, const char* factor, float value) {
+  /// Writes the use of a texture, if there is one, and perhaps a factor beside it.
+  void set(Json& object, const char* key, const TextureUse& use, const char* factor = nullptr, float value = 0) {
     if (!use.is_set()) return;
     object[key] = texture_json(use);
-    object[key][factor] = value;
+    if (factor != nullptr) object[key][factor] = value;
   }
   Json texture_json(const TextureUse& use) {
     Json json = {{"index", document_.texture(use.texture)}};
@@ -244,14 +242,6 @@ class MaterialWriter {
     json["extensions"][document_.uses("KHR_texture_transform")] = {
         {"offset", {use.offset.x, use.offset.y}}, {"rotation", use.rotation}, {"scale", {use.scale.x, use.scale.y}}};
     return json;
-  }
-  /// Writes the emitted light. Its strength is written separately if it is above 1.
-  void write_emission(Json& json, const Material& material) {
-    const float most = std::max({material.emissive.x, material.emissive.y, material.emissive.z});
-    set(json, "emissiveTexture", material.emissive_texture);
-    if (!(most > 0) || !std::isfinite(most)) return;
-    json["emissiveFactor"] = color_json(material.emissive / std::max(most, 1.0f));
-    if (most > 1) json["extensions"][document_.uses("KHR_materials_emissive_strength")]["emissiveStrength"] = most;
   }
   void write_layers(Json& json, const Material& material) {
     const auto layer = [&](const char* name) -> Json& {
@@ -275,7 +265,7 @@ class MaterialWriter {
       object["clearcoatRoughnessFactor"] = within(c.roughness, 0, 1);
       set(object, "clearcoatTexture", c.factor_texture);
       set(object, "clearcoatRoughnessTexture", c.roughness_texture);
-      set_scaled(object, "clearcoatNormalTexture", c.normal_texture, "scale", c.normal_scale);
+      set(object, "clearcoatNormalTexture", c.normal_texture, "scale", c.normal_scale);
     }
     if (const auto& s = material.sheen; s.color != glm::vec3(0)) {
       Json& object = layer("KHR_materials_sheen");
@@ -284,10 +274,6 @@ class MaterialWriter {
       set(object, "sheenColorTexture", s.color_texture);
       set(object, "sheenRoughnessTexture", s.roughness_texture);
     }
-    write_glass(layer, material);
-  }
-  template <class Layer>
-  void write_glass(const Layer& layer, const Material& material) {
     if (!(material.transmission.factor > 0)) return;
     Json& glass = layer("KHR_materials_transmission");
     glass["transmissionFactor"] = within(material.transmission.factor, 0, 1);
@@ -479,7 +465,7 @@ void write_nodes(const Scene& scene, GlbDocument& document) {
 void write_glb(const Scene& scene, OutputFile& file) {
   GlbDocument document(scene);
   write_nodes(scene, document);
-  if (!document.extensions().empty()) document.json["extensionsUsed"] = document.extensions();
+  if (!document.extensions.empty()) document.json["extensionsUsed"] = document.extensions;
   document.pad_buffer();
   const std::string& buffer = document.buffer;
   if (!buffer.empty()) document.json["buffers"] = Json::array({{{"byteLength", buffer.size()}}});
@@ -500,22 +486,14 @@ void write_glb(const Scene& scene, OutputFile& file) {
   file.write(std::as_bytes(std::span(buffer)));
 }
 
-enum class ModelFile { ply, stl, glb };
-
-ModelFile model_file_of(const std::string& path) {
-  const std::string suffix = lower_suffix(path);
-  if (suffix == ".ply") return ModelFile::ply;
-  if (suffix == ".stl") return ModelFile::stl;
-  if (suffix == ".glb") return ModelFile::glb;
-  throw Error(ErrorCode::unsupported, path, "", "models are written as .ply, .stl or .glb");
-}
-
 }  // namespace
 
 void save(const Scene& scene, const std::string& path, const Table& of_triangles) {
-  const ModelFile kind = model_file_of(path);
+  const std::string suffix = lower_suffix(path);
+  if (suffix != ".ply" && suffix != ".stl" && suffix != ".glb")
+    throw Error(ErrorCode::unsupported, path, "", "models are written as .ply, .stl or .glb");
   validate(scene);
-  if (!of_triangles.columns.empty() && kind != ModelFile::ply)
+  if (!of_triangles.columns.empty() && suffix != ".ply")
     throw Error(ErrorCode::unsupported, path, "", "only PLY stores properties of triangles");
   validate(of_triangles);
   if (!of_triangles.columns.empty() && of_triangles.row_count() != triangle_count(scene))
@@ -523,11 +501,9 @@ void save(const Scene& scene, const std::string& path, const Table& of_triangles
                 std::to_string(of_triangles.row_count()) + " rows are given for " +
                     std::to_string(triangle_count(scene)) + " triangles");
   OutputFile file(path);
-  switch (kind) {
-    case ModelFile::ply: write_ply(scene, of_triangles, file); break;
-    case ModelFile::stl: write_stl(scene, file); break;
-    case ModelFile::glb: write_glb(scene, file); break;
-  }
+  if (suffix == ".ply") write_ply(scene, of_triangles, file);
+  if (suffix == ".stl") write_stl(scene, file);
+  if (suffix == ".glb") write_glb(scene, file);
   file.commit();
 }
 

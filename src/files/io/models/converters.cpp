@@ -53,8 +53,7 @@ constexpr ForeignExtension foreign_extensions[] = {{"KHR_texture_basisu", ktx_to
                                                    {"EXT_meshopt_compression", decompress},
                                                    {"KHR_meshopt_compression", decompress}};
 
-/// Quotes `path` for a shell's command line if needed. Within a text that is in quotes already, further quotes would
-/// end the text, so a plain name stands for the file there.
+/// Quotes `path` for a shell's command line if needed. Within quotes, which allow no others, a plain name stands in.
 std::string word_of(const std::string& path, bool is_in_quotes) {
   constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/+,:@%";
   if (path.find_first_not_of(plain) == std::string::npos && !path.starts_with('-')) return path;
@@ -89,9 +88,6 @@ std::string advice(const Foreign& format, const std::string& path) {
   return std::string(format.name) + " is not read; " + advice(format.converter, path);
 }
 
-/// Whether the text is IGES: lines of 80 columns, the first of which begins the start section.
-bool looks_like_iges(std::string_view text) { return text.size() >= 80 && text.substr(72, 8) == "S      1"; }
-
 }  // namespace
 
 std::optional<std::string> conversion_by_suffix(const std::string& path) {
@@ -115,7 +111,8 @@ std::optional<std::string> conversion_by_content(Bytes bytes) {
   const auto contains = [&](std::string_view word) { return text.find(word) != std::string_view::npos; };
   if (text.starts_with("ISO-10303-21;"))
     return contains("FILE_SCHEMA(('IFC") ? advice(ifc, "model.ifc") : advice(step, "model.step");
-  if (looks_like_iges(text)) return advice(iges, "model.iges");
+  // Lines of IGES have 80 columns; the first one begins the start section.
+  if (text.size() >= 80 && text.substr(72, 8) == "S      1") return advice(iges, "model.iges");
   if (text.starts_with("Kaydara FBX Binary") || text.starts_with("; FBX ")) return advice(fbx, "model.fbx");
   if (contains("<COLLADA")) return advice(collada, "model.dae");
   if (text.starts_with("BLENDER")) return advice(blend, "model.blend");

@@ -48,11 +48,7 @@ bool looks_like_obj(std::string_view text) {
                      [&](std::string_view word) { return starts_with_word(text, word); });
 }
 
-/// Whether the text of JSON has the member "asset". Writers that sort keys put it behind the accessors, so all text is
-/// searched.
-bool has_asset(Bytes bytes) { return text_of(bytes).find("\"asset\"") != std::string_view::npos; }
-
-/// Returns a remark about the points of a scene without triangles.
+/// A remark about the points of a scene without triangles.
 std::string points_told(const Scene& scene) {
   std::size_t points = 0;
   for (const Mesh& mesh : scene.meshes) points += mesh.positions.size();
@@ -144,7 +140,8 @@ Axis default_up(ModelFormat format) {
 std::optional<ModelFormat> format_of_content(Bytes bytes) {
   const std::string_view text = first_statement(bytes);
   if (text.starts_with("glTF")) return ModelFormat::gltf;
-  if (text.starts_with('{')) return has_asset(bytes) ? ModelFormat::gltf : ModelFormat::scene;
+  if (text.starts_with('{'))  // writers that sort keys put "asset" far back, so all text is searched
+    return text_of(bytes).find("\"asset\"") != std::string_view::npos ? ModelFormat::gltf : ModelFormat::scene;
   if (text.starts_with("PK\x03\x04")) return ModelFormat::threemf;
   if (starts_with_word(text, "ply")) return ModelFormat::ply;
   if (looks_like_off(text)) return ModelFormat::off;
@@ -158,8 +155,7 @@ Scene load_named(const std::string& reference, const ModelSource& scene_file) {
   const std::filesystem::path path = scene_file.path_of(reference);
   const InputFile file = scene_file.open(reference, max_file_bytes);
   const auto opened = std::make_shared<OpenedFiles>(path);
-  ModelSource source(printable(reference), scene_file.execution(), file, path, opened);
-  source.decode_images_by(scene_file.image_decoder());
+  ModelSource source(printable(reference), scene_file.execution(), file, path, opened, scene_file.image_decoder());
   if (const auto conversion = conversion_by_suffix(reference)) refuse(source, *conversion);
   auto format = format_of_suffix(reference);
   if (!format) format = format_of_content(file.bytes());
@@ -177,16 +173,14 @@ Scene load(const std::string& path, const LoadOptions& options, const Execution&
   }
   if (path == "-") {
     const InputFile file = InputFile::open_input(path);
-    ModelSource source(input_name(path), execution);
-    source.decode_images_by(options.image_decoder);
+    ModelSource source(input_name(path), execution, options.image_decoder);
     Scene scene = read_any(file.bytes(), source, options.format, options);
     scene.name = "stdin";
     return scene;
   }
   const InputFile file = InputFile::open(path, path);
   const auto opened = std::make_shared<OpenedFiles>(path);
-  ModelSource source(path, execution, file, path, opened);
-  source.decode_images_by(options.image_decoder);
+  ModelSource source(path, execution, file, path, opened, options.image_decoder);
   if (const auto conversion = options.format ? std::nullopt : conversion_by_suffix(path)) refuse(source, *conversion);
   const auto format = options.format ? options.format : format_of_suffix(path);
   Scene scene = read_any(file.bytes(), source, format, options);
@@ -197,8 +191,7 @@ Scene load(const std::string& path, const LoadOptions& options, const Execution&
 
 Scene load(std::span<const std::byte> bytes, const std::string& name, const LoadOptions& options,
            const Execution& execution) {
-  ModelSource source(name, execution);
-  source.decode_images_by(options.image_decoder);
+  ModelSource source(name, execution, options.image_decoder);
   return read_any(bytes, source, options.format, options);
 }
 

@@ -64,8 +64,7 @@ struct BlockableEar {
 /// arrays from polygon to polygon.
 class CornerTree {
  public:
-  /// Builds the tree, without marks. Borrows the points and, for each corner, the numbers of its neighbours on the
-  /// outline, which may change. O(n log n).
+  /// Builds the tree, without marks. Borrows the points and, by corner, its neighbours, which may change. O(n log n).
   void build(std::span<const glm::vec2> points, std::span<const std::uint32_t> previous,
              std::span<const std::uint32_t> next) {
     points_ = points;
@@ -93,9 +92,8 @@ class CornerTree {
   }
 
   /// Whether a marked corner blocks the ear a, b, c with its tip at b. A corner blocks if one of its edges leads into
-  /// the ear. If `by_touching`, two more kinds of corners block: those on an edge of the ear, and those at b whose
-  /// edges follow those of the ear, because they may belong to a bridge that turns there. Adds to `work` the number of
-  /// boxes and corners tested.
+  /// the ear. If `by_touching`, two more corners block: one on an edge of the ear, and one at b whose edges follow
+  /// those of the ear, as it may belong to a bridge that turns there. Adds the boxes and corners tested to `work`.
   [[nodiscard]] bool blocks(const std::array<glm::vec2, 3>& ear, bool by_touching, std::uint64_t& work) const {
     const auto& [a, b, c] = ear;
     const glm::vec2 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
@@ -374,6 +372,16 @@ glm::vec4 linear_color(const glm::vec4& srgb) {
 
 std::string skipped_faces_warning(std::uint64_t count) {
   return "faces: " + std::to_string(count) + " with fewer than three corners were passed over";
+}
+
+void append_material(std::vector<std::uint32_t>& ids, std::size_t first, std::size_t count, std::uint32_t material) {
+  if (count == 0) return;
+  if (first == 0) {
+    ids.assign(1, material);
+  } else if (ids.size() > 1 || ids[0] != material) {
+    if (ids.size() == 1) ids.assign(first, ids[0]);
+    ids.resize(first + count, material);
+  }
 }
 
 Mesh& add_object(Scene& scene, const std::string& name, const ModelSource& source, const std::string& place) {

@@ -60,7 +60,10 @@ class PolygonWriter {
   std::uint64_t skipped_ = 0;
 };
 
-/// Returns a warning for Scene::warnings about polygons that PolygonWriter skipped.
+/// Gives the newest triangles of a mesh, from `first` on, a material. One id stands for all as long as they agree.
+void append_material(std::vector<std::uint32_t>& ids, std::size_t first, std::size_t count, std::uint32_t material);
+
+/// A warning for Scene::warnings about polygons that PolygonWriter skipped.
 [[nodiscard]] std::string skipped_faces_warning(std::uint64_t count);
 
 /// Converts a colour of a file, sRGB from 0 to 1, to a linear one. Alpha is linear in both. NaN counts as 1.

@@ -39,8 +39,13 @@ std::string_view start_of(std::string_view text, std::size_t longest) {
 }  // namespace
 
 ModelSource::ModelSource(std::string name, const Execution& execution, const InputFile& file, fs::path path,
-                         std::shared_ptr<OpenedFiles> opened)
-    : name_(std::move(name)), execution_(execution), file_(&file), path_(std::move(path)), opened_(std::move(opened)) {}
+                         std::shared_ptr<OpenedFiles> opened, const ImageDecoder* decoder)
+    : name_(std::move(name)),
+      execution_(execution),
+      image_decoder_(decoder),
+      file_(&file),
+      path_(std::move(path)),
+      opened_(std::move(opened)) {}
 
 std::string ModelSource::stem() const { return fs::path(name_).stem().string(); }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OFF in text form, with Geomview's optional colours, normals and texture coordinates: [ST][C][N]OFF. Prefixes may come
-// in any order, as other programs write them.
+// OFF in text form, with Geomview's optional colours, normals and texture coordinates: [ST][C][N]OFF, in any order.
 //
 //   COFF
 //   4 2 0                        vertices, faces, edges (which are not used)
@@ -101,8 +100,7 @@ class OffReader {
                   "four-dimensional and binary OFF files are not supported");
   }
 
-  /// Checks a count before memory is allocated: the rest of the file must have room for the rows, at two characters a
-  /// value.
+  /// Checks a count before memory is allocated: the file must have room for the rows, at two characters a value.
   std::size_t checked(std::int64_t count, std::uint64_t values, const char* what) const {
     if (count < 0) text_.fail(std::string("a negative number of ") + what);
     if (std::uint64_t(count) > (text_.bytes_left() + 1) / (2 * values))

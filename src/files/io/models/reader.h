@@ -47,12 +47,12 @@ class OpenedFiles {
 /// A model being read.
 class ModelSource {
  public:
-  /// Describes a model from memory or a stream. Files named inside the model cannot be read.
-  ModelSource(std::string name, const Execution& execution) : name_(std::move(name)), execution_(execution) {}
-  /// Describes a model from `file`, which is borrowed, at `path`. Files opened beside it are added to `opened`, unless
-  /// that is null.
+  /// A model from memory or a stream: files named inside the model cannot be read. `decoder` may be null.
+  ModelSource(std::string name, const Execution& execution, const ImageDecoder* decoder = nullptr)
+      : name_(std::move(name)), execution_(execution), image_decoder_(decoder) {}
+  /// A model from `file`, which is borrowed, at `path`. Files opened beside it are added to `opened`.
   ModelSource(std::string name, const Execution& execution, const InputFile& file, std::filesystem::path path,
-              std::shared_ptr<OpenedFiles> opened = nullptr);
+              std::shared_ptr<OpenedFiles> opened, const ImageDecoder* decoder = nullptr);
 
   /// Returns the name of the file in messages.
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -61,9 +61,7 @@ class ModelSource {
   [[nodiscard]] const Execution& execution() const { return execution_; }
   /// Returns the decoder of images from LoadOptions, which may be null.
   [[nodiscard]] const ImageDecoder* image_decoder() const { return image_decoder_; }
-  void decode_images_by(const ImageDecoder* decoder) { image_decoder_ = decoder; }
-  /// Allows files named inside a scene file to lie in these folders, too. \throws Error file_unreadable if one is no
-  /// folder.
+  /// Allows files named inside a scene file to lie in these, too. \throws Error file_unreadable if one is no folder.
   void allow_outside(const std::vector<std::string>& folders);
 
   /// Whether files named inside the model can be read at all.
@@ -114,8 +112,7 @@ class Budget {
       source.fail_limit(place, std::to_string(count) + " elements are far more than a file of this size can hold");
     left_ -= count * size;
   }
-  /// Charges triangles that are placed again. They take no memory here, but code that transforms them to world space
-  /// needs ten times the charged amount.
+  /// Charges triangles that are placed again: code that transforms them to the world needs ten times this amount.
   void charge_placed(std::uint64_t triangles, const std::string& place, const ModelSource& source) {
     charge(triangles, 4, place, source);
   }
@@ -179,19 +176,16 @@ enum class StlEncoding : std::uint8_t { binary, ascii, neither };
 /// - neither: anything else. At least 84 bytes that are no text may be a broken binary file, but only the caller knows
 ///   whether the file's name says STL.
 [[nodiscard]] StlEncoding stl_encoding(Bytes start, std::uint64_t file_size);
-/// Returns the encoding of a file that should be STL: binary if it may be a broken binary file. \throws Error with the
-/// reason if it is neither.
+/// The encoding of a file that should be STL; binary for one that may be broken. \throws Error if it is neither.
 [[nodiscard]] StlEncoding known_stl_encoding(Bytes start, std::uint64_t file_size, const ModelSource& source);
 
 // Formats that are not read, and programs that convert them.
 
-/// Returns advice for a file in a format that is known by its suffix but not read: the command line that converts the
-/// file. Returns nothing for other suffixes.
+/// Advice for a file of a known format, by the suffix of `path`, with the command that converts it; else empty.
 [[nodiscard]] std::optional<std::string> conversion_by_suffix(const std::string& path);
 /// Returns such advice by the first bytes, for input without a suffix such as standard input.
 [[nodiscard]] std::optional<std::string> conversion_by_content(Bytes bytes);
-/// Returns such advice for the glTF file `path`, by extensions that it requires or uses, or nothing if no program is
-/// known for any of them.
+/// Advice for the glTF file `path`, by extensions that it requires or uses. Empty if no program is known for any.
 [[nodiscard]] std::optional<std::string> conversion_of_extensions(const std::vector<std::string>& names,
                                                                   const std::string& path);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads STL: binary files, whole or piece by piece, and text files. Stored normals are dropped, because they follow
-// from the corners.
+// STL: binary files, whole or piece by piece, and text. Stored normals are dropped, as they follow from the corners.
 //
 //   byte   0                    80        84                134               184
 //          | anything, 80 bytes | count   | triangle 0      | triangle 1      | ...
@@ -247,7 +246,7 @@ class AsciiStl {
       facet();
     } else if (same_word(word, "solid")) {
       if (in_solid_) text_.fail("\"solid\" within a solid");
-      begin_solid();
+      begin_solid(name_of(text_.rest()));
     } else if (same_word(word, "endsolid")) {
       text_.rest();
       in_solid_ = false;
@@ -258,9 +257,8 @@ class AsciiStl {
     }
   }
 
-  void begin_solid() {
+  void begin_solid(const std::string& name) {
     in_solid_ = true;
-    const std::string name = name_of(text_.rest());
     add_object(scene_, name, text_.source(), text_.place());
   }
 
@@ -272,7 +270,8 @@ class AsciiStl {
 
   /// Reads facet normal X Y Z outer loop (vertex X Y Z) x 3 endloop endfacet.
   void facet() {
-    if (!in_solid_) begin_solid_without_name();
+    if (!in_solid_ && !scene_.meshes.empty()) text_.fail("\"facet\" outside a solid");
+    if (!in_solid_) begin_solid("");
     Mesh& mesh = scene_.meshes.back();
     expect("normal");
     // The normal follows from the corners; any three words in its place are skipped.
@@ -288,12 +287,6 @@ class AsciiStl {
     expect("endfacet");
     if (first > no_index - 6) text_.source().fail_limit(text_.place(), "too many triangles");
     mesh.triangles.emplace_back(first, first + 1, first + 2);
-  }
-
-  void begin_solid_without_name() {
-    in_solid_ = true;
-    if (!scene_.meshes.empty()) text_.fail("\"facet\" outside a solid");
-    add_object(scene_, "", text_.source(), text_.place());
   }
 
   glm::vec3 vertex() {
@@ -334,8 +327,7 @@ class StlStream final : public ModelStream {
     Mesh& mesh = scene_.meshes.emplace_back();
     mesh.name = header_name(start_);
     scene_.instances.push_back({.name = mesh.name, .mesh = 0});
-    // A stream that can be read only once keeps its origin at zero. Its coordinates are floats, so no precision is
-    // lost.
+    // A stream that can be read only once keeps its origin at zero. Its coordinates are floats: nothing is lost.
     if (can_rewind()) set_origin(scene_, fitting_origin());
   }
 

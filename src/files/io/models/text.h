@@ -22,8 +22,7 @@ namespace frontmost {
 //   "12.375" = 12375 / 1000
 //
 // Both numbers are doubles without rounding (15 digits, powers of ten up to 22), so the division rounds only once, and
-// correctly. Nearly all numbers of all files have this form, and the loop is small enough to be inline. Others take a
-// slow path.
+// correctly. Nearly all numbers of all files have this form, and the loop is small enough to be inline.
 
 namespace detail {
 /// Reads numbers of the general form: many digits, large exponents, nan and inf in every spelling. Returns null if
@@ -45,8 +44,7 @@ inline bool rounds_once(double magnitude) {
   return (bits & below_float) != half && magnitude >= 1e-37 && magnitude <= 1e38;
 }
 
-/// Reads [+-]digits[.digits] with at most 15 digits. \returns the first character after the number; null if there is no
-/// number, or if it has more digits or goes on, for example with an exponent.
+/// Reads [+-]digits[.digits] of up to 15 digits. \returns the character behind; null for no number, or a longer one.
 inline const char* parse_short(const char* at, const char* end, double& value) {
   const char* p = at;
   const bool negative = p != end && *p == '-';
@@ -69,8 +67,7 @@ inline const char* parse_short(const char* at, const char* end, double& value) {
   return p;
 }
 
-/// Rounds `exact`, the double nearest to a number, to the float nearest to that number. \returns false if that is
-/// ambiguous.
+/// Rounds `exact`, the double nearest to a number, to the float nearest to that number. \returns false if ambiguous.
 inline bool round_to_float(double exact, float& value) {
   value = float(exact);
   return exact == 0 || rounds_once(exact < 0 ? -exact : exact);
@@ -223,8 +220,7 @@ class TextScanner {
     ++line_;
     if (at_ - released_ > release_step) release();
   }
-  /// Moves to the last character of the line end that follows a backslash. Precondition: the scanner is at the
-  /// backslash.
+  /// Moves from a backslash, where the scanner is, to the last character of the line end that follows.
   bool join_lines();
   void release();
 

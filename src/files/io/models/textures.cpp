@@ -145,11 +145,4 @@ void lose_emissive_texture(Material& material, const std::string& who, std::vect
   warnings.push_back(who + ": the emissive texture is missing, so the material does not glow");
 }
 
-void lose_metallic_roughness_texture(Material& material, const std::string& who, std::vector<std::string>& warnings) {
-  material.metallic_roughness_texture = {};
-  if (material.metallic == 0) return;
-  material.metallic = 0;
-  warnings.push_back(who + ": its metallic-roughness texture is missing, so the material is not metallic");
-}
-
 }  // namespace frontmost

@@ -66,12 +66,8 @@ class TextureFiles {
   std::map<std::tuple<std::string, std::string, Texture::Wrap>, MadeTexture> known_;
 };
 
-// A factor is the greatest value of its texture, not a mean. If a texture says which parts glow or are metal, the
-// factor without the texture would make all parts so.
-
-/// Makes the material not glow. `who` names the material in the warning.
+/// Makes the material not glow: the factor is the greatest value of the texture, not a mean, and alone would make all
+/// parts glow. `who` names the material in the warning.
 void lose_emissive_texture(Material& material, const std::string& who, std::vector<std::string>& warnings);
-/// Makes the material a non-metal, as most are. Its roughness stays.
-void lose_metallic_roughness_texture(Material& material, const std::string& who, std::vector<std::string>& warnings);
 
 }  // namespace frontmost

@@ -13,7 +13,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "base/srgb.h"
 #include "frontmost/files.h"
 #include "io/input_file.h"
 #include "io/models/gltf/json.h"
@@ -184,22 +183,19 @@ void refuse_singular(const JsonValue& place, const glm::dmat4& pose) {
   if (!(std::abs(volume) > 0 && std::isfinite(volume))) place.fail("the pose is singular, or too large");
 }
 
-glm::dmat4 inverse_of(const JsonValue& place, const glm::dmat4& pose) {
-  const glm::dmat3 turned = glm::inverse(glm::dmat3(pose));
-  glm::dmat4 inverse(turned);
-  inverse[3] = glm::dvec4(-(turned * glm::dvec3(pose[3])), 1);
-  refuse_singular(place, inverse);
-  if (!is_finite(glm::dvec3(inverse[3]))) place.fail("its inverse is too large");
-  return inverse;
-}
-
 glm::dmat4 read_matrix(const JsonValue& object, const JsonValue& value) {
   const glm::dmat4 pose = matrix_by_rows(value, value.is_string() ? numbers_in_file(value) : numbers_in(value));
   refuse_singular(value, pose);
   const std::string convention = object.string_or_empty("pose_convention");
   if (convention.empty() || convention == "model-to-world") return pose;
-  if (convention == "world-to-model") return inverse_of(value, pose);
-  object.require("pose_convention").fail("must be model-to-world or world-to-model");
+  if (convention != "world-to-model")
+    object.require("pose_convention").fail("must be model-to-world or world-to-model");
+  const glm::dmat3 turned = glm::inverse(glm::dmat3(pose));
+  glm::dmat4 inverse(turned);
+  inverse[3] = glm::dvec4(-(turned * glm::dvec3(pose[3])), 1);
+  refuse_singular(value, inverse);
+  if (!is_finite(glm::dvec3(inverse[3]))) value.fail("its inverse is too large");
+  return inverse;
 }
 
 /// Returns the rotation that nine numbers give by rows. They must be orthonormal within the rounding errors of data
@@ -264,13 +260,6 @@ std::string read_name(const JsonValue& value) {
   return name_of(name);
 }
 
-/// Checks the length of a list. \throws Error limit_exceeded if it has more elements than a scene may have objects.
-void check_count(const JsonValue& array) {
-  if (array.size() > max_objects)
-    array.source().fail_limit(array.place(),
-                              std::to_string(array.size()) + " are more than " + std::to_string(max_objects));
-}
-
 Category read_category(const JsonValue& json, std::uint32_t number) {
   if (json.is_string()) return {read_name(json), number};
   check_keys(json, {"name", "number"});
@@ -278,8 +267,7 @@ Category read_category(const JsonValue& json, std::uint32_t number) {
   return {read_name(json.require("name")), given ? given->to_index(no_index) : number};
 }
 
-/// Categories by name. The names come from the file's list "categories" or, without such a list, from the names that
-/// objects use.
+/// Categories by name. The names come from the file's list "categories" or, without one, from the objects.
 class CategoryNames {
  public:
   /// Fills `categories`, which is borrowed. \throws Error file_malformed if a name or a number occurs twice.
@@ -287,7 +275,7 @@ class CategoryNames {
     const std::optional<JsonValue> list = root.find("categories");
     is_listed_ = list.has_value();
     if (!list) return;
-    check_count(*list);
+    list->check_count(max_objects);
     std::set<std::uint32_t> numbers;
     for (std::size_t i = 0; i < list->size(); ++i) {
       const JsonValue json = (*list)[i];
@@ -364,15 +352,6 @@ class LookNames {
   std::map<std::string, std::uint32_t> numbers_;
 };
 
-bool read_has_parts(const JsonValue& object) {
-  const std::optional<JsonValue> value = object.find("parts");
-  if (!value) return false;
-  const std::string text = value->to_string();
-  if (text != "together" && text != "apart")
-    value->fail(in_quotes(text) + " is not allowed; expected \"together\" or \"apart\"");
-  return text == "apart";
-}
-
 PlacedModel read_object(const JsonValue& json, const SceneFile& file, CategoryNames& categories,
                         const LookNames& looks) {
   check_keys(json, {"model", "name", "category", "pose", "pose_convention", "translation", "rotation", "scale", "up",
@@ -392,7 +371,12 @@ PlacedModel read_object(const JsonValue& json, const SceneFile& file, CategoryNa
     object.metres_per_unit = read_unit(*unit);
   }
   if (const auto material = json.find("material")) object.replacement = looks.read(*material);
-  object.has_parts = read_has_parts(json);
+  if (const auto parts = json.find("parts")) {
+    const std::string text = parts->to_string();
+    if (text != "together" && text != "apart")
+      parts->fail(in_quotes(text) + " is not allowed; expected \"together\" or \"apart\"");
+    object.has_parts = text == "apart";
+  }
   return object;
 }
 
@@ -409,7 +393,7 @@ SceneFile parse_scene_file(std::string_view text, const ModelSource& source) {
   CategoryNames categories(root, file.categories);
   const LookNames looks(root, file.materials);
   const JsonValue objects = root.require("objects");
-  check_count(objects);
+  objects.check_count(max_objects);
   for (std::size_t i = 0; i < objects.size(); ++i)
     file.objects.push_back(read_object(objects[i], file, categories, looks));
   return file;

@@ -198,8 +198,7 @@ class PlacedMeshes {
 
   [[nodiscard]] const Scene& model() const { return model_; }
 
-  /// Returns the objects of the scene that one object of the scene file makes. `scene_from_model` applies to the
-  /// model's coordinates.
+  /// The objects of the scene that one object of the scene file makes. `scene_from_model` applies to the model.
   std::vector<Instance> place(const PlacedModel& object, const glm::dmat4& scene_from_model) {
     const bool is_one = !object.has_parts && model_.instances.size() > 1;
     const std::vector<std::uint32_t>& meshes = meshes_of(object, is_one);
@@ -229,9 +228,17 @@ class PlacedMeshes {
   const std::vector<std::uint32_t>& meshes_of(const PlacedModel& object, bool is_one) {
     const auto [found, is_new] = known_.emplace(std::pair(is_one, object.replacement), std::vector<std::uint32_t>());
     if (!is_new) return found->second;
-    check_names(object);
+    for (const auto& [name, material] : object.replacement.named)
+      if (std::find(names_.begin(), names_.end(), name) == names_.end())
+        source_.fail(object.place + ".material", "the model has no material " + in_quotes(name));
     if (is_one) {
-      for (const Instance& part : model_.instances) check_part(model_.meshes[part.mesh], object);
+      for (const Instance& part : model_.instances) {
+        const Mesh& mesh = model_.meshes[part.mesh];
+        budget_.charge(1, bytes_of(mesh), object.place, source_);
+        if (mesh.is_curved())
+          source_.fail(object.place + ".model",
+                       "has several curved objects, which cannot be one; say \"parts\": \"apart\"");
+      }
       add_mesh(one_mesh(model_), object.replacement, found->second);
     } else {
       for (const Mesh& mesh : model_.meshes) {
@@ -240,19 +247,6 @@ class PlacedMeshes {
       }
     }
     return found->second;
-  }
-
-  void check_part(const Mesh& mesh, const PlacedModel& object) {
-    budget_.charge(1, bytes_of(mesh), object.place, source_);
-    if (mesh.is_curved())
-      source_.fail(object.place + ".model",
-                   "has several curved objects, which cannot be one; say \"parts\": \"apart\"");
-  }
-
-  void check_names(const PlacedModel& object) const {
-    for (const auto& [name, material] : object.replacement.named)
-      if (std::find(names_.begin(), names_.end(), name) == names_.end())
-        source_.fail(object.place + ".material", "the model has no material " + in_quotes(name));
   }
 
   void add_mesh(Mesh mesh, const Replacement& replacement, std::vector<std::uint32_t>& numbers) {
@@ -296,8 +290,7 @@ class SceneReader {
   }
 
  private:
-  /// Groups the objects by their model, which is identified by the path of its file. Models are in the order of their
-  /// first objects.
+  /// Groups the objects by the path of their model's file. Models are in the order of their first objects.
   void find_models() {
     std::map<std::string, std::size_t> by_reference, by_path;
     for (std::size_t i = 0; i < file_.objects.size(); ++i) {
@@ -393,8 +386,7 @@ class SceneReader {
 //   positions   a b c d | e f g          triangles   0 1 2, 0 2 3 | 4 5 6
 //
 // Normals, colours and texture coordinates are joined likewise. Attributes stay indexed by vertex unless a mesh indexes
-// them by corner. A mirrored object swaps the last two corners of its triangles, as elsewhere, to keep their outer
-// side.
+// them by corner. A mirrored object swaps the last two corners of its triangles, to keep their outer side.
 Mesh one_mesh(const Scene& model) {
   const std::vector<PartOfModel> parts = parts_of(model);
   Mesh all;

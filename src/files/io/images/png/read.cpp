@@ -46,7 +46,7 @@ class PngReader {
   /// Reads everything before the pixels. `name` begins every message. \throws Error file_malformed, limit_exceeded.
   PngReader(std::span<const std::byte> bytes, const std::string& name, bool keeps_texts) : rest_(bytes), name_(name) {
     try {
-      if (!chunks_fit(bytes)) throw Error(ErrorCode::file_malformed, name_, "PNG", "ends too early");
+      if (!chunks_fit(bytes)) fail_image(name_, "PNG", "ends too early");
       if (!read_header(keeps_texts)) fail();
       const std::uint64_t width = png_get_image_width(png_, info_), height = png_get_image_height(png_, info_);
       bits_ = png_get_bit_depth(png_, info_);
@@ -89,9 +89,7 @@ class PngReader {
   }
 
  private:
-  [[noreturn]] void fail() const {
-    throw Error(ErrorCode::file_malformed, name_, "PNG", (message_[0] ? message_ : "cannot be read"));
-  }
+  [[noreturn]] void fail() const { fail_image(name_, "PNG", message_[0] ? message_ : "cannot be read"); }
 
   static void on_error(png_structp png, png_const_charp message) {
     PngReader& reader = *static_cast<PngReader*>(png_get_error_ptr(png));
@@ -188,11 +186,10 @@ void unpack_directions(const Buffer<Value>& pixels, Image& image) {
 
 template <class Value, class Linear>
 void unpack(const Buffer<Value>& pixels, bool directions, Image& image, Linear&& linear) {
-  if (directions) {
+  if (directions)
     unpack_directions(pixels, image);
-  } else {
+  else
     unpack_colors(pixels, image, linear);
-  }
 }
 
 std::size_t pixel_count(const Image& image) { return std::size_t(image.width) * std::size_t(image.height); }
@@ -220,7 +217,7 @@ double number(const Texts& texts, const char* key, const std::string& name) {
   text.imbue(std::locale::classic());
   double value = 0;
   if (!(text >> value) || !std::isfinite(value))
-    throw Error(ErrorCode::file_malformed, name, "PNG", std::string("text ") + key + " is not a number");
+    fail_image(name, "PNG", std::string("text ") + key + " is not a number");
   return value;
 }
 
@@ -230,7 +227,7 @@ void load_map(PngReader& reader, const Texts& texts, const std::string& name, Im
   const bool ids = texts.count(png_ids_key) != 0;
   const double scale = ids ? 1 : number(texts, png_scale_key, name);
   const double offset = ids ? 0 : number(texts, png_offset_key, name);
-  if (scale == 0) throw Error(ErrorCode::file_malformed, name, "PNG", "the depth scale is 0");
+  if (scale == 0) fail_image(name, "PNG", "the depth scale is 0");
   Buffer<std::uint16_t> pixels(pixel_count(image));
   reader.read(PngReader::Pixels::grey16, pixels.data());
   if (ids) {
@@ -260,13 +257,8 @@ Image load_png(std::span<const std::byte> bytes, const std::string& name) {
 
 Texture decode_png(std::span<const std::byte> bytes, const std::string& name, ImagePart part) {
   PngReader reader(bytes, name, false);
-  Texture texture;
-  texture.name = name;
-  texture.width = reader.width();
-  texture.height = reader.height();
-  if (part == ImagePart::size) return texture;
-  texture.pixels.resize(std::size_t(texture.width) * std::size_t(texture.height));
-  reader.read(PngReader::Pixels::rgba8, texture.pixels.data());
+  Texture texture = texture_of_size(name, reader.width(), reader.height(), part);
+  if (part == ImagePart::pixels) reader.read(PngReader::Pixels::rgba8, texture.pixels.data());
   return texture;
 }
 

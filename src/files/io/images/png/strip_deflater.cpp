@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// StripDeflater by Intel's ISA-L, which takes at most a quarter of the time of zlib with Z_RLE, or by zlib alone if
-// FRONTMOST_DEFLATES_BY_ZLIB is defined.
+// StripDeflater by Intel's ISA-L, in a quarter of zlib's time with Z_RLE, or by zlib (FRONTMOST_DEFLATES_BY_ZLIB).
 #include "io/images/png/strip_deflater.h"
 
 #include <zlib.h>
@@ -22,8 +21,7 @@
 namespace frontmost::detail {
 namespace {
 
-/// Compresses a piece by itself into `out`, which has room for the worst case. \returns the part of `out` that was
-/// filled.
+/// Compresses a piece by itself into `out`, which has room for the worst case. \returns the filled part of `out`.
 std::span<const std::uint8_t> deflate_piece(z_stream& stream, std::span<const std::uint8_t> raw, bool last,
                                             Buffer<std::uint8_t>& out) {
   ::deflateReset(&stream);

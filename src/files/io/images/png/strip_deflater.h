@@ -10,8 +10,7 @@
 namespace frontmost::detail {
 
 /// Compresses pieces of one deflate stream (RFC 1951), each by itself. The bytes depend on the piece, the library and
-/// the code that it selects for this processor, but not on earlier pieces or the process. Memory is kept for the next
-/// piece.
+/// the code that it selects for this processor, but not on earlier pieces. Memory is kept for the next.
 class StripDeflater {
  public:
   explicit StripDeflater(std::size_t most_bytes);

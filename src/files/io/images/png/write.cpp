@@ -22,17 +22,15 @@
 namespace frontmost::detail {
 namespace {
 
+enum class Color : std::uint8_t { grey = 0, rgb = 2, rgba = 6 };  ///< values of the file's header
+
 /// Contents of a PNG file. `row` may be called from many threads at once, and more than once for a row.
 struct PngContents {
-  enum class Color : std::uint8_t { grey = 0, rgb = 2, rgba = 6 };  ///< values of the file's header
-  struct Text {
-    std::string keyword, text;
-  };
   int width = 0, height = 0;
   Color color = Color::rgb;
-  int bits = 8;         ///< 8 or 16, big-endian
-  bool is_srgb = true;  ///< whether the file is marked as sRGB
-  std::vector<Text> texts;
+  int bits = 8;                                            ///< 8 or 16, big-endian
+  bool is_srgb = true;                                     ///< whether the file is marked as sRGB
+  std::vector<std::pair<std::string, std::string>> texts;  ///< keyword and text
   std::function<void(int y, std::uint8_t* row)> row;
 
   [[nodiscard]] std::size_t pixel_bytes() const {
@@ -81,8 +79,7 @@ ByteVector head(const PngContents& contents) {
   ByteVector bytes = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
   append_chunk(bytes, "IHDR", as_text(header));
   if (contents.is_srgb) append_chunk(bytes, "sRGB", std::string_view("\0", 1));
-  for (const PngContents::Text& text : contents.texts)
-    append_chunk(bytes, "tEXt", text.keyword + std::string(1, '\0') + text.text);
+  for (const auto& [keyword, text] : contents.texts) append_chunk(bytes, "tEXt", keyword + std::string(1, '\0') + text);
   return bytes;
 }
 
@@ -96,8 +93,7 @@ struct Workspace {
       : raw(rows * (row_size + 1)), row(row_size), above(row_size), deflater(raw.size()) {}
 };
 
-// Rows have `size` bytes, and a pixel has `pixel` bytes. Rows are passed as pointers, because the end of a span would
-// be reloaded after each written byte.
+// Rows have `size` bytes, pixels `pixel`. Rows are pointers: ends of spans would be reloaded after each written byte.
 
 void filter_sub(const std::uint8_t* row, std::size_t pixel, std::size_t size, std::uint8_t* out) {
   std::copy_n(row, pixel, out);
@@ -169,8 +165,7 @@ ByteVector tail(const std::vector<Strip>& strips) {
 /// Writes the whole file. The bytes do not depend on the number of threads.
 void write_png(const PngContents& contents, OutputFile& file, const Execution& execution) {
   const std::size_t row_size = std::size_t(contents.width) * contents.pixel_bytes();
-  // The number of rows depends on the size of a row, never on the number of threads, because strips show in the file's
-  // bytes.
+  // The number of rows depends on the size of a row, never on threads, because strips show in the file's bytes.
   const std::size_t rows = std::max<std::size_t>(1, strip_bytes / (row_size + 1));
   Pool<Workspace> workspaces;
   std::vector<Strip> strips((std::size_t(contents.height) + rows - 1) / rows);
@@ -184,8 +179,6 @@ void write_png(const PngContents& contents, OutputFile& file, const Execution& e
   const ByteVector end = tail(strips);
   file.write(std::as_bytes(std::span(end)));
 }
-
-using Color = PngContents::Color;
 
 void store_big_endian(std::uint8_t* place, unsigned value) {
   place[0] = std::uint8_t(value >> 8);
@@ -287,8 +280,7 @@ PngContents depth_map(const Image& image, const std::optional<double>& scale, co
   contents.row = [&image, mapping, fitted = !scale](int y, std::uint8_t* row) {
     const float* depths = image.channels[0].floats().data() + std::size_t(y) * std::size_t(image.width);
     for (int x = 0; x < image.width; ++x) {
-      // 0 means that the pixel shows nothing, so visible depths become at least 1. Depths that are not before the eye
-      // get 0.
+      // 0 means that the pixel shows nothing, so visible depths become at least 1, and depths not before the eye 0.
       const bool seen = std::isfinite(depths[x]) && (fitted || depths[x] > 0);
       store_big_endian(row + 2 * x, seen ? unsigned(std::clamp(mapping.stored(depths[x]), 1.0, 65535.0)) : 0);
     }

@@ -105,19 +105,15 @@ std::optional<Light> read_light(const JsonValue& json, std::vector<std::string>&
   return light;
 }
 
-/// Whether the light's kind uses a direction.
-bool has_direction(const Light& light) { return light.kind != Light::Kind::point; }
-
-/// Returns a rigid transform at the node's place, or nothing if the light needs a direction and the node has none. Its
-/// -z is the node's direction of -z, whatever the node's scale or shear.
+/// A rigid transform at the node's place with the node's direction of -z, whatever its scale. Empty if there is none.
 std::optional<glm::dmat4> placement(const Light& light, const glm::dmat4& world) {
-  const double length = glm::length(glm::dvec3(world[2]));
-  if (!has_direction(light) || !(length > 0 && std::isfinite(length))) {
-    if (has_direction(light)) return std::nullopt;
+  if (light.kind == Light::Kind::point) {  // shines in all directions
     glm::dmat4 moved(1.0);
     moved[3] = world[3];
     return moved;
   }
+  const double length = glm::length(glm::dvec3(world[2]));
+  if (!(length > 0 && std::isfinite(length))) return std::nullopt;
   const glm::dvec3 back = glm::dvec3(world[2]) / length;
   // The rotation about the light's axis has no effect. The world axis farthest from that axis completes the frame.
   const glm::dvec3 size = glm::abs(back);

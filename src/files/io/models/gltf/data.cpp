@@ -45,22 +45,7 @@ const Shape* shape_of(const JsonValue& json) {
   return nullptr;
 }
 
-/// Layout of the components of one element. Columns of matrices start at multiples of four bytes, and so do packed
-/// matrices; the last column has no padding behind it.
-struct RowLayout {
-  std::size_t column, column_stride;  ///< bytes of a column, and bytes from one column to the next
-  int columns;
-
-  RowLayout(const Shape& shape, Component component)
-      : column(std::size_t(shape.rows) * size_of(component)),
-        column_stride(shape.columns == 1 ? column : (column + 3) & ~std::size_t(3)),
-        columns(shape.columns) {}
-  [[nodiscard]] std::size_t stride() const { return std::size_t(columns) * column_stride; }
-  [[nodiscard]] std::size_t size() const { return stride() - column_stride + column; }
-};
-
-/// Whether `count` elements, `stride` apart, lie within `length` bytes from `offset` on. Correct for all numbers,
-/// because nothing overflows.
+/// Whether `count` elements, `stride` apart, lie within `length` bytes from `offset` on. Nothing overflows.
 bool fits(std::uint64_t offset, std::uint64_t count, std::uint64_t stride, std::uint64_t element,
           std::uint64_t length) {
   if (count == 0) return offset <= length;
@@ -293,15 +278,16 @@ void Data::read_accessor(const JsonValue& json) {
     accessor.components = shape->columns * shape->rows;
     accessor.rows = shape->rows;
     accessor.normalized = json.bool_or("normalized", false);
-    const RowLayout layout(*shape, *component);
-    accessor.column_stride = layout.column_stride;
-    accessor.size = layout.size();
-    accessor.stride = layout.stride();
+    // Columns of matrices, and packed matrices, start at multiples of four; the last column has no padding.
+    const std::size_t column = std::size_t(shape->rows) * size_of(*component);
+    accessor.column_stride = shape->columns == 1 ? column : (column + 3) & ~std::size_t(3);
+    const std::size_t packed_stride = std::size_t(shape->columns) * accessor.column_stride;
+    accessor.size = packed_stride - accessor.column_stride + column;
+    accessor.stride = packed_stride;
     find_elements(json, accessor);
-    if (const std::optional<JsonValue> sparse = json.find("sparse")) read_sparse(*sparse, accessor, layout.stride());
+    if (const std::optional<JsonValue> sparse = json.find("sparse")) read_sparse(*sparse, accessor, packed_stride);
   } else {
-    // This is no error yet: extensions add accessors for their own use, which readers without the extension never
-    // touch.
+    // This is no error yet: extensions add accessors, which readers without the extension never touch.
     accessor.unreadable = "the accessor's type is unknown";
   }
   accessors_.push_back(accessor);
@@ -327,8 +313,7 @@ void Data::find_elements(const JsonValue& json, Accessor& accessor) const {
     accessor.unreadable = no_contents;
 }
 
-/// Returns the bytes of packed elements in the view that `json` names, from the first one on, or no bytes if the view
-/// has no contents.
+/// The bytes of packed elements in the view that `json` names, from the first on. Empty if it has no contents.
 Bytes Data::packed(const JsonValue& json, std::size_t count, std::size_t stride, std::size_t size) const {
   const ByteExtent& view = views_[json.require("bufferView").to_index(views_.size())];
   const std::uint64_t offset = json.unsigned_or("byteOffset", 0);

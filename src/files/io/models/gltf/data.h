@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The binary part of a glTF file: buffers, buffer views and accessors. Every range is checked once, here, before
-// anything is read.
+// The binary part of a glTF file: buffers, buffer views and accessors. Every range is checked once, before it is read.
 //
 //   GLB   | "glTF" | 2 | length |   | size | "JSON" | text ... |   | size | "BIN" | bytes ... |   | others
 //           12 bytes                  8 bytes                        8 bytes; may be missing         passed over
@@ -137,8 +136,7 @@ struct DecodedPrimitive {
 class DracoPrimitives {
  public:
   explicit DracoPrimitives(Data& data) : data_(data), budget_(data.byte_count()) {}
-  /// Returns the decoded arrays, or nothing if the primitive is not compressed or if this build has no Draco. \throws
-  /// Error file_malformed, unsupported, limit_exceeded.
+  /// Empty if it is not compressed, or without Draco. \throws Error file_malformed, unsupported, limit_exceeded.
   [[nodiscard]] std::optional<DecodedPrimitive> decode(const JsonValue& primitive);
 
  private:

@@ -64,7 +64,7 @@ void take_chunk(Container& container, std::uint32_t type, Bytes chunk, std::size
 
 constexpr std::uint8_t no_digit = 0xFF;
 
-constexpr std::array<std::uint8_t, 256> make_base64_digits() {
+constexpr std::array<std::uint8_t, 256> base64_digits = [] {
   std::array<std::uint8_t, 256> digits{};
   for (std::uint8_t& digit : digits) digit = no_digit;
   constexpr std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -73,9 +73,7 @@ constexpr std::array<std::uint8_t, 256> make_base64_digits() {
   digits['-'] = 62;  // the URL-safe alphabet, which some exporters write
   digits['_'] = 63;
   return digits;
-}
-
-constexpr std::array<std::uint8_t, 256> base64_digits = make_base64_digits();
+}();
 
 std::vector<std::byte> decode_base64(std::string_view text, const JsonValue& place) {
   while (!text.empty() && text.back() == '=') text.remove_suffix(1);
@@ -180,15 +178,10 @@ void check_extensions(const JsonValue& root, std::vector<std::string>& warnings)
 
 /// Limits the lengths of the lists, because each element costs some hundred bytes of memory, even an empty one ("{}").
 void check_counts(const JsonValue& root) {
-  const auto check = [](const std::optional<JsonValue>& array) {
-    if (array && array->size() > max_objects)
-      array->source().fail_limit(array->place(),
-                                 std::to_string(array->size()) + " are more than " + std::to_string(max_objects));
-  };
   for (const char* key : {"accessors", "bufferViews", "buffers", "cameras", "images", "materials", "meshes", "nodes",
                           "samplers", "skins", "textures"})
-    check(root.find(key));
-  check(find_lights(root));
+    if (const auto array = root.find(key)) array->check_count(max_objects);
+  if (const auto lights = find_lights(root)) lights->check_count(max_objects);
 }
 
 Scene read_scene(const Container& container, const ModelSource& source) {
@@ -209,8 +202,7 @@ Scene read_scene(const Container& container, const ModelSource& source) {
   place_meshes(root, data, plans, tree, scene);
   place_cameras(root, tree, scene);
   place_lights(root, tree, scene);
-  // Textures come last, because decoding is the most expensive step, and futile if another step fails. Only textures
-  // that materials use are decoded.
+  // Textures come last, and only those that materials use: decoding is the dearest step, and futile if another fails.
   textures.load(scene);
   return scene;
 }

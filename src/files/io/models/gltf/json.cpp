@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A library parses the document. The library's recursion and memory grow with the text, so the depth and the number of
-// values are counted first.
+// A library parses the document. Its recursion and memory grow with the text, so depth and values are counted first.
 #include "io/models/gltf/json.h"
 
 #include <cmath>
@@ -9,8 +8,7 @@
 namespace frontmost::gltf {
 namespace {
 
-// glTF needs a depth of about ten. A value costs up to a hundred bytes of memory, so a text of empty brackets would
-// take thirty times its size.
+// glTF needs a depth of about ten. A value takes up to 100 bytes, so empty brackets would take thirty times their size.
 constexpr int max_depth = 256;
 constexpr std::size_t max_values = std::size_t(1) << 23;
 // Beyond 2^53 a double skips integers, so a number with a point or an exponent has lost its last digits.
@@ -95,6 +93,10 @@ bool JsonValue::is_number() const { return value_->is_number(); }
 std::size_t JsonValue::size() const {
   if (!value_->is_array()) fail(std::string("an array is expected, not ") + value_->type_name());
   return value_->size();
+}
+
+void JsonValue::check_count(std::size_t most) const {
+  if (size() > most) source_->fail_limit(place_, std::to_string(size()) + " are more than " + std::to_string(most));
 }
 
 JsonValue JsonValue::operator[](std::size_t i) const {

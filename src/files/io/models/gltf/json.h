@@ -52,6 +52,8 @@ class JsonValue {
   [[nodiscard]] bool is_number() const;
   /// Returns the number of elements. \throws Error unless this is an array.
   [[nodiscard]] std::size_t size() const;
+  /// \throws Error limit_exceeded for an array of more than `most` elements.
+  void check_count(std::size_t most) const;
   [[nodiscard]] JsonValue operator[](std::size_t i) const;
 
   [[nodiscard]] bool to_bool() const;

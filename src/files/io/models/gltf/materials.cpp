@@ -11,14 +11,38 @@
 namespace frontmost::gltf {
 namespace {
 
-/// Reads uses of textures and notes which sets of coordinates they need.
-class UseReader {
+/// Reads one material.
+class MaterialReader {
  public:
-  UseReader(TextureTable& textures, std::vector<std::string>& warnings) : textures_(textures), warnings_(warnings) {}
+  MaterialReader(TextureTable& textures, std::vector<std::string>& warnings)
+      : textures_(textures), warnings_(warnings) {}
 
-  /// Returns the use of a texture in the member `key` of `json`, which is unset if the member is absent. If the texture
-  /// cannot be used, adds a warning, and the use is of lost_texture.
-  [[nodiscard]] TextureUse read(const JsonValue& json, const char* key) {
+  Material read(const JsonValue& json) {
+    Material material;
+    material.name = json.name();
+    // glTF's defaults, which differ from those of Material.
+    material.metallic = material.roughness = 1;
+    if (const auto pbr = json.find("pbrMetallicRoughness")) read_metallic_roughness(*pbr, material);
+    material.normal_texture = use_of(json, "normalTexture");
+    if (const auto normal = json.find("normalTexture")) material.normal_scale = float(normal->number_or("scale", 1));
+    material.occlusion_texture = use_of(json, "occlusionTexture");
+    if (const auto occlusion = json.find("occlusionTexture"))
+      material.occlusion_strength = float(occlusion->number_or("strength", 1));
+    read_emissive(json, material);
+    read_alpha(json, material);
+    material.double_sided = json.bool_or("doubleSided", false);
+    material.unlit = json.extension("KHR_materials_unlit").has_value();
+    read_layers(json, material);
+    bring_into_range(json, material);
+    warn_if_black_without_iridescence(json, material);
+    return material;
+  }
+  /// The sets of texture coordinates that its textures need; bit k: set k.
+  [[nodiscard]] std::uint32_t sets() const { return sets_; }
+
+ private:
+  /// The use in the member `key` of `json`; unset if absent. If it cannot be used, lost_texture with a warning.
+  [[nodiscard]] TextureUse use_of(const JsonValue& json, const char* key) {
     TextureUse use;
     const std::optional<JsonValue> member = json.find(key);
     if (!member) return use;
@@ -41,42 +65,7 @@ class UseReader {
     use.rotation = float(transform->number_or("rotation", 0));
     return use;
   }
-  /// Bit k is set if set k is used.
-  [[nodiscard]] std::uint32_t sets() const { return sets_; }
 
- private:
-  TextureTable& textures_;
-  std::vector<std::string>& warnings_;
-  std::uint32_t sets_ = 0;
-};
-
-/// Reads one material.
-class MaterialReader {
- public:
-  MaterialReader(UseReader& uses, std::vector<std::string>& warnings) : uses_(uses), warnings_(warnings) {}
-
-  Material read(const JsonValue& json) {
-    Material material;
-    material.name = json.name();
-    // glTF's defaults, which differ from those of Material.
-    material.metallic = material.roughness = 1;
-    if (const auto pbr = json.find("pbrMetallicRoughness")) read_metallic_roughness(*pbr, material);
-    material.normal_texture = uses_.read(json, "normalTexture");
-    if (const auto normal = json.find("normalTexture")) material.normal_scale = float(normal->number_or("scale", 1));
-    material.occlusion_texture = uses_.read(json, "occlusionTexture");
-    if (const auto occlusion = json.find("occlusionTexture"))
-      material.occlusion_strength = float(occlusion->number_or("strength", 1));
-    read_emissive(json, material);
-    read_alpha(json, material);
-    material.double_sided = json.bool_or("doubleSided", false);
-    material.unlit = json.extension("KHR_materials_unlit").has_value();
-    read_layers(json, material);
-    bring_into_range(json, material);
-    warn_if_black_without_iridescence(json, material);
-    return material;
-  }
-
- private:
   void bring_into_range(const JsonValue& json, Material& material) {
     std::string_view told;  // all channels of a colour have one name
     for (const MaterialNumber& number : numbers_of(material)) {
@@ -104,8 +93,8 @@ class MaterialReader {
     json.read_vector("baseColorFactor", material.base_color);
     material.metallic = float(json.number_or("metallicFactor", 1));
     material.roughness = float(json.number_or("roughnessFactor", 1));
-    material.base_color_texture = uses_.read(json, "baseColorTexture");
-    material.metallic_roughness_texture = uses_.read(json, "metallicRoughnessTexture");
+    material.base_color_texture = use_of(json, "baseColorTexture");
+    material.metallic_roughness_texture = use_of(json, "metallicRoughnessTexture");
   }
 
   void read_emissive(const JsonValue& json, Material& material) {
@@ -114,7 +103,7 @@ class MaterialReader {
     const double factor = strength ? strength->number_or("emissiveStrength", 1) : 1;
     json.read_vector("emissiveFactor", color);
     material.emissive = glm::vec3(color * factor);
-    material.emissive_texture = uses_.read(json, "emissiveTexture");
+    material.emissive_texture = use_of(json, "emissiveTexture");
   }
 
   void read_alpha(const JsonValue& json, Material& material) {
@@ -147,29 +136,29 @@ class MaterialReader {
   void read_specular_glossiness(const JsonValue& json, Material& material) {
     material.base_color = glm::vec4(1);
     json.read_vector("diffuseFactor", material.base_color);
-    material.base_color_texture = uses_.read(json, "diffuseTexture");
+    material.base_color_texture = use_of(json, "diffuseTexture");
     material.metallic = material.ior = 0;
     material.roughness = float(1 - json.number_or("glossinessFactor", 1));
     material.metallic_roughness_texture = {};
     json.read_vector("specularFactor", material.specular.color);
-    material.specular.color_texture = uses_.read(json, "specularGlossinessTexture");
+    material.specular.color_texture = use_of(json, "specularGlossinessTexture");
   }
 
   void read_specular(const JsonValue& json, Material& material) {
     Material::Specular& specular = material.specular;
     specular.factor = float(json.number_or("specularFactor", 1));
-    specular.factor_texture = uses_.read(json, "specularTexture");
+    specular.factor_texture = use_of(json, "specularTexture");
     json.read_vector("specularColorFactor", specular.color);
-    specular.color_texture = uses_.read(json, "specularColorTexture");
+    specular.color_texture = use_of(json, "specularColorTexture");
   }
 
   void read_clearcoat(const JsonValue& json, Material& material) {
     Material::Clearcoat& coat = material.clearcoat;
     coat.factor = float(json.number_or("clearcoatFactor", 0));
-    coat.factor_texture = uses_.read(json, "clearcoatTexture");
+    coat.factor_texture = use_of(json, "clearcoatTexture");
     coat.roughness = float(json.number_or("clearcoatRoughnessFactor", 0));
-    coat.roughness_texture = uses_.read(json, "clearcoatRoughnessTexture");
-    coat.normal_texture = uses_.read(json, "clearcoatNormalTexture");
+    coat.roughness_texture = use_of(json, "clearcoatRoughnessTexture");
+    coat.normal_texture = use_of(json, "clearcoatNormalTexture");
     if (const auto normal = json.find("clearcoatNormalTexture"))
       coat.normal_scale = float(normal->number_or("scale", 1));
   }
@@ -177,27 +166,28 @@ class MaterialReader {
   void read_sheen(const JsonValue& json, Material& material) {
     Material::Sheen& sheen = material.sheen;
     json.read_vector("sheenColorFactor", sheen.color);
-    sheen.color_texture = uses_.read(json, "sheenColorTexture");
+    sheen.color_texture = use_of(json, "sheenColorTexture");
     sheen.roughness = float(json.number_or("sheenRoughnessFactor", 0));
-    sheen.roughness_texture = uses_.read(json, "sheenRoughnessTexture");
+    sheen.roughness_texture = use_of(json, "sheenRoughnessTexture");
   }
 
   void read_transmission(const JsonValue& json, Material& material) {
     material.transmission.factor = float(json.number_or("transmissionFactor", 0));
-    material.transmission.factor_texture = uses_.read(json, "transmissionTexture");
+    material.transmission.factor_texture = use_of(json, "transmissionTexture");
   }
 
   void read_volume(const JsonValue& json, Material& material) {
     Material::Volume& volume = material.volume;
     volume.thickness = float(json.number_or("thicknessFactor", 0));
-    volume.thickness_texture = uses_.read(json, "thicknessTexture");
+    volume.thickness_texture = use_of(json, "thicknessTexture");
     constexpr double infinite = std::numeric_limits<double>::infinity();
     volume.attenuation_distance = float(json.number_or("attenuationDistance", infinite));
     json.read_vector("attenuationColor", volume.attenuation_color);
   }
 
-  UseReader& uses_;
+  TextureTable& textures_;
   std::vector<std::string>& warnings_;
+  std::uint32_t sets_ = 0;
 };
 
 }  // namespace
@@ -212,9 +202,9 @@ MaterialList read_materials(const JsonValue& root, TextureTable& textures, std::
   // A million materials take half a gigabyte, so the list must not be copied while it grows.
   out.materials.reserve(root.count("materials"));
   root.each("materials", [&](const JsonValue& json) {
-    UseReader uses(textures, warnings);
-    out.materials.push_back(MaterialReader(uses, warnings).read(json));
-    out.texcoord_sets.push_back(uses.sets());
+    MaterialReader reader(textures, warnings);
+    out.materials.push_back(reader.read(json));
+    out.texcoord_sets.push_back(reader.sets());
   });
   const auto spreads_light = [](const Material& m) {
     return m.transmission.factor > 0 && (m.roughness > 0 || m.volume.thickness > 0);

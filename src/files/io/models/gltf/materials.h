@@ -25,8 +25,7 @@ class TextureTable {
   /// lost_texture, and adds a warning, if the image cannot be read.
   [[nodiscard]] std::uint32_t intern(const JsonValue& index, std::vector<std::string>& warnings);
 
-  /// Decodes in parallel and fills scene.textures. Images that cannot be decoded cause warnings, and their materials do
-  /// without them, as with lost_texture.
+  /// Decodes in parallel and fills scene.textures. Images that cannot be decoded cause warnings, as lost_texture does.
   void load(Scene& scene) const;
 
  private:
@@ -37,7 +36,6 @@ class TextureTable {
     auto operator<=>(const Look&) const = default;
   };
   class ImageLoader;
-  void read_sampler(const JsonValue& texture, Look& look) const;
 
   const JsonValue& root_;
   const Data& data_;

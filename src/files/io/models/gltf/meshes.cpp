@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns a mesh of the file into one Mesh: all its primitives, one after the other, with vertices moved by morph targets
-// and joints.
+// Turns a mesh of the file into one Mesh: all its primitives in order, with vertices moved by morph targets and joints.
 //
 // Exporters let primitives, and whole meshes, share one large array of vertices, which must not be stored repeatedly.
-// So triangles are read first, to find the range of vertices that each block of primitives uses, and only that range is
-// read.
+// So triangles are read first, to find the range of vertices that each block of primitives uses, which alone is read.
 #include <algorithm>
 #include <bit>
 #include <numeric>
 
 #include "io/models/gltf/nodes.h"
+#include "io/models/mesh_building.h"
 
 namespace frontmost::gltf {
 namespace {
@@ -64,8 +63,7 @@ class Influences {
     }
   }
 
-  /// Returns the weighted mean of the joints' matrices. Weights stored as bytes may not sum to exactly one, so the sum
-  /// is divided out.
+  /// The weighted mean of the joints' matrices. Weights stored as bytes may not sum to one, so the sum is divided out.
   [[nodiscard]] glm::dmat4 matrix(std::size_t vertex, std::span<const glm::dmat4> joints) const {
     glm::dmat4 sum(0.0);
     double total = 0;
@@ -166,7 +164,7 @@ class MeshBuilder {
       read_corners(primitive, {0, 3 * count}, count == 0 ? nullptr : &triangles[0][0]);
     else
       read_strip_or_fan(primitive, corner_count, triangles);
-    append_materials(primitive, first, count);
+    append_material(mesh_.material_ids, first, count, primitive.material);
     include(primitive, triangles);
   }
 
@@ -177,8 +175,7 @@ class MeshBuilder {
       std::iota(out, out + range.count, std::uint32_t(range.first));
   }
 
-  /// Makes triangles with the corners in the order that the format defines for each mode. This order keeps the winding
-  /// of a strip's odd triangles.
+  /// Takes corners in the format's order for each mode, which keeps the winding of a strip's odd triangles.
   void read_strip_or_fan(const Primitive& primitive, std::size_t corner_count, std::span<glm::uvec3> triangles) const {
     if (triangles.empty()) return;
     budget_.charge(corner_count, sizeof(std::uint32_t), primitive.place, source_);
@@ -188,17 +185,6 @@ class MeshBuilder {
       triangles[i] = primitive.mode == Mode::fan
                          ? glm::uvec3(corners[i + 1], corners[i + 2], corners[0])
                          : glm::uvec3(corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]);
-  }
-
-  void append_materials(const Primitive& primitive, std::size_t first, std::size_t count) {
-    std::vector<std::uint32_t>& ids = mesh_.material_ids;
-    if (count == 0) return;
-    if (first == 0) {
-      ids.assign(1, primitive.material);
-    } else if (ids.size() > 1 || ids[0] != primitive.material) {
-      if (ids.size() == 1) ids.assign(first, ids[0]);
-      ids.resize(first + count, primitive.material);
-    }
   }
 
   /// Checks vertex numbers and widens the range of needed vertices.

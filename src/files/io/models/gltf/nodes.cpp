@@ -100,8 +100,7 @@ void find_parents(std::vector<Node>& nodes, const ModelSource& source) {
     }
 }
 
-/// Returns the nodes from `starts` downwards, in order, each before its children. The stack is explicit, because trees
-/// may be a million levels deep.
+/// The nodes from `starts` down, in order, each before its children. Trees may be too deep for recursion.
 std::vector<std::uint32_t> walk(const std::vector<Node>& nodes, std::vector<std::uint32_t> starts) {
   std::vector<std::uint32_t> order, stack(starts.rbegin(), starts.rend());
   std::vector<bool> seen(nodes.size());
@@ -115,12 +114,6 @@ std::vector<std::uint32_t> walk(const std::vector<Node>& nodes, std::vector<std:
     stack.insert(stack.end(), nodes[id].children.rbegin(), nodes[id].children.rend());
   }
   return order;
-}
-
-bool is_finite_matrix(const glm::dmat4& m) {
-  for (int i = 0; i < 16; ++i)
-    if (!std::isfinite(m[i / 4][i % 4])) return false;
-  return true;
 }
 
 /// Converts transforms to world space and hides nodes below hidden ones. \returns the nodes without parents.
@@ -142,7 +135,8 @@ std::vector<std::uint32_t> place_in_world(std::vector<Node>& nodes, const ModelS
       node.world = nodes[node.parent].world * node.world;
       node.is_hidden |= nodes[node.parent].is_hidden;
     }
-    if (!is_finite_matrix(node.world)) source.fail(node.place, "its transform is not finite");
+    for (int i = 0; i < 16; ++i)
+      if (!std::isfinite(node.world[i / 4][i % 4])) source.fail(node.place, "its transform is not finite");
   }
   return roots;
 }
@@ -162,8 +156,7 @@ std::vector<std::uint32_t> scene_starts(const JsonValue& root, std::size_t node_
 /// For each joint of a skin in rest pose, the matrix world_from_joint * inverse bind matrix.
 using Joints = std::vector<glm::dmat4>;
 
-/// The joints of a skin. Skinned vertices are stored in world space, or relative to an origin near them if they lie far
-/// from zero.
+/// Skinned vertices are stored in world space, or, if they lie far from zero, relative to an origin near them.
 struct Skin {
   Joints joints;
   glm::dvec3 origin{0};
@@ -173,11 +166,6 @@ struct Skin {
     for (const glm::dmat4& joint : joints) search.include(glm::dvec3(joint[3]));
     origin = search.origin();
     for (glm::dmat4& joint : joints) joint[3] -= glm::dvec4(origin, 0);
-  }
-  [[nodiscard]] glm::dmat4 world_from_mesh() const {
-    glm::dmat4 moved(1.0);
-    moved[3] = glm::dvec4(origin, 1);
-    return moved;
   }
 };
 
@@ -199,12 +187,6 @@ Joints read_joints(const JsonValue& json, const Data& data, const std::vector<No
   return skin;
 }
 
-std::vector<Skin> read_skins(const JsonValue& root, const Data& data, const std::vector<Node>& nodes) {
-  std::vector<Skin> skins;
-  root.each("skins", [&](const JsonValue& json) { skins.emplace_back(read_joints(json, data, nodes)); });
-  return skins;
-}
-
 /// Reads each mesh once for each of its poses.
 class PosedMeshes {
  public:
@@ -216,8 +198,9 @@ class PosedMeshes {
         tree_(tree),
         scene_(scene),
         budget_(data.byte_count()),
-        skins_(read_skins(root, data, tree.nodes)),
-        is_read_(plans.size()) {}
+        is_read_(plans.size()) {
+    root.each("skins", [&](const JsonValue& json) { skins_.emplace_back(read_joints(json, data, tree.nodes)); });
+  }
 
   void place() {
     scene_.meshes.resize(plans_.size());
@@ -252,7 +235,10 @@ class PosedMeshes {
     instance.mesh = posed_mesh(node, skinned);
     const std::uint64_t copies = node.copies ? node.copies->count : 1;
     budget_.charge_placed(copies * scene_.meshes[instance.mesh].triangles.size(), node.place, source_);
-    instance.world_from_mesh = skinned ? skins_[node.skin].world_from_mesh() : node.world;
+    if (skinned)
+      instance.world_from_mesh[3] = glm::dvec4(skins_[node.skin].origin, 1);
+    else
+      instance.world_from_mesh = node.world;
     if (node.copies)
       place_copies(node, instance);
     else

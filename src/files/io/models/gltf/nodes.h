@@ -6,8 +6,7 @@
 //               |-> node "wheel"  mesh 3, somewhere else
 //               `-> node "driver" mesh 5, skin 0, and a camera below it
 //
-// All triangle primitives of a mesh become one Mesh, in order. The tree is flattened: instances have transforms to
-// world space, and the tree itself is dropped.
+// All triangle primitives of a mesh become one Mesh, in order. Instances have transforms to the world.
 #pragma once
 
 #include <array>
@@ -112,8 +111,7 @@ struct NodeTree {
 void place_meshes(const JsonValue& root, const Data& data, const std::vector<MeshPlan>& plans, const NodeTree& tree,
                   Scene& scene);
 
-/// Fills scene.cameras, one for each shown node with a camera. Hidden nodes keep their cameras, as the extension
-/// requires.
+/// Fills scene.cameras, one for each shown node with a camera. Hidden nodes keep theirs, as the extension requires.
 void place_cameras(const JsonValue& root, const NodeTree& tree, Scene& scene);
 
 /// Returns the list of lights that nodes refer to by number (KHR_lights_punctual), or nothing.

@@ -39,9 +39,9 @@ class AttributeReader {
     if (accessor.rows != accessor.components) found->fail("holds matrices, which are not allowed here");
     if (allowed.integers && accessor.component != Component::u8 && accessor.component != Component::u16)
       found->fail("is not of unsigned bytes or shorts");
-    if (count_ && *count_ != accessor.count)
-      found->fail(std::to_string(accessor.count) + " elements where others have " + std::to_string(*count_));
-    count_ = accessor.count;
+    if (count && *count != accessor.count)
+      found->fail(std::to_string(accessor.count) + " elements where others have " + std::to_string(*count));
+    count = accessor.count;
     return id;
   }
 
@@ -55,8 +55,7 @@ class AttributeReader {
     return sources;
   }
 
-  void expect_count(std::size_t count) { count_ = count; }
-  [[nodiscard]] std::size_t count() const { return count_.value_or(0); }
+  std::optional<std::size_t> count;  ///< elements of all attributes; none if no attribute was found yet
 
  private:
   [[nodiscard]] std::uint32_t accessor_of(const std::string& name, const JsonValue& json) const {
@@ -68,7 +67,6 @@ class AttributeReader {
   const JsonValue& json_;
   const Data& data_;
   const DecodedPrimitive* decoded_;
-  std::optional<std::size_t> count_;
 };
 
 class Planner {
@@ -161,11 +159,11 @@ class Planner {
       vertices.joints.push_back(joints);
       vertices.weights.push_back(weights);
     }
-    primitive.vertex_count = reader.count();
+    primitive.vertex_count = reader.count.value_or(0);
     json.each("targets", [&](const JsonValue& target) {
       AttributeReader target_reader(target, data_);
       // Displacements are read by the same ranges as the vertices, so their counts must agree.
-      target_reader.expect_count(primitive.vertex_count);
+      target_reader.count = primitive.vertex_count;
       vertices.targets.push_back(target_reader.read_sources());
     });
   }

@@ -46,7 +46,10 @@ bool remap(TextureUse& use, const std::vector<std::uint32_t>& new_numbers) {
 /// Changes a material whose texture is lost. Without its texture a factor would not mean what the file says, so the
 /// layer is removed. Textures that only add colour or bumps are just left out.
 void do_without(const TextureUse* lost, Material& m, const std::string& who, std::vector<std::string>& warnings) {
-  if (lost == &m.metallic_roughness_texture) return lose_metallic_roughness_texture(m, who, warnings);
+  if (lost == &m.metallic_roughness_texture && m.metallic != 0) {
+    m.metallic = 0;  // as most materials; the factor is the greatest value of the texture, not a mean
+    warnings.push_back(who + ": its metallic-roughness texture is missing, so the material is not metallic");
+  }
   if (lost == &m.emissive_texture) return lose_emissive_texture(m, who, warnings);
   const auto lose = [&](auto& layer, const char* name) {
     layer = {};
@@ -78,20 +81,17 @@ std::uint32_t TextureTable::intern(const JsonValue& index, std::vector<std::stri
     warnings.push_back(texture.place() + lack_of_image(texture) + ", materials go without it");
     return lost_texture;
   }
-  read_sampler(texture, look);
+  const std::uint32_t sampler_id = texture.index_or_none("sampler", root_.count("samplers"));
+  if (sampler_id != no_index) {
+    const JsonValue sampler = root_.require("samplers")[sampler_id];
+    look.wrap_u = wrap_of(sampler.unsigned_or("wrapS", repeat_code));
+    look.wrap_v = wrap_of(sampler.unsigned_or("wrapT", repeat_code));
+    look.nearest = sampler.unsigned_or("magFilter", 0) == nearest_code;
+  }
   const auto [entry, is_new] = numbers_.emplace(look, std::uint32_t(looks_.size()));
   // The number is an index of looks_, because it is unknown yet which images can be decoded; load() closes the gaps.
   if (is_new) looks_.push_back(look);
   return entry->second;
-}
-
-void TextureTable::read_sampler(const JsonValue& texture, Look& look) const {
-  const std::uint32_t id = texture.index_or_none("sampler", root_.count("samplers"));
-  if (id == no_index) return;
-  const JsonValue sampler = root_.require("samplers")[id];
-  look.wrap_u = wrap_of(sampler.unsigned_or("wrapS", repeat_code));
-  look.wrap_v = wrap_of(sampler.unsigned_or("wrapT", repeat_code));
-  look.nearest = sampler.unsigned_or("magFilter", 0) == nearest_code;
 }
 
 /// Finds and decodes the images that textures use.
@@ -146,22 +146,19 @@ class TextureTable::ImageLoader {
 
   ImageLoader(const JsonValue& root, const Data& data) : root_(root), data_(data) {}
 
-  /// Finds the images of textures. Images that name the same bytes or file are decoded once: some exporters write an
-  /// image for each material, and hostile files write thousands.
+  /// Textures in the same place share an image: some exporters write one for each material, hostile files thousands.
   void find(const std::vector<Look>& looks) {
     std::map<std::tuple<const std::byte*, std::size_t, std::string>, std::uint32_t> places;
     for (const Look& look : looks) {
       const auto [alike, is_new] = first_alike_.emplace(look.image, look.image);
       if (is_new) {
         Job job;
-        try {
+        note_problem(job, [&] {
           job.encoded = find_image(look.image);
           const auto [place, is_first] =
               places.try_emplace({job.encoded.bytes.data(), job.encoded.bytes.size(), job.encoded.path}, look.image);
-          alike->second = place->second;
-        } catch (const Error& error) {
-          job.problem = root_.source().without_name(error);
-        }
+          first_alike_[look.image] = place->second;
+        });
         if (alike->second == look.image) by_image_.emplace(look.image, std::move(job));
       }
       ++by_image_.at(alike->second).uses;
@@ -170,8 +167,7 @@ class TextureTable::ImageLoader {
 
   /// Reads the images' headers. Images that exceed the budget get a problem, before memory is allocated.
   void check_sizes() {
-    // Buffer views may overlap, and scanning an image's chunks takes time, so each byte may belong to a few images
-    // only.
+    // Buffer views may overlap, and scanning an image takes time, so each byte may belong to a few images only.
     std::uint64_t encoded_left = (std::uint64_t(1) << 24) + 4 * data_.byte_count();
     PixelBudget budget;
     budget.add_file(data_.byte_count());
@@ -179,7 +175,7 @@ class TextureTable::ImageLoader {
       Job& job = entry.second;  // a named reference, because lambdas may not capture structured bindings
       if (!job.problem.empty()) continue;
       const std::string& place = job.encoded.place;
-      try {
+      note_problem(job, [&] {
         if (job.encoded.bytes.size() > encoded_left)
           throw Error(ErrorCode::limit_exceeded, place, "all images together are larger than the file");
         encoded_left -= job.encoded.bytes.size();
@@ -190,9 +186,7 @@ class TextureTable::ImageLoader {
         };
         if (!budget.take(job.uses * with_bytes(job.encoded, pixel_count)))
           throw Error(ErrorCode::limit_exceeded, place, "too many pixels in all images together");
-      } catch (const Error& error) {
-        job.problem = root_.source().without_name(error);
-      }
+      });
     }
   }
 
@@ -203,14 +197,12 @@ class TextureTable::ImageLoader {
     parallel_for(root_.source().execution(), list.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         Job& job = *list[i];
-        try {
+        note_problem(job, [&] {
           job.texture = with_bytes(job.encoded, [&](Bytes bytes, const std::string& name) {
             return decode_texture(bytes, name, root_.source().image_decoder());
           });
           job.texture.name = job.encoded.name;
-        } catch (const Error& error) {
-          job.problem = root_.source().without_name(error);
-        }
+        });
       }
     });
   }
@@ -219,6 +211,16 @@ class TextureTable::ImageLoader {
   [[nodiscard]] Job& job_of(std::uint32_t image) { return by_image_.at(first_alike_.at(image)); }
 
  private:
+  /// Calls `work`, whose error becomes the problem of the image.
+  template <class Work>
+  void note_problem(Job& job, const Work& work) const {
+    try {
+      work();
+    } catch (const Error& error) {
+      job.problem = root_.source().without_name(error);
+    }
+  }
+
   const JsonValue& root_;
   const Data& data_;
   std::map<std::uint32_t, Job> by_image_;

@@ -57,13 +57,7 @@ class MtlReader {
       material().roughness = unit(value());
     } else if (word == "Pm") {
       material().metallic = unit(value());
-    } else {
-      texture_statement(word);
-    }
-  }
-
-  void texture_statement(std::string_view word) {
-    if (word == "map_Kd") {
+    } else if (word == "map_Kd") {
       maps_[number_].color = read_map();
     } else if (word == "map_d") {
       if (!text_.at_line_end()) maps_[number_].alpha = read_map();  // some exporters leave it empty
@@ -164,8 +158,7 @@ class MtlReader {
   /// Combines the colour and alpha maps to one texture, with the options of map_Kd if there is one, else of map_d.
   ///
   /// MTL multiplies Kd and the texture. But exporters write a default grey or black Kd beside a texture that is meant
-  /// unchanged, so Kd only counts if it has a hue. A black Kd also becomes white if the texture cannot be read, and so
-  /// does a black Ke.
+  /// unchanged, so Kd only counts if it has a hue. Without the texture, too, a black Kd or Ke becomes white.
   void finish_material() {
     const auto found = maps_.find(number_);
     if (found == maps_.end()) return;

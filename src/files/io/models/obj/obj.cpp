@@ -31,14 +31,7 @@ struct ObjPool {
   std::vector<glm::vec3> normals;
 };
 
-/// What a polygon adds to its mesh apart from positions.
-struct ObjFace {
-  std::span<const glm::uvec3> triangles;                 ///< as indices of the corners
-  const std::vector<std::uint32_t>&texcoords, &normals;  ///< one per corner; no_index if the corner has none
-  std::uint32_t material;
-};
-
-/// Appends corner indices for the newest triangles. The list starts with the first face that has the attribute.
+/// Appends corner indices for the newest triangles. The list starts with the first face that has any.
 template <class T>
 void add_corners(Attribute<T>& attribute, std::span<const glm::uvec3> triangles,
                  const std::vector<std::uint32_t>& corners, std::size_t triangles_before) {
@@ -62,20 +55,19 @@ class Renumbering {
     for (const std::uint32_t old : used_) numbers_[old] = no_index;
     used_.clear();
     for (glm::uvec3& t : triangles)
-      for (int k = 0; k < 3; ++k)
-        if (t[k] != no_index) t[k] = renumber(t[k]);
+      for (int k = 0; k < 3; ++k) {
+        if (t[k] == no_index) continue;
+        std::uint32_t& number = numbers_[t[k]];
+        if (number == no_index) {
+          number = std::uint32_t(used_.size());
+          used_.push_back(t[k]);
+        }
+        t[k] = number;
+      }
     return used_;
   }
 
  private:
-  std::uint32_t renumber(std::uint32_t old) {
-    if (numbers_[old] == no_index) {
-      numbers_[old] = std::uint32_t(used_.size());
-      used_.push_back(old);
-    }
-    return numbers_[old];
-  }
-
   std::vector<std::uint32_t> numbers_, used_;
 };
 
@@ -105,59 +97,32 @@ void complete(Attribute<T>& attribute, const Mesh& mesh) {
     attribute.triangles = std::vector<glm::uvec3>();
 }
 
-/// Turns the lists of the file, which all faces share, into meshes that own their values. Indices are those of the file
-/// during reading, and are renumbered at the end, in the order of first use, mesh by mesh.
-class ObjMeshes {
- public:
-  /// Starts a mesh.
-  void begin() { is_mixed_ = false; }
-  /// Adds the attributes of the triangles that `mesh` just got. Indices are those of the pool until finish().
-  void add(Mesh& mesh, const ObjFace& face) {
-    const std::size_t before = mesh.triangles.size() - face.triangles.size();
-    add_corners(mesh.texcoords, face.triangles, face.texcoords, before);
-    add_corners(mesh.normals, face.triangles, face.normals, before);
-    if (!face.triangles.empty()) add_material(mesh, before, face.material);
-  }
-  /// Gives each mesh its part of the pool. A single mesh gets the whole pool, in the file's order.
-  void finish(Scene& scene, ObjPool pool) {
-    // A single mesh keeps the file's own numbering, with unused vertices, so that vertex numbers are those of the file.
-    if (scene.meshes.size() == 1) {
-      Mesh& mesh = scene.meshes[0];
-      mesh.positions = std::move(pool.positions);
-      mesh.colors.values = std::move(pool.colors);
-      mesh.texcoords.values = std::move(pool.texcoords);
-      mesh.normals.values = std::move(pool.normals);
-    } else {
-      Renumbering positions(pool.positions.size()), texcoords(pool.texcoords.size()), normals(pool.normals.size());
-      for (Mesh& mesh : scene.meshes) {
-        const auto& used = positions.apply(mesh.triangles);
-        mesh.positions = gather(pool.positions, used);
-        if (!pool.colors.empty()) mesh.colors.values = gather(pool.colors, used);
-        mesh.texcoords.values = gather(pool.texcoords, texcoords.apply(mesh.texcoords.triangles));
-        mesh.normals.values = gather(pool.normals, normals.apply(mesh.normals.triangles));
-      }
-    }
+/// Gives each mesh its part of the pool, renumbered in the order of first use, mesh by mesh. A single mesh keeps the
+/// file's own numbering, with unused vertices, so that vertex numbers are those of the file.
+void finish_meshes(Scene& scene, ObjPool pool) {
+  if (scene.meshes.size() == 1) {
+    Mesh& mesh = scene.meshes[0];
+    mesh.positions = std::move(pool.positions);
+    mesh.colors.values = std::move(pool.colors);
+    mesh.texcoords.values = std::move(pool.texcoords);
+    mesh.normals.values = std::move(pool.normals);
+  } else {
+    Renumbering positions(pool.positions.size()), texcoords(pool.texcoords.size()), normals(pool.normals.size());
     for (Mesh& mesh : scene.meshes) {
-      // This step needs the final positions: their number decides whether a list of corners is needed.
-      complete(mesh.texcoords, mesh);
-      complete(mesh.normals, mesh);
-      if (mesh.material_ids.size() == 1 && mesh.material_ids[0] == no_index) mesh.material_ids.clear();
+      const auto& used = positions.apply(mesh.triangles);
+      mesh.positions = gather(pool.positions, used);
+      if (!pool.colors.empty()) mesh.colors.values = gather(pool.colors, used);
+      mesh.texcoords.values = gather(pool.texcoords, texcoords.apply(mesh.texcoords.triangles));
+      mesh.normals.values = gather(pool.normals, normals.apply(mesh.normals.triangles));
     }
   }
-
- private:
-  void add_material(Mesh& mesh, std::size_t before, std::uint32_t material) {
-    if (before == 0) {
-      mesh.material_ids.assign(1, material);
-    } else if (!is_mixed_ && mesh.material_ids[0] != material) {
-      mesh.material_ids.resize(before, mesh.material_ids[0]);
-      is_mixed_ = true;
-    }
-    if (is_mixed_) mesh.material_ids.resize(mesh.triangles.size(), material);
+  for (Mesh& mesh : scene.meshes) {
+    // This step needs the final positions: their number decides whether a list of corners is needed.
+    complete(mesh.texcoords, mesh);
+    complete(mesh.normals, mesh);
+    if (mesh.material_ids.size() == 1 && mesh.material_ids[0] == no_index) mesh.material_ids.clear();
   }
-
-  bool is_mixed_ = false;  ///< the current mesh has more than one material
-};
+}
 
 /// The indices of a polygon's corners into one list of the file, and the greatest index so far, which may name an
 /// element that the file defines later.
@@ -276,18 +241,16 @@ class ObjReader {
     append(vertices_, index, pool_.positions.size());
     uvs_.corners.push_back(no_index);
     normals_.corners.push_back(no_index);
-    if (!text_.take('/')) return end_corner();
-    if (text_.integer_here(index)) {
-      uvs_.corners.pop_back();
-      append(uvs_, index, pool_.texcoords.size());
+    if (text_.take('/')) {
+      if (text_.integer_here(index)) {
+        uvs_.corners.pop_back();
+        append(uvs_, index, pool_.texcoords.size());
+      }
+      if (text_.take('/') && text_.integer_here(index)) {
+        normals_.corners.pop_back();
+        append(normals_, index, pool_.normals.size());
+      }
     }
-    if (text_.take('/') && text_.integer_here(index)) {
-      normals_.corners.pop_back();
-      append(normals_, index, pool_.normals.size());
-    }
-    return end_corner();
-  }
-  bool end_corner() {
     if (!text_.at_blank()) text_.fail("not a corner of a face");
     return true;
   }
@@ -300,7 +263,6 @@ class ObjReader {
     }
     if (is_new_group_ || scene_.meshes.empty()) {
       add_object(scene_, group_, source_, text_.place());
-      builder_.begin();
       polygons_.restart();
       is_new_group_ = false;
     }
@@ -309,7 +271,11 @@ class ObjReader {
     const auto triangles = polygons_.add(vertices_.corners, pool_.positions, mesh);
     if (polygons_.skipped_count() == 1 && skipped == 0)
       scene_.warnings.push_back(text_.place() + ": a face with fewer than three corners was passed over");
-    builder_.add(mesh, {triangles, uvs_.corners, normals_.corners, material_});
+    // Indices are those of the pool until the end.
+    const std::size_t before = mesh.triangles.size() - triangles.size();
+    add_corners(mesh.texcoords, triangles, uvs_.corners, before);
+    add_corners(mesh.normals, triangles, normals_.corners, before);
+    append_material(mesh.material_ids, before, triangles.size(), material_);
   }
 
   void pass_over(std::string_view word) {
@@ -379,7 +345,7 @@ class ObjReader {
     check_greatest(normals_, pool_.normals.size());
     // A file of only points and lines keeps its positions, as PLY files do, so that a warning can count them.
     if (scene_.meshes.empty() && !pool_.positions.empty()) add_object(scene_, group_, source_, text_.place());
-    builder_.finish(scene_, std::move(pool_));
+    finish_meshes(scene_, std::move(pool_));
     materials_.finish();
   }
 
@@ -392,7 +358,6 @@ class ObjReader {
   ObjPool pool_;
   IndexList vertices_{"vertex", {}, 0, 0}, uvs_{"texture coordinate", {}, 0, 0}, normals_{"normal", {}, 0, 0};
   PolygonWriter polygons_;
-  ObjMeshes builder_;
   std::string object_, group_;
   bool is_new_group_ = false;
   std::uint32_t material_ = no_index;

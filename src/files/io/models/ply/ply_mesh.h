@@ -60,9 +60,6 @@ struct PlyElement {
       size += size_of(property.is_list ? property.count_type : property.type);
     return size;
   }
-  [[nodiscard]] bool has_lists() const {
-    return std::any_of(properties.begin(), properties.end(), [](const PlyProperty& p) { return p.is_list; });
-  }
 };
 
 enum class PlyEncoding : std::uint8_t { ascii, little, big };
@@ -263,14 +260,10 @@ struct Columns {
     }
   }
   [[nodiscard]] bool has(Role role) const {
-    for (const Column& column : list)
-      if (column.role == role) return true;
-    return false;
+    return std::any_of(list.begin(), list.end(), [&](const Column& column) { return column.role == role; });
   }
   [[nodiscard]] bool has_all(std::initializer_list<Role> roles) const {
-    for (const Role role : roles)
-      if (!has(role)) return false;
-    return true;
+    return std::all_of(roles.begin(), roles.end(), [&](Role role) { return has(role); });
   }
 };
 
@@ -337,7 +330,9 @@ class VertexReader {
     for (std::uint64_t i = begin; i < end; ++i) {
       rows.begin_row(element_, i);
       for (const Column& column : columns_.list)
-        if (!read_coordinate(rows, column, row, exact) && !read_float(rows, column, row))
+        if (const auto axis = std::size_t(column.role); column.role <= Role::z)
+          row[axis] = rows.number(column.property.type, exact[int(axis)]);
+        else if (!read_float(rows, column, row))
           skip_value(rows, column.property);
       mesh.positions.push_back(coordinates(three(row, Role::x), exact));
       if (has_normals_) mesh.normals.values.push_back(three(row, Role::nx));
@@ -347,15 +342,6 @@ class VertexReader {
   }
 
  private:
-  /// Reads a value into `row` and `exact` if it is a coordinate. \returns whether it is one.
-  template <class Rows>
-  static bool read_coordinate(Rows& rows, const Column& column, FloatRow& row, glm::dvec3& exact) {
-    if (column.role > Role::z) return false;
-    const auto axis = std::size_t(column.role);
-    row[axis] = rows.number(column.property.type, exact[int(axis)]);
-    return true;
-  }
-
   const PlyElement& element_;
   Columns columns_;
   bool has_normals_ = false, has_texcoords_ = false, has_colors_ = false;
@@ -410,8 +396,7 @@ class FaceReader {
     }
   }
 
-  /// Completes the mesh. Colours of vertices have precedence over those of faces. Strips behind the faces get default
-  /// values.
+  /// Completes the mesh. Colours of vertices have precedence over those of faces. Strips behind the faces get defaults.
   void finish() {
     if (mesh_.colors.empty()) mesh_.colors = std::move(face_colors_);
     const std::size_t count = mesh_.triangles.size();

@@ -141,7 +141,8 @@ class PlyStream final : public ModelStream {
     choose_elements();
     start_ = std::move(start.start);
     if (file_) {
-      vertices_.rows = file_->bytes().subspan(vertex_offset_, std::size_t(vertex_bytes()));
+      const std::uint64_t size = vertices_.element->count * vertices_.element->least_row_size();
+      vertices_.rows = file_->bytes().subspan(vertex_offset_, std::size_t(size));
     } else {
       keep_vertices();
     }
@@ -186,9 +187,6 @@ class PlyStream final : public ModelStream {
 
  private:
   [[nodiscard]] Endian endian() const { return endian_of(header_); }
-  [[nodiscard]] std::uint64_t vertex_bytes() const {
-    return vertices_.element->count * vertices_.element->least_row_size();
-  }
   [[noreturn]] void refuse(const std::string& reason) const {
     throw Error(ErrorCode::unsupported, source_.name(), "header", reason);
   }
@@ -213,7 +211,8 @@ class PlyStream final : public ModelStream {
         face_offset_ = offset;
       }
       if (faces_) continue;  // elements behind the faces are ignored
-      if (element.has_lists()) refuse("element " + in_quotes(element.name) + " has lists, and comes before the faces");
+      if (std::any_of(element.properties.begin(), element.properties.end(), [](const auto& p) { return p.is_list; }))
+        refuse("element " + in_quotes(element.name) + " has lists, and comes before the faces");
       const std::uint64_t row = element.least_row_size();
       if (row > 0 && element.count > (size - std::min(size, offset)) / row)
         fail_within(element, (size - std::min(size, offset)) / row);
@@ -255,9 +254,8 @@ class PlyStream final : public ModelStream {
     source_.fail("header", "the file ends before its rows");
   }
 
-  /// Fills the piece with whole rows. Remaining bytes are kept for the next piece and count for it, because polygons
-  /// make more triangles per byte than triangles do. `again` means that a row was longer than all bytes, so twice as
-  /// many are read.
+  /// Fills the piece with whole rows. Remaining bytes wait for the next piece and count for it, because polygons make
+  /// more triangles a byte than triangles do. `again`: a row was longer than all bytes, so twice as many are read.
   void fetch_rows(StreamPiece& piece, std::uint64_t triangles, bool again) {
     const std::size_t row = faces_->least_row_size() + 3 * corner_size();
     const std::size_t enough = std::max<std::size_t>(std::size_t(triangles) * row, 4096);
@@ -305,8 +303,7 @@ class PlyStream final : public ModelStream {
   bool has_warned_ = false;
 };
 
-/// Reads on until the header is complete. Only the header's parser finds its end: comments and longer words may contain
-/// "end_header", too, and lines may be joined.
+/// Reads on until the header is complete, as its parser finds: comments may hold "end_header", and lines may be joined.
 PlyHeader read_header(StreamStart& start, const ModelSource& source) {
   while (true) {
     const bool is_all = start.has_ended || start.start.size() >= max_header;

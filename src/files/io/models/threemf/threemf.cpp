@@ -4,8 +4,7 @@
 //   package --> start part --> model parts, each read once --> items of the start part --> instances
 //                                                              through components of components, each with a transform
 //
-// Base materials become materials of the scene. Colours become colours of corners, with a plain material, which blends
-// if a colour is transparent.
+// Base materials become the scene's; colours become colours of corners, with a plain material, blended if one is clear.
 //
 // A component may name an object of another part, and a few components can stand for a million instances. So levels are
 // limited, and instances are charged to a budget.
@@ -25,22 +24,18 @@ namespace {
 
 constexpr int most_component_levels = 64;
 
-/// White materials for triangles with their own colours, made at the first request.
-class PlainMaterials {
- public:
-  std::uint32_t get(bool is_see_through, Scene& scene) {
-    std::uint32_t& number = numbers_[is_see_through ? 1 : 0];
-    if (number != no_index) return number;
-    number = std::uint32_t(scene.materials.size());
-    Material& material = scene.materials.emplace_back();
-    material.name = is_see_through ? "colours, see-through" : "colours";
-    if (is_see_through) material.alpha = Material::Alpha::blend;
-    return number;
-  }
+/// Numbers of white materials for triangles with their own colours, opaque and see-through; no_index: not made yet.
+using PlainMaterials = std::array<std::uint32_t, 2>;
 
- private:
-  std::array<std::uint32_t, 2> numbers_{no_index, no_index};
-};
+std::uint32_t plain_material(PlainMaterials& numbers, bool is_see_through, Scene& scene) {
+  std::uint32_t& number = numbers[is_see_through ? 1 : 0];
+  if (number != no_index) return number;
+  number = std::uint32_t(scene.materials.size());
+  Material& material = scene.materials.emplace_back();
+  material.name = is_see_through ? "colours, see-through" : "colours";
+  if (is_see_through) material.alpha = Material::Alpha::blend;
+  return number;
+}
 
 /// Gives colours and materials to one mesh.
 class Painter {
@@ -111,7 +106,7 @@ class Painter {
       if (is_new) mesh_.colors.values.push_back(group.colors[number]);
       mesh_.colors.triangles[triangle][k] = value->second;
     }
-    set_material(triangle, plain_.get(is_see_through, scene_));
+    set_material(triangle, plain_material(plain_, is_see_through, scene_));
   }
 
   const ModelPart& part_;
@@ -141,7 +136,7 @@ using ModelParts = std::map<std::string, ModelPart>;
 /// Reads a part and all parts that it refers to, each once.
 ModelParts read_parts(const std::string& start, Package& package, const ModelSource& source, Scene& scene) {
   ModelParts parts;
-  PlainMaterials plain;
+  PlainMaterials plain{no_index, no_index};
   std::vector<std::string> names{start};
   while (!names.empty()) {
     const std::string name = std::move(names.back());
