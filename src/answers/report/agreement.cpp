@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -42,12 +43,10 @@ struct Question {
   const View& view;
   const SampleRays rays;
   const ScreenRays screen_rays;
-  const std::span<const glm::ivec2> offsets;
   const FacingRule facing;
 
   [[nodiscard]] SampleSquare square(std::size_t sample) const {
-    const std::size_t pixel = sample % view.pixel_count(), width = std::size_t(view.width);
-    return SampleSquare(rays, int(pixel % width), int(pixel / width), offsets[sample / view.pixel_count()]);
+    return SampleSquare(rays, place_of_sample(view, sample));
   }
   /// The triangle of an id. None for invalid ids, and for triangles that are never seen.
   [[nodiscard]] std::optional<ViewedTriangle> triangle(PrimitiveId id) const {
@@ -65,8 +64,7 @@ struct Question {
   [[nodiscard]] bool is_hole(PrimitiveId id, std::size_t sample) const {
     const Cutouts* const cutouts = placed_scene(surfaces).cutouts.get();
     if (!cutouts || !cutouts->has(id)) return false;
-    const std::size_t pixel = sample % view.pixel_count(), width = std::size_t(view.width);
-    const glm::ivec2 at = glm::ivec2(pixel % width, pixel / width) * kSubPixels + offsets[sample / view.pixel_count()];
+    const glm::ivec2 at = place_of_sample(view, sample);
     return ScreenCutout((*cutouts)[id], screen_rays).is_hole(at.x, at.y);
   }
   /// How the square meets a triangle as a method sees it. A culled triangle counts as absent, unless it is so thin that
@@ -85,27 +83,21 @@ struct Question {
 };
 
 /// Checks keys. Keeps the last triangle, since neighbouring samples mostly show the same one.
-class KeyCheck {
- public:
-  explicit KeyCheck(const Question& question) : question_(question) {}
+struct KeyCheck {
+  const Question& question;
+  PrimitiveId last = no_primitive;
+  std::optional<ViewedTriangle> triangle{};
 
   [[nodiscard]] bool is_right(PrimitiveId id, float key, const SampleSquare& square) {
     if (id == no_primitive) return key == 0;
-    if (id != id_) {
-      triangle_ = question_.triangle(id);
-      id_ = id;
-    }
-    if (!triangle_) return false;
-    const double nearness = question_.nearness_of(key);
-    const NearnessRange range = triangle_->nearness(square);
-    return nearness >= range.least.low - triangle_->resolution(range.least.low) &&
-           nearness <= range.greatest.high + triangle_->resolution(range.greatest.high);
+    if (id != last) triangle = question.triangle(id);
+    last = id;
+    if (!triangle) return false;
+    const double nearness = question.nearness_of(key);
+    const NearnessRange range = triangle->nearness(square);
+    return nearness >= range.least.low - triangle->resolution(range.least.low) &&
+           nearness <= range.greatest.high + triangle->resolution(range.greatest.high);
   }
-
- private:
-  const Question& question_;
-  std::optional<ViewedTriangle> triangle_;
-  PrimitiveId id_ = no_primitive;
 };
 
 /// The claim of one answer at a sample that differs.
@@ -126,63 +118,6 @@ struct DifferingSample {
 
 /// For both claims of every sample: true if the scene rules the claim out. Values only change from false to true.
 using RuledOut = std::vector<std::array<std::atomic<bool>, 2>>;
-
-/// The samples that differ, by their position.
-class DifferenceMap {
- public:
-  DifferenceMap(const Question& question, const std::vector<DifferingSample>& samples, const RuledOut& ruled_out,
-                const Execution& execution)
-      : question_(question),
-        view_(question.view),
-        columns_((view_.width + kCell - 1) / kCell),
-        rows_((view_.height + kCell - 1) / kCell),
-        numbers_(
-            std::size_t(columns_) * std::size_t(rows_), samples.size(),
-            [&](std::size_t i, const auto& add) { add(cell_of(samples[i]), i); }, execution),
-        farthest_(numbers_.count(), std::numeric_limits<double>::infinity()) {
-    squares_.reserve(farthest_.size());
-    for (int y = 0; y < rows_; ++y)
-      for (int x = 0; x < columns_; ++x)
-        squares_.emplace_back(question.rays, glm::ivec2(x, y) * kCell, glm::ivec2(x, y) * kCell + (kCell - 1));
-    for (std::size_t i = 0; i < samples.size(); ++i)
-      for (std::size_t k = 0; k < 2; ++k)
-        if (double& farthest = farthest_[cell_of(samples[i])]; !ruled_out[i][k])
-          farthest = std::min(farthest, samples[i].claims[k].nearness);
-  }
-
-  /// Visits the samples in the cells that a triangle and its rectangle of the screen, in pixels, meet. Skips cells
-  /// where the triangle is behind all claims.
-  template <class Visit>
-  void in_rect(const glm::dvec2& low, const glm::dvec2& high, const std::array<glm::vec3, 3>& corners,
-               const Visit& visit) const {
-    std::optional<ViewedTriangle> triangle;
-    const auto cell = [](double at, int count) { return int(std::clamp(std::floor(at / kCell), 0.0, count - 1.0)); };
-    if (high.x < 0 || high.y < 0 || low.x > view_.width || low.y > view_.height) return;
-    const int last_x = cell(high.x, columns_), last_y = cell(high.y, rows_);
-    for (int y = cell(low.y, rows_); y <= last_y; ++y)
-      for (int x = cell(low.x, columns_); x <= last_x; ++x) {
-        const std::size_t c = std::size_t(y) * std::size_t(columns_) + std::size_t(x);
-        if (numbers_[c].empty()) continue;
-        if (!triangle) triangle.emplace(corners, question_.rays);
-        if (triangle->nearness(squares_[c]).greatest.high < farthest_[c]) continue;
-        if (triangle->meeting(squares_[c]) == LineMeeting::misses) continue;
-        for (const std::size_t number : numbers_[c]) visit(number, *triangle);
-      }
-  }
-
- private:
-  [[nodiscard]] std::size_t cell_of(const DifferingSample& sample) const {
-    const std::size_t pixel = sample.number % view_.pixel_count(), width = std::size_t(view_.width);
-    return pixel / width / kCell * std::size_t(columns_) + pixel % width / kCell;
-  }
-
-  const Question& question_;
-  const View& view_;
-  int columns_, rows_;
-  const Buckets<std::size_t> numbers_;  ///< of samples that differ, by cell
-  std::vector<double> farthest_;        ///< by cell: nearness of the farthest of the remaining claims
-  std::vector<SampleSquare> squares_;   ///< by cell, around the squares of all of its samples
-};
 
 /// A rectangle of the screen, in pixels, around the visible part of a triangle.
 struct ScreenRect {
@@ -210,6 +145,64 @@ ScreenRect rect_of(const std::array<glm::vec3, 3>& corners, const View& view, co
   // A margin of one pixel, many times what doubles and the squares need.
   return {rect.low - 1.0, rect.high + 1.0};
 }
+
+/// The samples that differ, by their position.
+class DifferenceMap {
+ public:
+  DifferenceMap(const Question& question, const std::vector<DifferingSample>& samples, const RuledOut& ruled_out,
+                const Execution& execution)
+      : question_(question),
+        view_(question.view),
+        columns_((view_.width + kCell - 1) / kCell),
+        rows_((view_.height + kCell - 1) / kCell),
+        numbers_(
+            std::size_t(columns_) * std::size_t(rows_), samples.size(),
+            [&](std::size_t i, const auto& add) { add(cell_of(samples[i]), i); }, execution),
+        farthest_(numbers_.count(), std::numeric_limits<double>::infinity()) {
+    squares_.reserve(farthest_.size());
+    for (int y = 0; y < rows_; ++y)
+      for (int x = 0; x < columns_; ++x)
+        squares_.emplace_back(question.rays, glm::ivec2(x, y) * (kCell * kSubPixels),
+                              glm::ivec2(x + 1, y + 1) * (kCell * kSubPixels));
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      for (std::size_t k = 0; k < 2; ++k)
+        if (double& farthest = farthest_[cell_of(samples[i])]; !ruled_out[i][k])
+          farthest = std::min(farthest, samples[i].claims[k].nearness);
+  }
+
+  /// Visits the samples in the cells that a triangle and its rectangle of the screen, in pixels, meet. Skips cells
+  /// where the triangle is behind all claims.
+  template <class Visit>
+  void in_rect(const ScreenRect& rect, const std::array<glm::vec3, 3>& corners, const Visit& visit) const {
+    std::optional<ViewedTriangle> triangle;
+    const auto& [low, high] = rect;
+    const auto cell = [](double at, int count) { return int(std::clamp(std::floor(at / kCell), 0.0, count - 1.0)); };
+    if (high.x < 0 || high.y < 0 || low.x > view_.width || low.y > view_.height) return;
+    const int last_x = cell(high.x, columns_), last_y = cell(high.y, rows_);
+    for (int y = cell(low.y, rows_); y <= last_y; ++y)
+      for (int x = cell(low.x, columns_); x <= last_x; ++x) {
+        const std::size_t c = std::size_t(y) * std::size_t(columns_) + std::size_t(x);
+        if (numbers_[c].empty()) continue;
+        if (!triangle) triangle.emplace(corners, question_.rays);
+        if (triangle->nearness(squares_[c]).greatest.high < farthest_[c]) continue;
+        if (triangle->meeting(squares_[c]) == LineMeeting::misses) continue;
+        for (const std::size_t number : numbers_[c]) visit(number, *triangle);
+      }
+  }
+
+ private:
+  [[nodiscard]] std::size_t cell_of(const DifferingSample& sample) const {
+    const std::size_t pixel = sample.number % view_.pixel_count(), width = std::size_t(view_.width);
+    return pixel / width / kCell * std::size_t(columns_) + pixel % width / kCell;
+  }
+
+  const Question& question_;
+  const View& view_;
+  int columns_, rows_;
+  const Buckets<std::size_t> numbers_;  ///< of samples that differ, by cell
+  std::vector<double> farthest_;        ///< by cell: nearness of the farthest of the remaining claims
+  std::vector<SampleSquare> squares_;   ///< by cell, around the squares of all of its samples
+};
 
 /// Rules out claims of a sample that triangle `id` contradicts, if the triangle surely covers the sample.
 void rule_out_by(const Question& question, PrimitiveId id, const ViewedTriangle& triangle,
@@ -244,10 +237,10 @@ void compare_all_triangles(const Question& question, const std::vector<Differing
     for (auto id = PrimitiveId(begin); id < end; ++id) {
       const std::array<glm::vec3, 3> corners = question.surfaces.corners(id);
       if (!are_finite(corners)) continue;
-      const ScreenRect rect = rect_of(corners, question.view, eye_from_world);
-      map.in_rect(rect.low, rect.high, corners, [&](std::size_t number, const ViewedTriangle& triangle) {
-        rule_out_by(question, id, triangle, samples[number], ruled_out[number]);
-      });
+      map.in_rect(rect_of(corners, question.view, eye_from_world), corners,
+                  [&](std::size_t number, const ViewedTriangle& triangle) {
+                    rule_out_by(question, id, triangle, samples[number], ruled_out[number]);
+                  });
     }
   });
 }
@@ -279,7 +272,7 @@ void look_at_samples(const Question& question, const Visible& a, const Visible& 
                      Agreement& result) {
   const std::size_t width = std::size_t(question.view.width), rows = question.view.sample_count() / width;
   parallel_for(execution, rows, kRowGrain, [&](std::size_t begin, std::size_t end) {
-    std::array<KeyCheck, 2> checks{KeyCheck(question), KeyCheck(question)};
+    std::array<KeyCheck, 2> checks{KeyCheck{question}, KeyCheck{question}};
     for (std::size_t i = begin * width; i < end * width; ++i) {
       Difference& difference = result.differences[i];
       const PrimitiveId ids[] = {a.primitives[i], b.primitives[i]};
@@ -320,10 +313,7 @@ std::string_view name(Difference difference) {
 }
 
 std::uint64_t Agreement::differing() const {
-  std::uint64_t sum = 0;
-  for (const Difference d : {Difference::edge, Difference::depth, Difference::translucent, Difference::unexplained})
-    sum += count(d);
-  return sum;
+  return std::accumulate(counts.begin() + 1, counts.end(), std::uint64_t(0));  // without Difference::none
 }
 
 Agreement check_agreement(const Surfaces& surfaces, const Visible& a, const Visible& b, const Execution& execution) {
@@ -333,11 +323,7 @@ Agreement check_agreement(const Surfaces& surfaces, const Visible& a, const Visi
   Agreement result;
   result.view = a.view;
   result.differences = Buffer<Difference>(a.primitives.size());
-  const Question question{surfaces,
-                          result.view,
-                          SampleRays(a.view),
-                          ScreenRays(a.view),
-                          sample_offsets(a.view.samples),
+  const Question question{surfaces, result.view, SampleRays(a.view), ScreenRays(a.view),
                           FacingRule(a.view.culling, placed_scene(surfaces).sides.get())};
   look_at_samples(question, a, b, execution, result);
   const std::vector<DifferingSample> samples = differing_samples(question, a, b, result);

@@ -18,8 +18,9 @@ namespace frontmost {
 /// The square, as the rays through its corners, in order around it.
 struct SampleSquare {
   std::array<SampleRay, 4> corners;
-  SampleSquare(const SampleRays& rays, int x, int y, const glm::ivec2& offset);
-  /// A rectangle that holds the squares of all samples of pixels from `low` to `high`.
+  /// The square around a place of the picture, in 1/256 pixel.
+  SampleSquare(const SampleRays& rays, const glm::ivec2& place) : SampleSquare(rays, place, place) {}
+  /// A rectangle that holds the squares around all places from `low` to `high`.
   SampleSquare(const SampleRays& rays, const glm::ivec2& low, const glm::ivec2& high);
 };
 
@@ -56,9 +57,7 @@ class ViewedTriangle {
   [[nodiscard]] LineMeeting between_planes(const SampleSquare& square) const;
   [[nodiscard]] Fraction exact_nearness(const SampleRay& ray, int extreme) const;
   [[nodiscard]] Fraction exact_limit(int extreme) const;
-  [[nodiscard]] static Fraction exact_extreme(const ViewedTriangle& triangle, const SampleSquare& square, int extreme);
-  [[nodiscard]] static bool exactly_nearer(const ViewedTriangle& a, const ViewedTriangle& b,
-                                           const SampleSquare& square);
+  [[nodiscard]] Fraction exact_extreme(const SampleSquare& square, int extreme) const;
   [[nodiscard]] double of_depth(double depth) const;
   [[nodiscard]] DepthBounds nearness_at(const SampleRay& ray) const;
 
