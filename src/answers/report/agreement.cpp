@@ -245,18 +245,6 @@ void compare_all_triangles(const Question& question, const std::vector<Differing
   });
 }
 
-DifferingSample differing_sample(const Question& question, std::size_t number, PrimitiveId a, PrimitiveId b) {
-  DifferingSample sample{number, question.square(number), {Claim{a, {}}, Claim{b, {}}}};
-  for (Claim& claim : sample.claims) {
-    if (claim.id == no_primitive) continue;
-    claim.triangle = question.triangle(claim.id);
-    if (claim.triangle) claim.nearness = claim.triangle->nearness(sample.square).greatest.low;
-    claim.meeting =
-        claim.triangle ? question.meeting(*claim.triangle, claim.id, sample.square, number) : LineMeeting::misses;
-  }
-  return sample;
-}
-
 Difference verdict(const DifferingSample& sample, const std::array<std::atomic<bool>, 2>& ruled_out) {
   bool all_contain = true;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -290,9 +278,17 @@ void look_at_samples(const Question& question, const Visible& a, const Visible& 
 std::vector<DifferingSample> differing_samples(const Question& question, const Visible& a, const Visible& b,
                                                const Agreement& result) {
   std::vector<DifferingSample> samples;
-  for (std::size_t i = 0; i < result.differences.size(); ++i)
-    if (result.differences[i] == Difference::edge)
-      samples.push_back(differing_sample(question, i, a.primitives[i], b.primitives[i]));
+  for (std::size_t i = 0; i < result.differences.size(); ++i) {
+    if (result.differences[i] != Difference::edge) continue;
+    samples.push_back({i, question.square(i), {Claim{a.primitives[i], {}}, Claim{b.primitives[i], {}}}});
+    const SampleSquare& square = samples.back().square;
+    for (Claim& claim : samples.back().claims) {
+      if (claim.id == no_primitive) continue;
+      claim.triangle = question.triangle(claim.id);
+      claim.meeting = claim.triangle ? question.meeting(*claim.triangle, claim.id, square, i) : LineMeeting::misses;
+      if (claim.triangle) claim.nearness = claim.triangle->nearness(square).greatest.low;
+    }
+  }
   return samples;
 }
 

@@ -4,8 +4,8 @@
 // N. Reed. Depth Precision Visualized. 2015. E. Lengyel. Foundations of Game Engine Development 2. 2019, 7.2.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
+#include "base/memory.h"
 #include "frontmost/precision.h"
 
 namespace frontmost {
@@ -14,13 +14,10 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void check(const DepthSetup& setup, double distance) {
-  Projection p;
-  p.orthographic = setup.orthographic;
-  p.clip = setup.clip;
   if (setup.orthographic)
-    (void)make_orthographic(-1, 1, -1, 1, p.clip);
+    (void)make_orthographic(-1, 1, -1, 1, setup.clip);
   else
-    (void)make_frustum(-1, 1, -1, 1, p.clip);
+    (void)make_frustum(-1, 1, -1, 1, setup.clip);
   if (!(distance >= setup.clip.near && distance <= setup.clip.far) || !std::isfinite(distance))
     throw Error(ErrorCode::bad_argument, "distance", "must lie between near and far");
 }
@@ -43,10 +40,6 @@ double float_spacing(double depth) {
 
 /// Spacing of floats below `depth`: half as much if `depth` is a power of two.
 double spacing_below(double depth) { return float_spacing(depth * (1 - 1e-12)); }
-
-/// The difference from which two keys (see Visible in view.h) round to different floats. Depths are made from keys, so
-/// the finer values of a float buffer next to zero gain nothing.
-double key_step(double key) { return spacing_below(key); }
 
 /// A difference of z with which two depths never share a value; the first depth is `depth`, the second is farther away.
 double full_step(const DepthSetup& setup, double depth) {
@@ -78,13 +71,6 @@ double rounding(const DepthSetup& setup, double distance, double reach) {
   return kUnit * (9 * reach + 2 * (setup.orthographic ? setup.clip.far - distance : distance));
 }
 
-double bits_of(double depth) {
-  const auto rounded = float(depth);
-  std::uint32_t bits;
-  std::memcpy(&bits, &rounded, sizeof bits);
-  return bits;
-}
-
 /// For floats that are not reversed. The gap only shrinks as the near plane moves away from the eye.
 std::optional<double> bisected_near(DepthSetup setup, double distance, double gap) {
   double low = std::log(distance) - 70, high = std::log(distance);
@@ -104,9 +90,11 @@ double resolvable_gap(const DepthSetup& setup, double distance) {
   const auto& [near, far] = setup.clip;
   const bool is_float = setup.format == DepthFormat::f32;
   const double step = full_step(setup, depth_of(setup, distance));
-  if (setup.orthographic)
-    return std::max(step, is_float ? key_step((far - distance) / (far - near)) : 0.0) * (far - near);
-  return gap_of(distance, std::max(step * span(setup.clip), is_float ? key_step(near / distance) : 0.0) / near);
+  // Depths are made from keys (see Visible in view.h), so the finer values of a float buffer next to zero gain nothing.
+  const double key = setup.orthographic ? (far - distance) / (far - near) : near / distance;
+  const double key_step = is_float ? spacing_below(key) : 0;
+  if (setup.orthographic) return std::max(step, key_step) * (far - near);
+  return gap_of(distance, std::max(step * span(setup.clip), key_step) / near);
 }
 
 double rounding_gap(const DepthSetup& setup, double distance, std::optional<double> reach) {
@@ -129,7 +117,8 @@ double share_of_values(const DepthSetup& setup, double distance) {
   check(setup, distance);
   const double depth = depth_of(setup, distance);
   if (setup.format != DepthFormat::f32) return setup.reversed ? 1 - depth : depth;
-  const double share = bits_of(depth) / bits_of(1);
+  // Floats that are not negative are ordered like their bits.
+  const double share = double(bits_as<std::uint32_t>(float(depth))) / bits_as<std::uint32_t>(1.0f);
   return setup.reversed ? 1 - share : share;
 }
 

@@ -26,17 +26,13 @@ namespace frontmost {
 namespace {
 
 void add(Oddities& sum, const Oddities& odd) {
-  sum.non_finite_triangles += odd.non_finite_triangles;
-  sum.degenerate_triangles += odd.degenerate_triangles;
-  sum.duplicate_triangles += odd.duplicate_triangles;
-  sum.boundary_edges += odd.boundary_edges;
-  sum.non_manifold_edges += odd.non_manifold_edges;
-  sum.inconsistent_edges += odd.inconsistent_edges;
+  using O = Oddities;
+  for (std::uint64_t O::*const count : {&O::non_finite_triangles, &O::degenerate_triangles, &O::duplicate_triangles,
+                                        &O::boundary_edges, &O::non_manifold_edges, &O::inconsistent_edges})
+    sum.*count += odd.*count;
 }
 
-constexpr std::size_t kMaxTriangles = std::size_t(1) << 29;  // leaves a free bit beside a half-edge's number
 constexpr std::size_t kGrain = std::size_t(1) << 14;
-constexpr std::uint32_t kUnpaired = no_index;
 
 /// A half-edge among those with the same lower point.
 struct HalfEdge {
@@ -45,10 +41,8 @@ struct HalfEdge {
 
   static constexpr std::uint32_t backward = 1u << 31;
   [[nodiscard]] std::uint32_t number() const { return marked & ~backward; }
-  friend bool operator<(const HalfEdge& a, const HalfEdge& b) {
-    return a.upper != b.upper ? a.upper < b.upper : a.number() < b.number();
-  }
-  [[nodiscard]] bool is_same(const HalfEdge& other) const { return upper == other.upper; }
+  friend bool operator<(const HalfEdge& a, const HalfEdge& b) { return a.upper < b.upper; }
+  friend bool operator==(const HalfEdge& a, const HalfEdge& b) { return a.upper == b.upper; }
 };
 
 /// The two greater points of a triangle, among the triangles with the same least point.
@@ -56,7 +50,6 @@ struct UpperPoints {
   std::uint32_t middle, last;
 
   friend auto operator<=>(const UpperPoints&, const UpperPoints&) = default;
-  [[nodiscard]] bool is_same(const UpperPoints& other) const { return *this == other; }
 };
 
 /// Calls visit(group, sums) for each group of equal items of a bucket, from several threads, and adds all `sums` to
@@ -70,7 +63,7 @@ void for_each_group(Buckets<Item>& buckets, const Execution& execution, Oddities
       const std::span<Item> items = buckets[bucket];
       std::sort(items.begin(), items.end());
       for (auto first = items.begin(); first != items.end();) {
-        const auto last = std::find_if(first, items.end(), [&](const Item& item) { return !item.is_same(*first); });
+        const auto last = std::find_if(first, items.end(), [&](const Item& item) { return !(item == *first); });
         visit(std::span<const Item>(first, last), sums);
         first = last;
       }
@@ -153,7 +146,7 @@ class MeshTopology {
 
   // Counts edges by their number of triangles, joins the triangles of each edge, and pairs opposite half-edges.
   void join_edges(Oddities& odd) {
-    twins_.assign(3 * corners_.size(), kUnpaired);
+    twins_.assign(3 * corners_.size(), no_index);
     const auto list = [&](std::size_t t, const auto& add) {
       if (!has_edges(kinds_[t])) return;
       for (int k = 0; k < 3; ++k) {
@@ -184,7 +177,7 @@ class MeshTopology {
     std::uint64_t fans = 0;
     std::vector<bool> seen(twins_.size(), false);
     for (std::uint32_t start = 0; start < twins_.size(); ++start) {
-      if (seen[start] || twins_[start] == kUnpaired) continue;
+      if (seen[start] || twins_[start] == no_index) continue;
       ++fans;
       // The previous half-edge in its triangle ends where this one starts, so its twin starts there, too.
       for (std::uint32_t h = start; !seen[h]; h = twins_[h % 3 == 0 ? h + 2 : h - 1]) seen[h] = true;
@@ -241,6 +234,7 @@ std::uint64_t face_count(const Mesh& mesh) {
 
 /// Reports a mesh. Sets `points` to the different positions of finite triangles. Precondition: indices are in range.
 MeshReport report_mesh(const Mesh& mesh, const Execution& execution, std::vector<glm::vec3>& points) {
+  constexpr std::size_t kMaxTriangles = std::size_t(1) << 29;  // leaves a free bit beside a half-edge's number
   if (mesh.triangles.size() > kMaxTriangles)
     throw Error(ErrorCode::limit_exceeded, "mesh " + mesh.name, "more than 536870912 triangles to examine");
   MeshReport report;
@@ -282,23 +276,22 @@ struct Measures {
 /// cause cancellation.
 Measures measures_of(const Mesh& mesh, const glm::dmat4& world_from_mesh, const Box& bounds,
                      const Execution& execution) {
-  constexpr std::size_t block = std::size_t(1) << 14;
-  std::vector<Measures> sums((mesh.triangles.size() + block - 1) / block);
+  std::vector<Measures> sums((mesh.triangles.size() + kGrain - 1) / kGrain);
   const glm::dvec3 tip = (glm::dvec3(bounds.low) + glm::dvec3(bounds.high)) * 0.5;
   const auto world = [&](std::uint32_t vertex) {
     return glm::dvec3(world_from_mesh * glm::dvec4(glm::dvec3(mesh.positions[vertex]), 1));
   };
-  parallel_for(execution, sums.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b)
-      for (std::size_t t = b * block; t < std::min((b + 1) * block, mesh.triangles.size()); ++t) {
-        const glm::uvec3& c = mesh.triangles[t];
-        const glm::dvec3 p = world(c.x) - tip, q = world(c.y) - tip, r = world(c.z) - tip;
-        const glm::dvec3 across = glm::cross(q - p, r - p);
-        const double area = 0.5 * glm::length(across), volume = glm::dot(p, across) / 6;
-        if (!std::isfinite(area) || !std::isfinite(volume)) continue;
-        sums[b].area += area;
-        sums[b].volume += volume;
-      }
+  parallel_for(execution, mesh.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    Measures& sum = sums[begin / kGrain];
+    for (std::size_t t = begin; t < end; ++t) {
+      const glm::uvec3& c = mesh.triangles[t];
+      const glm::dvec3 p = world(c.x) - tip, q = world(c.y) - tip, r = world(c.z) - tip;
+      const glm::dvec3 across = glm::cross(q - p, r - p);
+      const double area = 0.5 * glm::length(across), volume = glm::dot(p, across) / 6;
+      if (!std::isfinite(area) || !std::isfinite(volume)) continue;
+      sum.area += area;
+      sum.volume += volume;
+    }
   });
   Measures all;
   for (const Measures& sum : sums) all = {all.area + sum.area, all.volume + sum.volume};
@@ -324,7 +317,7 @@ MaterialReport report_material(const Material& material) {
 
 glm::dvec3 unit(const glm::dvec4& v) {
   const glm::dvec3 direction(v);
-  const double length = std::sqrt(glm::dot(direction, direction));
+  const double length = glm::length(direction);
   return length > 0 ? direction / length : direction;
 }
 
@@ -363,8 +356,6 @@ void report_objects(const Scene& scene, const std::vector<std::uint32_t>& instan
   }
 }
 
-constexpr double millimetre = 0.001, centimetre = 0.01, inch = 0.0254, metre = 1;
-
 }  // namespace
 
 SceneReport inspect(const Scene& scene, const Execution& execution) {
@@ -398,10 +389,10 @@ std::vector<double> likely_units(const Box& bounds) {
   if (bounds.is_empty()) return {};
   const glm::dvec3 size = glm::dvec3(bounds.high) - glm::dvec3(bounds.low);
   const double greatest = std::max({size.x, size.y, size.z});
-  constexpr double least_part = 5, greatest_part = 2000, grain = 1, least_in_metres = 0.001;
-  if (!(greatest >= least_in_metres && greatest <= greatest_part)) return {};
-  if (greatest >= least_part) return {millimetre};
-  if (greatest < grain) return {metre};
+  constexpr double millimetre = 0.001, centimetre = 0.01, inch = 0.0254, metre = 1;
+  if (!(greatest >= 0.001 && greatest <= 2000)) return {};
+  if (greatest >= 5) return {millimetre};
+  if (greatest < 1) return {metre};
   return {centimetre, inch, metre};
 }
 
