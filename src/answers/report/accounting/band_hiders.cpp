@@ -53,6 +53,7 @@ void combine(std::vector<HiddenSamples>& pairs) {
       pairs[count++] = pair;
   }
   pairs.resize(count);
+  pairs.shrink_to_fit();
 }
 
 /// Searches one band after another. For one thread; borrows everything.
@@ -68,7 +69,7 @@ class BandHiders {
         columns_(std::size_t(canvas.view.width + kWordPixels - 1) / kWordPixels),
         fronts_(std::size_t(kBandRows) * kWordPixels) {}
 
-  /// Adds the hidden samples with one sample number, in the pixels of the band that begins at row y0.
+  /// Finds the hidden samples with one sample number, in the pixels of the band that begins at row y0.
   void find(std::size_t sample, int y0, HiderLists& lists) {
     offset_ = sample_offsets(canvas_.view.samples)[sample];
     band_ = {0, y0, canvas_.view.width - 1, std::min(y0 + kBandRows, canvas_.view.height) - 1};
@@ -80,15 +81,12 @@ class BandHiders {
       const PixelRect rect = common_part({box.x, box.y, box.x + box.width - 1, box.y + box.height - 1}, band_);
       if (!box.is_empty() && !rect.is_empty()) add_object(i, rect);
     }
-    HiderLists found;
     for (const std::vector<HiderPiece>& column : columns_) {
-      compare_pieces(column, found.any);
-      find_fronts(column, found.only);
+      compare_pieces(column, lists.any);
+      find_fronts(column, lists.only);
     }
-    combine(found.any);
-    combine(found.only);
-    lists.any.insert(lists.any.end(), found.any.begin(), found.any.end());
-    lists.only.insert(lists.only.end(), found.only.begin(), found.only.end());
+    combine(lists.any);
+    combine(lists.only);
   }
 
  private:

@@ -165,14 +165,8 @@ void ObjectMask::draw_small() {
 
 void ObjectMask::draw_large(const TriangleRecord& record) {
   touched_ = around(touched_, pixel_rect(record, canvas_.view.width, canvas_.view.height));
-  if (scene_.cutouts && scene_.cutouts->has(record.id)) {
-    cutouts_.push_back(record);
-    return;
-  }
-  for (const MaskPlane& plane : planes_) {
-    find_spans(plane, record, spans_, target_.isa);
-    mark_spans(plane, spans_, target_.isa);
-  }
+  if (scene_.cutouts && scene_.cutouts->has(record.id)) return cutouts_.push_back(record);
+  for (const MaskPlane& plane : planes_) mark_triangle(plane, record, target_.isa);
 }
 
 void ObjectMask::draw_cutout(const TriangleRecord& record) {

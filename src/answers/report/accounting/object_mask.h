@@ -134,10 +134,10 @@ struct SampleCounts {
 
 /// Marks the samples that the first `count` triangles of a batch cover. Corners are relative to the canvas' top left.
 void mark_triangles(const MaskPlane& plane, const BatchColumns& columns, std::size_t count, Isa isa);
+/// Marks the samples that a triangle of any size covers.
+void mark_triangle(const MaskPlane& plane, const TriangleRecord& record, Isa isa);
 /// Finds the span of each row that a triangle of any size covers.
 void find_spans(const MaskPlane& plane, const TriangleRecord& record, RowSpans& spans, Isa isa);
-/// Marks the spans.
-void mark_spans(const MaskPlane& plane, const RowSpans& spans, Isa isa);
 
 /// Counts the marked samples in a rectangle of the plane.
 [[nodiscard]] MarkedSamples count_marked(const MaskPlane& plane, const PixelRect& rect, Isa isa);
