@@ -9,6 +9,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -35,6 +36,14 @@ struct Range {
 /// A rectangle of the picture, in pixels.
 struct CellBox {
   double left, top, right, bottom;
+
+  /// Whether a range of x and y reaches into the box, beyond its sides.
+  [[nodiscard]] bool meets(const Range& x, const Range& y) const {
+    return x.high > left && x.low < right && y.high > top && y.low < bottom;
+  }
+  [[nodiscard]] bool holds(const Range& x, const Range& y) const {
+    return x.low >= left && x.high <= right && y.low >= top && y.high <= bottom;
+  }
 };
 
 /// A triangle, or a part of a clipped one.
@@ -47,6 +56,11 @@ struct ViewedFaces {
   Buffer<ScreenPoint> points;   ///< vertices, by instance and number, then points of clipped triangles
   Buffer<ViewedFace> faces;     ///< by id, ascending; parts of one triangle follow each other
   Buffer<std::uint8_t> ending;  ///< by face, bit k: a surface ends at side k, from corner k to the next
+
+  [[nodiscard]] std::array<ScreenPoint, 3> corners(std::size_t face) const {
+    const auto& c = faces[face].corners;
+    return {points[c[0]], points[c[1]], points[c[2]]};
+  }
 };
 
 /// Twice the area, positive if the corners turn to the right as seen (y points down).

@@ -255,6 +255,12 @@ glm::dvec2 ConvexArea::centre() const {
   return sum / double(corners_.size());
 }
 
+std::pair<double, double> rows_of(std::span<const glm::dvec2> corners) {
+  const auto is_above = [](const glm::dvec2& a, const glm::dvec2& b) { return a.y < b.y; };
+  const auto [top, bottom] = std::minmax_element(corners.begin(), corners.end(), is_above);
+  return {top->y, bottom->y};
+}
+
 RowSpan span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, int width) {
   double low = -1, high = width;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -297,8 +303,6 @@ const ConvexArea& RiskFinder::of_pair(const ScreenFace& a, const ScreenFace& b) 
 }
 
 const ConvexArea& RiskFinder::of_clear_value(const ScreenFace& face) {
-  area_.assign({});
-  if (!may_be_clear_value(face)) return area_;
   const KeyOverScreen keys = face.keys();
   area_.assign(corners_of(face));
   cut_by_frame();

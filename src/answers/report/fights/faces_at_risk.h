@@ -95,6 +95,9 @@ class ConvexArea {
   std::vector<glm::dvec2> corners_, before_;
 };
 
+/// The least and the greatest y of some corners.
+[[nodiscard]] std::pair<double, double> rows_of(std::span<const glm::dvec2> corners);
+
 /// Pixels [first, end) of a row.
 struct RowSpan {
   int first, end;
@@ -109,13 +112,12 @@ struct RowSpan {
 template <class Visit>
 void visit_samples(std::span<const glm::dvec2> corners, const View& view, int step, const Visit& visit) {
   const auto from = [&](int first) { return (first + step - 1) / step * step; };
-  const auto [top, bottom] =
-      std::minmax_element(corners.begin(), corners.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
+  const auto [top, bottom] = rows_of(corners);
   const std::span<const glm::ivec2> samples = sample_offsets(view.samples);
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const glm::dvec2 offset = glm::dvec2(samples[s]) / double(kSubPixels);
-    for (int y = from(std::max(int(std::floor(top->y - offset.y)), 0)); y < view.height; y += step) {
-      if (y + offset.y > bottom->y + 1) break;
+    for (int y = from(std::max(int(std::floor(top - offset.y)), 0)); y < view.height; y += step) {
+      if (y + offset.y > bottom + 1) break;
       const RowSpan row = span_of(corners, {offset.x, y + offset.y}, view.width);
       const std::size_t first = (s * std::size_t(view.height) + std::size_t(y)) * std::size_t(view.width);
       for (int x = from(row.first); x < row.end; x += step) visit(first + std::size_t(x), x, y, offset);

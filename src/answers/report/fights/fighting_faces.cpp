@@ -54,12 +54,6 @@ struct CellFace {
   }
 };
 
-/// The faces of one cell, and the indices of those near one of them. Reused from cell to cell.
-struct CellScratch {
-  std::vector<CellFace> entries;
-  std::vector<std::uint32_t> near;
-};
-
 /// Whether all of `b` lies on the outer side of a side of `a`, or on that side.
 bool is_parted_by_side(const TriangleRecord& a, const TriangleRecord& b) {
   for (int k = 0; k < 3; ++k) {
@@ -92,7 +86,6 @@ class FaceCells {
         for (int x = cells.x0; x <= cells.x1; ++x) add(std::size_t(y) * std::size_t(columns_) + std::size_t(x));
     });
   }
-  [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
 
   /// The text of an error, which names the cell with the most faces.
@@ -111,36 +104,41 @@ class FaceCells {
            at(x + 1, view_.width) + "," + at(y + 1, view_.height) + "; leave out faces that lie there many times";
   }
 
-  /// Appends the pairs that are found in this cell.
-  void find_pairs(int column, int row, CellScratch& scratch, PairLimits& limits, std::vector<FacePair>& pairs) const {
-    std::vector<CellFace>& entries = scratch.entries;
-    entries.clear();
-    for (const std::uint32_t i : lists_.of(std::size_t(row) * std::size_t(columns_) + std::size_t(column)))
-      entries.emplace_back(faces_[i], i);
-    std::sort(entries.begin(), entries.end(), [](const CellFace& a, const CellFace& b) { return a.x0 < b.x0; });
-    scratch.near.resize(entries.size());
+  /// The pairs that are found in a row of cells.
+  [[nodiscard]] std::vector<FacePair> find_pairs(int row, PairLimits& limits) const {
     constexpr std::size_t kLooksAtOnce = 1 << 12;
-    std::size_t looks = 0, told = pairs.size();
+    std::vector<FacePair> pairs;
+    std::vector<CellFace> entries;    // the faces of one cell
+    std::vector<std::uint32_t> near;  // indices of the faces near one of them
+    std::size_t looks = 0, told = 0;
     const auto tell = [&] {
       limits.looks.add(looks, [&] { return too_many("faces lie over each other"); });
       limits.pairs.add(pairs.size() - told, [&] { return too_many("pairs of faces lie close to each other"); });
       looks = 0;
       told = pairs.size();
     };
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      const CellFace& a = entries[i];
-      const NearFaces found = collect_near(i, entries, scratch.near.data());
-      for (std::size_t n = 0; n < found.count; ++n) {
-        const CellFace& b = entries[scratch.near[n]];
-        if (cell_of(b.x0, columns_) != column || cell_of(std::max(a.y0, b.y0), rows_) != row) continue;
-        const TriangleRecord &p = faces_[a.face].record, &q = faces_[b.face].record;
-        if (p.id == q.id || is_parted_by_side(p, q) || is_parted_by_side(q, p)) continue;
-        pairs.push_back({std::min(a.face, b.face), std::max(a.face, b.face)});
+    for (int column = 0; column < columns_; ++column) {
+      entries.clear();
+      for (const std::uint32_t i : lists_.of(std::size_t(row) * std::size_t(columns_) + std::size_t(column)))
+        entries.emplace_back(faces_[i], i);
+      std::sort(entries.begin(), entries.end(), [](const CellFace& a, const CellFace& b) { return a.x0 < b.x0; });
+      near.resize(entries.size());
+      for (std::size_t i = 0; i < entries.size(); ++i) {
+        const CellFace& a = entries[i];
+        const NearFaces found = collect_near(i, entries, near.data());
+        for (std::size_t n = 0; n < found.count; ++n) {
+          const CellFace& b = entries[near[n]];
+          if (cell_of(b.x0, columns_) != column || cell_of(std::max(a.y0, b.y0), rows_) != row) continue;
+          const TriangleRecord &p = faces_[a.face].record, &q = faces_[b.face].record;
+          if (p.id == q.id || is_parted_by_side(p, q) || is_parted_by_side(q, p)) continue;
+          pairs.push_back({std::min(a.face, b.face), std::max(a.face, b.face)});
+        }
+        looks += found.looks;
+        if (looks > kLooksAtOnce) tell();
       }
-      looks += found.looks;
-      if (looks > kLooksAtOnce) tell();
+      tell();
     }
-    tell();
+    return pairs;
   }
 
  private:
@@ -170,10 +168,8 @@ class FaceCells {
     return std::min(std::max(place, 0) >> shift_, cells - 1);
   }
   [[nodiscard]] PixelRect cells_of(const ScreenFace& face) const {
-    const TriangleRecord& r = face.record;
-    const auto [x0, x1] = std::minmax({r.x[0], r.x[1], r.x[2]});
-    const auto [y0, y1] = std::minmax({r.y[0], r.y[1], r.y[2]});
-    return {cell_of(x0, columns_), cell_of(y0, rows_), cell_of(x1, columns_), cell_of(y1, rows_)};
+    const CellFace f(face, 0);
+    return {cell_of(f.x0, columns_), cell_of(f.y0, rows_), cell_of(f.x1, columns_), cell_of(f.y1, rows_)};
   }
   [[nodiscard]] std::size_t cells_of_all() const {
     std::size_t sum = 0;
@@ -198,26 +194,18 @@ std::vector<FacePair> find_face_pairs(const std::vector<ScreenFace>& faces, cons
   std::vector<std::vector<FacePair>> by_row(std::size_t(cells.rows()));
   constexpr std::uint64_t kMostLooks = std::uint64_t(1) << 28, kMostPairs = std::uint64_t(1) << 24;
   PairLimits limits{{execution, kMostLooks, kPlace}, {execution, kMostPairs, kPlace}};
-  parallel_for(execution, by_row.size(), 1, [&](std::size_t row, std::size_t) {
-    CellScratch scratch;
-    for (int column = 0; column < cells.columns(); ++column)
-      cells.find_pairs(column, int(row), scratch, limits, by_row[row]);
-  });
+  parallel_for(execution, by_row.size(), 1,
+               [&](std::size_t row, std::size_t) { by_row[row] = cells.find_pairs(int(row), limits); });
   std::vector<FacePair> pairs;
   for (const std::vector<FacePair>& row : by_row) pairs.insert(pairs.end(), row.begin(), row.end());
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
 
-bool share_corner(const std::array<glm::vec3, 3>& a, const std::array<glm::vec3, 3>& b) {
-  return std::any_of(a.begin(), a.end(),
-                     [&](const glm::vec3& corner) { return std::find(b.begin(), b.end(), corner) != b.end(); });
-}
-
 FightKind kind_of(const Surfaces& surfaces, PrimitiveId first, PrimitiveId second) {
   const auto a = surfaces.corners(first), b = surfaces.corners(second);
   if (lie_in_one_plane(a, b)) return FightKind::one_plane;
-  return share_corner(a, b) ? FightKind::fold : FightKind::close;
+  return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end() ? FightKind::fold : FightKind::close;
 }
 
 /// Areas in the order in which they were found.
@@ -299,22 +287,11 @@ struct Chord {
   }
 };
 
-struct VerticalReach {
-  double top, bottom;
-
-  explicit VerticalReach(std::span<const glm::dvec2> corners) : top(corners[0].y), bottom(top) {
-    for (const glm::dvec2& corner : corners) {
-      top = std::min(top, corner.y);
-      bottom = std::max(bottom, corner.y);
-    }
-  }
-};
-
 /// Appends the chords of an area with the lines at (n + 0.5) * spacing.
 void append_chords(std::span<const glm::dvec2> corners, double spacing, std::vector<Chord>& chords) {
-  const VerticalReach height(corners);
-  auto line = std::int64_t(std::ceil(height.top / spacing - 0.5));
-  for (; (double(line) + 0.5) * spacing < height.bottom; ++line) {
+  const auto [top, bottom] = rows_of(corners);
+  auto line = std::int64_t(std::ceil(top / spacing - 0.5));
+  for (; (double(line) + 0.5) * spacing < bottom; ++line) {
     const double y = (double(line) + 0.5) * spacing;
     Chord chord{line, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -343,8 +320,8 @@ double share_of_union(std::span<const std::span<const glm::dvec2>> areas) {
   constexpr double kMostChords = 1 << 16;
   double heights = 0;
   for (const std::span<const glm::dvec2> corners : areas) {
-    const VerticalReach height(corners);
-    heights += height.bottom - height.top;
+    const auto [top, bottom] = rows_of(corners);
+    heights += bottom - top;
   }
   const double spacing = std::max(1.0 / 16, heights / kMostChords);
   std::vector<Chord> chords;
