@@ -179,21 +179,24 @@ class PlaceFinder {
     const WorldTriangles world = world_triangles(scene_, range, isa_, scratch.world);
     if (scratch.seen.size() < world.positions.size()) scratch.seen.resize(world.positions.size());
     scratch.outside.assign(world.positions.size(), kNotSeen);
+    const bool may_pass_over = !needs_area && facing_.culling() == Culling::none && !is_any_clear_;
     for (std::uint32_t k = 0; k < range.box_count(); ++k) {
       const std::size_t first = std::size_t(k) * MeshRange::triangles_in_box;
       WorldTriangles part = world;
       part.first_id += PrimitiveId(first);
       part.corners = world.corners.subspan(
           first, std::min<std::size_t>(MeshRange::triangles_in_box, world.corners.size() - first));
-      if (!needs_area && is_surely_in_view(scene_.boxes[range.first_box + k])) {
+      if (may_pass_over && frustum_.surely_holds(scene_.boxes[range.first_box + k])) {
         const std::uint64_t empty = count_flat(part);
         places.counts.empty += empty;
         places.counts.in_view += part.corners.size() - empty;
         continue;
       }
       for (std::size_t i = 0; i < part.corners.size(); ++i)
-        if (find_triangle(part, i, needs_area, scratch, places) && is_any_clear_)
-          places.clear += is_clear(range, range.begin + std::uint32_t(first + i));
+        if (find_triangle(part, i, needs_area, scratch, places) && is_any_clear_) {
+          const std::uint32_t material = scene_.mesh(range).material_of(range.begin + std::uint32_t(first + i));
+          places.clear += clear_[std::min<std::size_t>(material, clear_.size() - 1)];
+        }
     }
     return places;
   }
@@ -212,11 +215,6 @@ class PlaceFinder {
     [[nodiscard]] const PointAhead& at(int k) const { return corners[k]->at; }
     [[nodiscard]] FrustumPolygon polygon() const { return {{*corners[0], *corners[1], *corners[2]}, 3}; }
   };
-
-  /// Whether all non-empty triangles in a box are in view, and none needs to be counted as clear.
-  [[nodiscard]] bool is_surely_in_view(const Box& box) const {
-    return facing_.culling() == Culling::none && !is_any_clear_ && frustum_.surely_holds(box);
-  }
 
   /// \returns whether it is in view.
   [[nodiscard]] bool find_triangle(const WorldTriangles& world, std::size_t i, bool needs_area, FrustumScratch& scratch,
@@ -285,17 +283,16 @@ class PlaceFinder {
   [[nodiscard]] bool place_clipped(const ViewedTriangle& t, bool needs_area, ObjectPlaces& places) const {
     FrustumPolygon polygon = t.polygon();
     if (std::uint64_t* const side = side_of(polygon, t.any_outside, places.counts)) {
-      places.outside.offer({middle_of(polygon), glm::length(t.normal) / 2, is_culled(t)});
+      PointAhead sum(0);
+      for (const FrustumPoint& p : polygon.all()) sum += p.at;
+      places.outside.offer({sum / double(polygon.count), glm::length(t.normal) / 2, is_culled(t)});
       ++*side;
       return false;
     }
-    if (is_culled(t)) {
-      ++places.counts.faces_away;
-      return false;
-    }
-    ++places.counts.in_view;
-    if (needs_area) note_in_view(polygon, places);
-    return true;
+    const bool is_in_view = !is_culled(t);
+    ++(is_in_view ? places.counts.in_view : places.counts.faces_away);
+    if (is_in_view && needs_area) note_in_view(polygon, places);
+    return is_in_view;
   }
 
   /// Clips the polygon by the viewing volume. \returns the count of the side on which all of it lies; null if a part is
@@ -316,12 +313,6 @@ class PlaceFinder {
     return nullptr;
   }
 
-  [[nodiscard]] static PointAhead middle_of(const FrustumPolygon& polygon) {
-    PointAhead sum(0);
-    for (const FrustumPoint& p : polygon.all()) sum += p.at;
-    return sum / double(polygon.count);
-  }
-
   void note_in_view(const FrustumPolygon& polygon, ObjectPlaces& places) const {
     std::array<glm::dvec2, 3 + kPlaneCount> pixels;
     for (std::size_t i = 0; i < polygon.count; ++i) {
@@ -330,12 +321,6 @@ class PlaceFinder {
       places.rows.include(pixels[i].y);
     }
     places.widest = std::max(places.widest, inner_radius(std::span(pixels).first(polygon.count)));
-  }
-
-  [[nodiscard]] bool is_clear(const MeshRange& range, std::uint32_t triangle) const {
-    const Mesh& mesh = scene_.mesh(range);
-    const std::uint32_t material = mesh.material_of(triangle);
-    return clear_[material == no_index ? clear_.size() - 1 : material] != 0;
   }
 
   const PlacedScene& scene_;
