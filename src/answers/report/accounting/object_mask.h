@@ -156,8 +156,8 @@ struct ObjectCanvas {
 
   /// `scale`: AccountingOptions::canvas. Preconditions: the view is valid, and the scale in range.
   ObjectCanvas(const View& picture, double scale);
-  /// A canvas of a part of the picture. Preconditions: the view is valid; the part is not empty and lies within the
-  /// picture.
+  /// A canvas of these pixels of the picture, or beyond it. Preconditions: the view is valid; some of the pixels are of
+  /// the picture.
   ObjectCanvas(const View& picture, const PixelRect& part);
 };
 
@@ -210,7 +210,6 @@ class ObjectMask {
   [[nodiscard]] bool is_cut_by_near() const { return is_cut_by_near_; }
 
  private:
-  void clear();
   /// Whether consecutive triangles have vertices from all over the mesh. All vertices are then placed at once.
   [[nodiscard]] bool is_strewn(std::span<const MeshRange> ranges) const;
   void draw_at_once(std::span<const MeshRange> ranges);
