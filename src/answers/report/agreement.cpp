@@ -25,6 +25,7 @@
 #include "view/facing_rule.h"
 #include "view/screen_cutout.h"
 #include "view/screen_transform.h"
+#include "view/sight.h"
 
 namespace frontmost {
 namespace {
@@ -124,23 +125,20 @@ struct ScreenRect {
   glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
 };
 
-ScreenRect rect_of(const std::array<glm::vec3, 3>& corners, const View& view, const glm::dmat4& eye_from_world) {
-  const Projection& p = view.projection;
+ScreenRect rect_of(const std::array<glm::vec3, 3>& corners, const Sight& sight) {
   std::array<glm::dvec3, 3> c;
-  for (std::size_t i = 0; i < 3; ++i) c[i] = glm::dvec3(eye_from_world * glm::dvec4(corners[i], 1));
+  for (std::size_t i = 0; i < 3; ++i) c[i] = sight.in_eye(glm::dvec3(corners[i]));
   ScreenRect rect;
   const auto include = [&](const glm::dvec3& at) {
-    const double scale = p.orthographic ? 1 : -1 / at.z;
-    const glm::dvec2 place((at.x * scale - p.left) / (p.right - p.left) * view.width,
-                           (p.top - at.y * scale) / (p.top - p.bottom) * view.height);
+    const glm::dvec2 place(sight.to_screen(at));
     rect.low = glm::min(rect.low, place);
     rect.high = glm::max(rect.high, place);
   };
-  const double near = -0.99 * p.clip.near;  // with a margin: keys decide at the plane itself
+  const double near = 0.99 * sight.near();  // with a margin: keys decide at the plane itself
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3 &a = c[i], &b = c[(i + 1) % 3];
-    if (p.orthographic || a.z <= near) include(a);
-    if (!p.orthographic && (a.z <= near) != (b.z <= near)) include(a + (near - a.z) / (b.z - a.z) * (b - a));
+    if (sight.is_parallel() || a.z >= near) include(a);
+    if (!sight.is_parallel() && (a.z >= near) != (b.z >= near)) include(a + (near - a.z) / (b.z - a.z) * (b - a));
   }
   // A margin of one pixel, many times what doubles and the squares need.
   return {rect.low - 1.0, rect.high + 1.0};
@@ -232,15 +230,14 @@ void compare_all_triangles(const Question& question, const std::vector<Differing
         if (claim.triangle) rule_out_by(question, claim.id, *claim.triangle, samples[i], ruled_out[i]);
   });
   const DifferenceMap map(question, samples, ruled_out, execution);
-  const glm::dmat4 eye_from_world = glm::inverse(question.view.world_from_eye);
+  const Sight sight(question.view);
   parallel_for(execution, question.surfaces.primitive_count(), kTriangleGrain, [&](std::size_t begin, std::size_t end) {
     for (auto id = PrimitiveId(begin); id < end; ++id) {
       const std::array<glm::vec3, 3> corners = question.surfaces.corners(id);
       if (!are_finite(corners)) continue;
-      map.in_rect(rect_of(corners, question.view, eye_from_world), corners,
-                  [&](std::size_t number, const ViewedTriangle& triangle) {
-                    rule_out_by(question, id, triangle, samples[number], ruled_out[number]);
-                  });
+      map.in_rect(rect_of(corners, sight), corners, [&](std::size_t number, const ViewedTriangle& triangle) {
+        rule_out_by(question, id, triangle, samples[number], ruled_out[number]);
+      });
     }
   });
 }
