@@ -76,11 +76,6 @@ struct Question {
     if (meeting != LineMeeting::misses && is_hole(id, sample)) return LineMeeting::misses;
     return meeting == LineMeeting::contains && is_culled(triangle, id) ? LineMeeting::misses : meeting;
   }
-  /// Converts a key to nearness.
-  [[nodiscard]] double nearness_of(float key) const {
-    if (view.projection.orthographic) return double(key) * (rays.far() - rays.near()) - rays.far();
-    return double(key) / rays.near();
-  }
 };
 
 /// Checks keys. Keeps the last triangle, since neighbouring samples mostly show the same one.
@@ -94,7 +89,9 @@ struct KeyCheck {
     if (id != last) triangle = question.triangle(id);
     last = id;
     if (!triangle) return false;
-    const double nearness = question.nearness_of(key);
+    const SampleRays& rays = question.rays;
+    const double nearness =
+        rays.is_orthographic() ? double(key) * (rays.far() - rays.near()) - rays.far() : double(key) / rays.near();
     const NearnessRange range = triangle->nearness(square);
     return nearness >= range.least.low - triangle->resolution(range.least.low) &&
            nearness <= range.greatest.high + triangle->resolution(range.greatest.high);

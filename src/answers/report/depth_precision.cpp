@@ -11,8 +11,6 @@
 namespace frontmost {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 void check(const DepthSetup& setup, double distance) {
   if (setup.orthographic)
     (void)make_orthographic(-1, 1, -1, 1, setup.clip);
@@ -47,12 +45,6 @@ double full_step(const DepthSetup& setup, double depth) {
   if (setup.reversed) return spacing_below(depth);
   // Rounding separates depths one spacing apart; the wider spacing, farther away, counts. No depth exceeds 1.
   return spacing_below(std::min(depth + float_spacing(depth), 1.0));
-}
-
-/// The gap for a step of 1/d at a distance.
-double gap_of(double distance, double step) {
-  const double left = 1 - distance * step;
-  return left > 0 ? distance * distance * step / left : kInfinity;
 }
 
 /// The default reach of vertices: twice the distance of the surface, enough for pictures of up to 120 degrees; in
@@ -94,7 +86,9 @@ double resolvable_gap(const DepthSetup& setup, double distance) {
   const double key = setup.orthographic ? (far - distance) / (far - near) : near / distance;
   const double key_step = is_float ? spacing_below(key) : 0;
   if (setup.orthographic) return std::max(step, key_step) * (far - near);
-  return gap_of(distance, std::max(step * span(setup.clip), key_step) / near);
+  const double inverse_step = std::max(step * span(setup.clip), key_step) / near;  // of 1/d
+  const double left = 1 - distance * inverse_step;
+  return left > 0 ? distance * distance * inverse_step / left : std::numeric_limits<double>::infinity();
 }
 
 double rounding_gap(const DepthSetup& setup, double distance, std::optional<double> reach) {

@@ -224,14 +224,6 @@ std::vector<MaterialUse> materials_of(const Mesh& mesh) {
   return uses;
 }
 
-std::uint64_t face_count(const Mesh& mesh) {
-  if (mesh.face_ids.empty()) return mesh.triangles.size();
-  // The triangles of a polygon are consecutive.
-  std::uint64_t faces = 1;
-  for (std::size_t i = 1; i < mesh.face_ids.size(); ++i) faces += mesh.face_ids[i] != mesh.face_ids[i - 1];
-  return faces;
-}
-
 /// Reports a mesh. Sets `points` to the different positions of finite triangles. Precondition: indices are in range.
 MeshReport report_mesh(const Mesh& mesh, const Execution& execution, std::vector<glm::vec3>& points) {
   constexpr std::size_t kMaxTriangles = std::size_t(1) << 29;  // leaves a free bit beside a half-edge's number
@@ -243,7 +235,9 @@ MeshReport report_mesh(const Mesh& mesh, const Execution& execution, std::vector
   report.triangles = mesh.triangles.size();
   report.vertices = mesh.positions.size();
   report.positions = points.size();
-  report.faces = face_count(mesh);
+  report.faces = mesh.face_ids.empty() ? mesh.triangles.size() : 1;
+  for (std::size_t i = 1; i < mesh.face_ids.size(); ++i)  // the triangles of a polygon are consecutive
+    report.faces += mesh.face_ids[i] != mesh.face_ids[i - 1];
   report.has_normals = !mesh.normals.empty();
   report.has_texcoords = !mesh.texcoords.empty();
   report.has_colors = !mesh.colors.empty();
@@ -298,38 +292,10 @@ Measures measures_of(const Mesh& mesh, const glm::dmat4& world_from_mesh, const 
   return all;
 }
 
-double rounding_within(const Box& bounds) {
-  if (bounds.is_empty()) return 0;
-  float farthest = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    farthest = std::max({farthest, std::abs(bounds.low[axis]), std::abs(bounds.high[axis])});
-  return 0.5 * (double(farthest) - double(std::nextafter(farthest, 0.0f)));
-}
-
-MaterialReport report_material(const Material& material) {
-  MaterialReport report;
-  report.name = material.name;
-  for (const TextureUse* use : texture_uses_of(material)) report.textures += use->is_set();
-  report.alpha = material.alpha;
-  report.double_sided = material.double_sided;
-  return report;
-}
-
 glm::dvec3 unit(const glm::dvec4& v) {
   const glm::dvec3 direction(v);
   const double length = glm::length(direction);
   return length > 0 ? direction / length : direction;
-}
-
-CameraReport report_camera(const Camera& camera) {
-  const glm::dmat4& pose = camera.world_from_eye;
-  return {camera.name, glm::dvec3(pose[3]), unit(-pose[2]), unit(pose[1]), camera.orthographic, camera.vertical};
-}
-
-LightReport report_light(const Light& light) {
-  const glm::dmat4& pose = light.world_from_light;
-  return {light.name,      light.kind,  glm::dvec3(pose[3]), unit(-pose[2]),  light.color,
-          light.intensity, light.range, light.inner_cone,    light.outer_cone};
 }
 
 // Objects of one mesh need its points. Meshes are examined one after the other, so only one mesh's points are in
@@ -366,9 +332,19 @@ SceneReport inspect(const Scene& scene, const Execution& execution) {
   report.origin = scene.origin;
   report.texture_count = scene.textures.size();
   report.warnings = scene.warnings;
-  for (const Material& material : scene.materials) report.materials.push_back(report_material(material));
-  for (const Camera& camera : scene.cameras) report.cameras.push_back(report_camera(camera));
-  for (const Light& light : scene.lights) report.lights.push_back(report_light(light));
+  for (const Material& m : scene.materials) {
+    report.materials.push_back({m.name, 0, 0, m.alpha, m.double_sided});
+    for (const TextureUse* use : texture_uses_of(m)) report.materials.back().textures += use->is_set();
+  }
+  for (const Camera& c : scene.cameras) {
+    const glm::dmat4& pose = c.world_from_eye;
+    report.cameras.push_back({c.name, glm::dvec3(pose[3]), unit(-pose[2]), unit(pose[1]), c.orthographic, c.vertical});
+  }
+  for (const Light& l : scene.lights) {
+    const glm::dmat4& pose = l.world_from_light;
+    report.lights.push_back({l.name, l.kind, glm::dvec3(pose[3]), unit(-pose[2]), l.color, l.intensity, l.range,
+                             l.inner_cone, l.outer_cone});
+  }
   std::vector<std::vector<std::uint32_t>> instances(scene.meshes.size());
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) instances[scene.instances[i].mesh].push_back(i);
   report.objects.resize(scene.instances.size());
@@ -381,7 +357,11 @@ SceneReport inspect(const Scene& scene, const Execution& execution) {
     add(report.odd, report.meshes[m].odd);
     report_objects(scene, instances[m], points, execution, report);
   }
-  report.rounding = rounding_within(report.bounds);
+  if (!report.bounds.is_empty()) {
+    const glm::vec3 reach = glm::max(glm::abs(report.bounds.low), glm::abs(report.bounds.high));
+    const float farthest = std::max({reach.x, reach.y, reach.z});
+    report.rounding = 0.5 * (double(farthest) - double(std::nextafter(farthest, 0.0f)));
+  }
   return report;
 }
 

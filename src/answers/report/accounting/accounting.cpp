@@ -69,13 +69,6 @@ class TallyList {
   std::vector<SeenTally> tallies_;
 };
 
-/// The ids of one object, or no_primitive.
-struct ObjectIds {
-  std::uint32_t object = no_index;
-  PrimitiveId first = no_primitive;
-  std::uint32_t count = 1;
-};
-
 /// Reads bands of a picture. Borrows everything.
 struct BandReader {
   const std::vector<PrimitiveId>& first_primitives;
@@ -85,44 +78,37 @@ struct BandReader {
 
   [[nodiscard]] SeenRows read(int sample, int y0, int y1, TallyList& tallies, std::uint64_t& background) const {
     const View& view = visible.view;
+    const glm::uvec2 offset(sample_offsets(view.samples)[std::size_t(sample)]);
     SeenRows rows(std::size_t(left + view.width + kWordPixels - 1) / kWordPixels);
     for (int y = y0; y < y1; ++y) {
-      const std::size_t first = visible.index(0, y, sample);
-      const PrimitiveId* const ids = visible.primitives.data() + first;
-      const float* const keys = visible.keys.data() + first;
+      const std::size_t in_picture = visible.index(0, y, sample);
+      const PrimitiveId* const ids = visible.primitives.data() + in_picture;
+      const float* const keys = visible.keys.data() + in_picture;
       for (int x = 0; x < view.width;) {
-        const ObjectIds seen = object_of(ids[x]);
-        const SeenSpan span =
-            find_seen_span({ids + x, std::size_t(view.width - x)}, keys + x, seen.first, seen.count, isa);
+        // The ids of the object that is seen, or no_primitive alone.
+        std::uint32_t object = no_index, first = no_primitive, count = 1;
+        if (ids[x] != no_primitive) {
+          const auto next = std::upper_bound(first_primitives.begin(), first_primitives.end(), ids[x]);
+          object = std::uint32_t(next - first_primitives.begin() - 1);
+          first = *std::prev(next);
+          count = *next - first;
+        }
+        const SeenSpan span = find_seen_span({ids + x, std::size_t(view.width - x)}, keys + x, first, count, isa);
         const PixelRect run{x, y, x + int(span.end) - 1, y};
         x = run.x1 + 1;
-        rows.append(left + run.x0, left + x, seen.object);
-        if (seen.object == no_index)
+        rows.append(left + run.x0, left + x, object);
+        if (object == no_index) {
           background += span.end;
-        else
-          tallies.of(seen.object).add(tally_of(run, seen.object, span.nearest, sample));
+          continue;
+        }
+        // The sum of both ends is twice the middle, in half pixels.
+        const std::uint64_t sum_x = span.end * (std::uint64_t(run.x0 + run.x1) * (kSubPixels / 2) + offset.x);
+        const std::uint64_t sum_y = span.end * (std::uint64_t(y) * kSubPixels + offset.y);
+        tallies.of(object).add({object, span.end, run, span.nearest, sum_x, sum_y});
       }
       rows.end_row();
     }
     return rows;
-  }
-
-  [[nodiscard]] ObjectIds object_of(PrimitiveId id) const {
-    if (id == no_primitive) return {};
-    const auto next = std::upper_bound(first_primitives.begin(), first_primitives.end(), id);
-    const PrimitiveId first = *std::prev(next);
-    return {std::uint32_t(next - first_primitives.begin() - 1), first, *next - first};
-  }
-
-  /// The tally of a run of pixels in one row.
-  [[nodiscard]] SeenTally tally_of(const PixelRect& run, std::uint32_t object, float nearest, int sample) const {
-    const glm::ivec2 offset = sample_offsets(visible.view.samples)[std::size_t(sample)];
-    const auto count = std::uint64_t(run.x1 - run.x0 + 1);
-    // The sum of both ends is twice the middle, in half pixels.
-    const std::uint64_t sum_x =
-        count * std::uint64_t(run.x0 + run.x1) * (kSubPixels / 2) + count * std::uint64_t(offset.x);
-    const std::uint64_t sum_y = count * std::uint64_t(run.y0 * kSubPixels + offset.y);
-    return {object, count, run, nearest, sum_x, sum_y};
   }
 };
 

@@ -79,7 +79,11 @@ class BandHiders {
     for (std::uint32_t i = 0; i < objects_.size(); ++i) {
       const PixelBox& box = objects_[i].in_frame.box;
       const PixelRect rect = common_part({box.x, box.y, box.x + box.width - 1, box.y + box.height - 1}, band_);
-      if (!box.is_empty() && !rect.is_empty()) add_object(i, rect);
+      if (box.is_empty() || rect.is_empty()) continue;
+      for (const MeshRange& range : ranges_of(scene_, i))
+        placer_.visit(range, [&](const TriangleRecord& record) { draw(record, rect); });
+      for (int word = rect.x0 / kWordPixels; word <= rect.x1 / kWordPixels; ++word) add_piece(i, word, rect);
+      for (int y = rect.y0; y <= rect.y1; ++y) std::fill(key_at(rect.x0, y), key_at(rect.x1, y) + 1, kNotCovered);
     }
     for (const std::vector<HiderPiece>& column : columns_) {
       compare_pieces(column, lists.any);
@@ -90,13 +94,6 @@ class BandHiders {
   }
 
  private:
-  void add_object(std::uint32_t object, const PixelRect& rect) {
-    for (const MeshRange& range : ranges_of(scene_, object))
-      placer_.visit(range, [&](const TriangleRecord& record) { draw(record, rect); });
-    for (int word = rect.x0 / kWordPixels; word <= rect.x1 / kWordPixels; ++word) add_piece(object, word, rect);
-    for (int y = rect.y0; y <= rect.y1; ++y) std::fill(key_at(rect.x0, y), key_at(rect.x1, y) + 1, kNotCovered);
-  }
-
   void draw(const TriangleRecord& record, const PixelRect& rect) {
     const MaskPlane plane{nullptr, 0, canvas_.view.width, canvas_.view.height, 0, offset_};
     find_spans(plane, record, spans_, isa_);

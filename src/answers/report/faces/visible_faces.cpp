@@ -541,12 +541,6 @@ namespace {
 /// Limit of steps: fifteen times what the most crowded of 237 models takes.
 constexpr std::uint64_t kMostFaceSteps = std::uint64_t(1) << 31;
 
-/// The area of a triangle, in scene units squared.
-double area_of_triangle(const std::array<glm::vec3, 3>& corners) {
-  const glm::dvec3 a(corners[0]);
-  return 0.5 * glm::length(glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a));
-}
-
 }  // namespace
 
 VisibleFaces visible_faces(const Surfaces& surfaces, const View& view, const Execution& execution) {
@@ -569,7 +563,9 @@ std::vector<SeenFace> faces_ever_seen(const Surfaces& surfaces, std::span<const 
       found.id = face.id;
       ++found.view_count;
       found.largest_pixels = std::max(found.largest_pixels, face.pixels);
-      const double share = std::min(face.area / area_of_triangle(surfaces.corners(face.id)), 1.0);
+      const auto corners = surfaces.corners(face.id);
+      const glm::dvec3 a(corners[0]), across = glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
+      const double share = std::min(face.area / (0.5 * glm::length(across)), 1.0);
       if (share <= found.largest_share) continue;
       found.largest_share = share;
       found.best_view = number;

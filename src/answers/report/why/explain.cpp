@@ -205,7 +205,13 @@ struct Explainer {
     why.visible_share = account.visible_share();
     why.hidden_share = account.hidden_share();
     why.cut_share = account.cut_share();
-    note_hiders(why, account);
+    const std::vector<HiddenSamples>& hidden = accounts.hidden_by_front;
+    const auto is_before = [](const HiddenSamples& pair, std::uint32_t number) { return pair.object < number; };
+    auto pair = std::lower_bound(hidden.begin(), hidden.end(), object, is_before);
+    for (; pair != hidden.end() && pair->object == object; ++pair)
+      why.hiders.push_back({pair->hider, double(pair->count) / double(account.in_frame.count)});
+    std::stable_sort(why.hiders.begin(), why.hiders.end(),
+                     [](const HiderShare& a, const HiderShare& b) { return a.share > b.share; });
     if (places.clear > 0 && places.clear == places.counts.in_view)
       why.reason = SightReason::transparent;
     else if (account.in_frame.count > 0)
@@ -230,16 +236,6 @@ struct Explainer {
       why.reason = SightReason::faces_away;
     else if (why.pixels > 0)
       why.remedy = enlargement_for(lone, places, view);
-  }
-
-  void note_hiders(Explanation& why, const ObjectAccount& account) const {
-    const std::vector<HiddenSamples>& all = accounts.hidden_by_front;
-    const auto is_before = [](const HiddenSamples& pair, std::uint32_t number) { return pair.object < number; };
-    auto pair = std::lower_bound(all.begin(), all.end(), why.object, is_before);
-    for (; pair != all.end() && pair->object == why.object; ++pair)
-      why.hiders.push_back({pair->hider, double(pair->count) / double(account.in_frame.count)});
-    std::stable_sort(why.hiders.begin(), why.hiders.end(),
-                     [](const HiderShare& a, const HiderShare& b) { return a.share > b.share; });
   }
 
   void find_what_to_take_away(std::vector<Explanation>& all) const {

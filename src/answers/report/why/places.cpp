@@ -31,9 +31,6 @@ struct FrustumPolygon {
   std::size_t count = 0;
 
   [[nodiscard]] std::span<const FrustumPoint> all() const { return std::span(corners).first(count); }
-  [[nodiscard]] bool is_outside(Plane plane) const {
-    return std::all_of(all().begin(), all().end(), [&](const FrustumPoint& p) { return p.inside[plane] < 0; });
-  }
   /// Cuts off the part outside a plane.
   void cut(Plane plane) {
     FrustumPolygon kept;
@@ -225,8 +222,11 @@ class PlaceFinder {
     for (int k = 0; k < 3; ++k) {
       std::uint8_t& outside = scratch.outside[c[k]];
       if (outside == kNotSeen) {
-        scratch.seen[c[k]] = frustum_.see(world.positions[c[k]]);
-        outside = outside_of(scratch.seen[c[k]], world.positions[c[k]]);
+        const FrustumPoint& p = scratch.seen[c[k]] = frustum_.see(world.positions[c[k]]);
+        outside = !frustum_.is_orthographic() && p.at.z <= 0 ? kBehindEye : 0;
+        for (std::size_t plane = 0; plane < kPlaneCount; ++plane)
+          outside = std::uint8_t(outside | (p.inside[plane] < 0) << plane);
+        if (!is_finite(world.positions[c[k]])) outside = kNowhere;
       }
       all &= outside;
       any |= outside;
@@ -243,13 +243,6 @@ class PlaceFinder {
                   all,
                   world.first_id + PrimitiveId(i)},
                  needs_area, places);
-  }
-
-  [[nodiscard]] std::uint8_t outside_of(const FrustumPoint& p, const glm::vec3& world) const {
-    if (!is_finite(world)) return kNowhere;
-    std::uint8_t bits = !frustum_.is_orthographic() && p.at.z <= 0 ? kBehindEye : 0;
-    for (std::size_t k = 0; k < kPlaneCount; ++k) bits = std::uint8_t(bits | (p.inside[k] < 0) << k);
-    return bits;
   }
 
   /// Whether culling leaves out a triangle. An edge-on triangle covers nothing and counts as turned away.
@@ -291,8 +284,15 @@ class PlaceFinder {
     }
     const bool is_in_view = !is_culled(t);
     ++(is_in_view ? places.counts.in_view : places.counts.faces_away);
-    if (is_in_view && needs_area) note_in_view(polygon, places);
-    return is_in_view;
+    if (!is_in_view || !needs_area) return is_in_view;
+    std::array<glm::dvec2, 3 + kPlaneCount> pixels;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+      pixels[i] = frustum_.pixel_of(polygon.corners[i].at);
+      places.columns.include(pixels[i].x);
+      places.rows.include(pixels[i].y);
+    }
+    places.widest = std::max(places.widest, inner_radius(std::span(pixels).first(polygon.count)));
+    return true;
   }
 
   /// Clips the polygon by the viewing volume. \returns the count of the side on which all of it lies; null if a part is
@@ -303,24 +303,17 @@ class PlaceFinder {
     for (const Plane plane : {kNear, kFar})
       if (is_crossing(plane)) polygon.cut(plane);
     std::uint64_t* const sides[] = {&counts.left, &counts.right, &counts.above, &counts.below};
-    for (const Plane plane : {kLeft, kRight, kAbove, kBelow})
-      if (is_crossing(plane) && polygon.is_outside(plane)) return sides[plane];
+    const std::span<const FrustumPoint> all = polygon.all();
+    for (const Plane plane : {kLeft, kRight, kAbove, kBelow}) {
+      const auto is_outside = [&](const FrustumPoint& p) { return p.inside[plane] < 0; };
+      if (is_crossing(plane) && std::all_of(all.begin(), all.end(), is_outside)) return sides[plane];
+    }
     FrustumPolygon in_view = polygon;
     for (const Plane plane : {kLeft, kRight, kAbove, kBelow})
       if (is_crossing(plane)) in_view.cut(plane);
     if (in_view.count == 0) return &counts.past_corner;
     polygon = in_view;
     return nullptr;
-  }
-
-  void note_in_view(const FrustumPolygon& polygon, ObjectPlaces& places) const {
-    std::array<glm::dvec2, 3 + kPlaneCount> pixels;
-    for (std::size_t i = 0; i < polygon.count; ++i) {
-      pixels[i] = frustum_.pixel_of(polygon.corners[i].at);
-      places.columns.include(pixels[i].x);
-      places.rows.include(pixels[i].y);
-    }
-    places.widest = std::max(places.widest, inner_radius(std::span(pixels).first(polygon.count)));
   }
 
   const PlacedScene& scene_;
