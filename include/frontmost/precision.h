@@ -35,8 +35,7 @@ struct DepthSetup {
 /// The resolvable gap: a surface exactly at `distance` and one at least this much farther away are stored as different
 /// values. The gap is one full step of the format, converted to distance. For integers it is about distance^2 (far -
 /// near) / (far near (2^n - 1)), for reversed floats at most 2^-23 of the distance. Float buffers are never finer than
-/// the float keys from which depths are made: 2^-24 to 2^-23 of the distance. Infinite if no farther distance differs
-/// from infinity.
+/// the float keys from which depths are made: 2^-24 to 2^-23 of the distance. Infinite if nothing farther differs.
 /// \throws Error bad_argument unless near <= distance <= far, and for planes that make_projection() refuses.
 [[nodiscard]] double resolvable_gap(const DepthSetup& setup, double distance);
 
@@ -60,8 +59,7 @@ struct DepthSetup {
 /// result is 0 or none. \throws Error as resolvable_gap() does, and for a gap that is not positive.
 [[nodiscard]] std::optional<double> near_for_gap(const DepthSetup& setup, double distance, double gap);
 
-/// Distances for a table: the near plane, then 1, 2, 5, 10, 20..., then the far plane. An infinite far plane counts as
-/// 10^6 times the near distance.
+/// Distances for a table: near, then 1, 2, 5, 10, 20..., then far. An infinite far plane counts as 10^6 times near.
 [[nodiscard]] std::vector<double> round_distances(const ClipDistances& clip);
 
 /// The nearest triangle at every sample, found without rounding. Coverage is that of zbuffer(), from the same snapped
@@ -96,8 +94,7 @@ struct DepthFights {
   std::uint64_t wrong = 0;          ///< samples that show a strictly farther surface, or nothing
   std::uint64_t tied = 0;           ///< samples with several exactly nearest surfaces, any of which is right
   std::vector<FightingPair> pairs;  ///< most samples first
-  /// By sample: distance of the seen surface behind the nearest one, divided by the nearest distance. 0 if the answer
-  /// is right, +inf if nothing is seen.
+  /// By sample: distance behind the nearest surface, divided by its distance. 0 if right, +inf if nothing is seen.
   Buffer<float> errors;
 };
 
@@ -139,8 +136,7 @@ struct FightingFaces {
   PrimitiveId first = no_primitive, second = no_primitive;  ///< first < second; `clear` has no second
   FightKind kind = FightKind::close;
   double area = 0;  ///< square pixels, within the picture
-  /// The part of `area` at whose samples nothing is seen in front of both faces; estimated from thousands of samples if
-  /// the area is large.
+  /// The part of `area` at whose samples nothing is seen in front of both faces; estimated if the area is large.
   double visible_area = 0;
   double distance = 0;                               ///< planar depth of the nearest point of the area
   std::uint32_t corner_begin = 0, corner_count = 0;  ///< range of FightAreas::corners
@@ -208,8 +204,7 @@ struct OffsetRemedy {
 //
 // The z-buffer snaps vertices to 1/256 pixel, ray casting snaps nothing, and the A-buffer answers in layers. Their
 // answers therefore differ along edges and where surfaces nearly coincide, and comparing pictures exactly would prove
-// nothing. Exact arithmetic decides each sample that differs: either both answers are possible, or one of them is
-// wrong.
+// nothing. Exact arithmetic decides each sample that differs: both answers are possible, or one of them is wrong.
 //
 // All methods place vertices within 1/128 pixel of the truth, so a sample stands for the square of +-1/128 pixel around
 // it. An answer is possible if

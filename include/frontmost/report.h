@@ -2,8 +2,7 @@
 // Reports: the contents of a scene and the defects of its meshes; how much of each object is seen, and what hides it.
 //
 // Model files often have holes, duplicate faces and faces that are inside out, which matters to printers, solvers and
-// drawings. All counts compare positions of vertices as they are stored, without a tolerance, so any two programs that
-// count in this way agree:
+// drawings. Counts compare positions of vertices as they are stored, without a tolerance, so all programs can agree:
 //
 //    +---+---+     an edge of two triangles joins them to a shell
 //    | / | / |     an edge of one triangle is a boundary: the rim of a hole
@@ -143,8 +142,7 @@ struct SceneReport {
 //              +-------------+              cut        beyond the frame: %
 //            + - - - - - - - - - - - +
 //
-// An object is an instance of the scene. Samples are counted exactly, without tolerance: an object covers alone what
-// zbuffer() would show of it.
+// An object is an instance of the scene. Samples are counted exactly: an object covers alone what zbuffer() would show.
 
 /// Pixels [x, x + width) x [y, y + height) from the picture's top left; x and y may be negative beyond the picture.
 struct PixelBox {
@@ -206,8 +204,7 @@ struct Accounting {
   PixelBox canvas;                     ///< pixels on which objects were counted alone
   std::vector<ObjectAccount> objects;  ///< by instance
   std::uint64_t background = 0;        ///< samples that see nothing; together with all visible samples, the picture's
-  /// Samples in frame that see `hider` in place of `object`; by object, then by hider. The counts of one object add up
-  /// to its hidden samples.
+  /// Samples in frame that see `hider` in place of `object`; by object, then by hider. They add up to the hidden ones.
   std::vector<HiddenSamples> hidden_by_front;
   /// Samples in frame at which `hider` is in front of `object`, even if others are as well; in the same order. Empty
   /// unless AccountingOptions::all_hiders.
@@ -218,9 +215,8 @@ struct Accounting {
 
 /// Accounts for every object in a view. `visible` is the answer of zbuffer() or a ZBuffer for these surfaces; with
 /// other methods, which do not snap vertices, sums hold only approximately. The result is the same for any number of
-/// threads and every instruction set. O(triangles + rows of pixels that each object touches + samples); memory beside
-/// the result: about 8 bytes a run of samples that see the same object, and a bit for each sample of the canvas and
-/// thread.
+/// threads and every instruction set. O(triangles + rows of pixels that each object touches + samples); 8 bytes a run
+/// of samples that see the same object, and a bit for each sample of the canvas and thread.
 /// \throws Error bad_argument as validate(view) does, for a canvas out of range, and for a `visible` of other surfaces.
 [[nodiscard]] Accounting account(const Surfaces& surfaces, const Visible& visible,
                                  const AccountingOptions& options = {}, const Execution& execution = {});
@@ -263,9 +259,8 @@ enum class MaskPart : std::uint8_t { visible, whole };
 /// alternating runs of 0 and 1, as COCO's mask API writes them. O(pixels of the box).
 /// Source: T.-Y. Lin et al. Microsoft COCO: Common Objects in Context. 2014.
 [[nodiscard]] std::string coco_runs(const PixelMask& mask, MaskPart part, const glm::ivec2& size);
-/// A mask as polygons along the sides of pixels: alternating x and y, in pixels from the picture's top left. The
-/// polygons do not overlap, have no holes, and fill the mask exactly, also by the rule of COCO's mask API. O(pixels of
-/// the box).
+/// A mask as polygons along the sides of pixels: alternating x and y, in pixels from the picture's top left. They do
+/// not overlap, have no holes, and fill the mask exactly, also by the rule of COCO's mask API. O(pixels of the box).
 [[nodiscard]] std::vector<std::vector<int>> coco_polygons(const PixelMask& mask, MaskPart part);
 
 /// Makes the masks of one object after another. Borrows its arguments; not for several threads at once.
@@ -400,8 +395,7 @@ struct Explanation {
 /// Unprintable characters are written as by printable_text().
 class ObjectNames {
  public:
-  /// Keeps a reference to the scene. Functions that take names accept a scene as well; keep the names to write many
-  /// texts. O(objects).
+  /// Borrows the scene. Functions that take names accept a scene as well; keep names to write many texts. O(objects).
   ObjectNames(const Scene& scene);
   [[nodiscard]] std::string operator[](std::uint32_t object) const;
 

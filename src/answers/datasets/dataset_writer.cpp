@@ -254,8 +254,7 @@ std::uint64_t object_number(const Scene& scene, const Instance& instance) {
   return highest + instance.mesh + 1;
 }
 
-/// \throws Error unsupported for an object that is stretched or mirrored: BOP's poses hold rotation and translation
-/// alone.
+/// \throws Error unsupported for an object that is stretched or mirrored: BOP's poses only turn and move.
 Json pose_json(const DatasetView& view, std::uint32_t object, double millimetres) {
   const Scene& scene = view.surfaces.scene();
   const Instance& instance = scene.instances[object];
@@ -274,8 +273,7 @@ Json pose_json(const DatasetView& view, std::uint32_t object, double millimetres
           {"obj_id", object_number(scene, instance)}};
 }
 
-/// A box as in bop_toolkit: its size is the distance from the first pixel to the last, one less than the number of
-/// pixels.
+/// A box as in bop_toolkit: its size is the distance from the first pixel to the last.
 Json bop_box(const PixelBox& box, bool is_seen) {
   return is_seen ? Json::array({box.x, box.y, box.width - 1, box.height - 1}) : Json::array({-1, -1, -1, -1});
 }

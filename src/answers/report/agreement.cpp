@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each sample is examined alone first: do the ids differ, are the keys right? Then every triangle of the scene,
-// whatever the methods made of it, is compared with the samples that differ, to find a surface that rules an answer
-// out.
+// whatever the methods made of it, is compared with the samples that differ: does it rule an answer out?
 //
 //   samples   --ids differ--> DifferingSample: two claims --every triangle over them--> is a claim ruled out?
 //                                                                                    neither: edge or depth

@@ -2,8 +2,7 @@
 // Samples at which an answer differs from the exact one, by how much, and between which objects.
 //
 // An answer is wrong where it shows a surface strictly behind the nearest one. Bounds in doubles decide most differing
-// samples; where bounds overlap, exact depths decide. Surfaces that are exactly as near are therefore never called
-// wrong.
+// samples; where bounds overlap, exact depths decide. Surfaces that are exactly as near are never called wrong.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -28,8 +27,7 @@ struct Judge {
   const View& view;
   const SampleRays rays{view};
 
-  /// The error of showing `seen` at a sample where `nearest` is, as in DepthFights::errors; never 0 if the answer is
-  /// wrong.
+  /// The error of showing `seen` instead of `nearest`, as in DepthFights::errors; never 0 if the answer is wrong.
   [[nodiscard]] float error(PrimitiveId seen, PrimitiveId nearest, std::size_t sample) const {
     if (seen == nearest) return 0;
     if (seen == no_primitive || nearest == no_primitive) return kNothingSeen;

@@ -55,9 +55,8 @@ double reach_of(const DepthSetup& setup, double distance) {
 }
 
 /// The error of a distance before it is stored. Rounded once each: a vertex's differences to the eye, its row of the
-/// transform, their products, the three sums, and its world position. At the rim of the guard band the triangle is cut,
-/// which takes two steps. Making the key takes a reciprocal and a product; in parallel projection, the difference to
-/// the far plane and a product.
+/// transform, their products, the three sums, and its world position. Cutting at the guard band takes two steps. Making
+/// the key takes a reciprocal and a product; in parallel projection, the difference to the far plane and a product.
 double rounding(const DepthSetup& setup, double distance, double reach) {
   constexpr double kUnit = 0x1p-24;
   return kUnit * (9 * reach + 2 * (setup.orthographic ? setup.clip.far - distance : distance));

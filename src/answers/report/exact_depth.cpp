@@ -104,8 +104,7 @@ Fraction exact_depth(const std::array<glm::vec3, 3>& corners, const SampleRays& 
   Fraction depth = exact_plane_depth(all, ray);
   // Edge-on: the depth of the nearest corner is used.
   if (depth.denominator.sign() == 0) depth = {Expansion(-std::numeric_limits<float>::max()), Expansion(1)};
-  // Limits the depth to the corners' range, by the same rule as the bounds above; otherwise both would disagree about
-  // slivers.
+  // Limited to the corners' range, by the rule of the bounds above; otherwise both would disagree about slivers.
   for (const int extreme : {1, -1}) {
     const Expansion bound = exact_corner_depth(all, rays, extreme);
     if ((bound * depth.denominator - depth.numerator).sign() == extreme) depth = {bound, Expansion(1)};
@@ -139,8 +138,7 @@ bool has_one_depth(const std::array<glm::vec3, 3>& corners, const SampleRays& ra
 }
 
 /// A triangle at a sample is one step of work if doubles decide. The constants are the steps of entering a triangle
-/// into a tile, of comparing two planes exactly, and of comparing two depths; a tile reports its steps in portions of
-/// kStepsAtOnce.
+/// into a tile, of comparing two planes exactly, and of comparing two depths; and a portion that a tile reports.
 constexpr std::uint64_t kStepsOfTriangle = 16, kStepsOfPlanes = 16, kStepsOfDepths = 64, kStepsAtOnce = 1 << 14;
 /// Limits of the steps: in all, and more for each sample and triangle.
 constexpr std::uint64_t kMostSteps = std::uint64_t(1) << 29, kMostStepsOfSample = 128, kMostStepsOfTriangle = 1024;

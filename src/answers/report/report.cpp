@@ -52,8 +52,7 @@ struct UpperPoints {
   friend auto operator<=>(const UpperPoints&, const UpperPoints&) = default;
 };
 
-/// Calls visit(group, sums) for each group of equal items of a bucket, from several threads, and adds all `sums` to
-/// `all`.
+/// Calls visit(group, sums) for each group of equal items of a bucket, in parallel, and adds all `sums` to `all`.
 template <class Item, class Visit>
 void for_each_group(Buckets<Item>& buckets, const Execution& execution, Oddities& all, const Visit& visit) {
   std::mutex mutex;
@@ -170,9 +169,8 @@ class MeshTopology {
     });
   }
 
-  // The number of fans of triangles around vertices. A vertex has one fan, unless two fans touch in a point; the
-  // surface passes that point twice, and counting it once would turn it into a handle. Precondition: every half-edge
-  // has its twin.
+  // The number of fans of triangles around vertices. Where two fans touch in a point, the surface passes that point
+  // twice; counting it once would turn it into a handle. Precondition: every half-edge has its twin.
   [[nodiscard]] std::uint64_t count_fans() const {
     std::uint64_t fans = 0;
     std::vector<bool> seen(twins_.size(), false);
@@ -266,8 +264,7 @@ struct Measures {
 };
 
 /// Area and volume. Triangles are summed in blocks, so that the number of threads does not change the result. The
-/// volume is that of tetrahedra with their tip in the middle of the bounds; other tips, far from the object, would
-/// cause cancellation.
+/// volume is that of tetrahedra with their tip in the middle of the bounds; tips far away would cause cancellation.
 Measures measures_of(const Mesh& mesh, const glm::dmat4& world_from_mesh, const Box& bounds,
                      const Execution& execution) {
   std::vector<Measures> sums((mesh.triangles.size() + kGrain - 1) / kGrain);
@@ -298,8 +295,7 @@ glm::dvec3 unit(const glm::dvec4& v) {
   return length > 0 ? direction / length : direction;
 }
 
-// Objects of one mesh need its points. Meshes are examined one after the other, so only one mesh's points are in
-// memory.
+// Objects of one mesh need its points. Meshes are examined one by one, so only one mesh's points are in memory.
 void report_objects(const Scene& scene, const std::vector<std::uint32_t>& instances,
                     const std::vector<glm::vec3>& points, const Execution& execution, SceneReport& report) {
   for (const std::uint32_t i : instances) {

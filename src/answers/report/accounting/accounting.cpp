@@ -118,8 +118,7 @@ PixelBox box_of(const PixelRect& rect, const glm::ivec2& margin) {
   return {rect.x0 - margin.x, rect.y0 - margin.y, rect.x1 - rect.x0 + 1, rect.y1 - rect.y0 + 1};
 }
 
-/// Reads a picture, and sets the background and what is visible of each object. Precondition: check_answer() has
-/// passed. O(samples), in parallel.
+/// Reads a picture that has passed check_answer(), and sets the background and what is visible of each object.
 SeenObjects read_picture(const PlacedScene& scene, const Visible& visible, const glm::ivec2& margin,
                          const Execution& execution, Accounting& result) {
   const View& view = visible.view;

@@ -5,8 +5,7 @@
 //    band       32 rows of the picture
 //    column     64 pixels of a band: each object there has a word for each row, and its keys
 //
-// In most columns one of two objects lies wholly in front of the other. The common bits of their words are then
-// counted, without comparing keys.
+// In most columns one of two objects lies wholly in front of the other; then their common bits are counted alone.
 #include <algorithm>
 #include <bit>
 #include <memory>

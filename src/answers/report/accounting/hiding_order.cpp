@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order of objects that hide each other. Tarjan's search joins each cycle into one component; the components have
-// ranks.
+// The order of objects that hide each other. Tarjan's search joins each cycle into one component; components get ranks.
 //
 //    a hides b, b hides c, c hides b, c hides d          a  ->  { b, c }  ->  d
 //                                                        0        1           2

@@ -84,8 +84,7 @@ struct SeenObjects {
   std::vector<SeenRows> bands;  ///< by sample number, then from top to bottom
   std::size_t bands_in_sample = 0;
 
-  /// The runs of a row and a word of the canvas. Preconditions: the row is in the picture, and the word has pixels of
-  /// the picture.
+  /// The runs of a row and a word of the canvas. Precondition: the word has pixels of the picture in this row.
   [[nodiscard]] std::span<const SeenRun> in(std::size_t sample, int y, int word) const {
     const int row = y - margin.y;
     return bands[sample * bands_in_sample + std::size_t(row / rows_in_band)].in(
@@ -156,16 +155,14 @@ struct ObjectCanvas {
 
   /// `scale`: AccountingOptions::canvas. Preconditions: the view is valid, and the scale in range.
   ObjectCanvas(const View& picture, double scale);
-  /// A canvas of these pixels of the picture, or beyond it. Preconditions: the view is valid; some of the pixels are of
-  /// the picture.
+  /// A canvas of these pixels, some of which lie in the picture. Precondition: the view is valid.
   ObjectCanvas(const View& picture, const PixelRect& part);
 };
 
 /// The ranges of an object's triangles.
 [[nodiscard]] std::span<const MeshRange> ranges_of(const PlacedScene& scene, std::uint32_t object);
 
-/// Places the triangles of one range after another as the z-buffer does. For one thread; borrows the scene and the
-/// canvas.
+/// Places the triangles of one range after another as the z-buffer does. For one thread; borrows everything.
 class RecordPlacer {
  public:
   RecordPlacer(const PlacedScene& scene, const ObjectCanvas& canvas, Isa isa)

@@ -160,9 +160,8 @@ inline double angle_of(double x, double y) {
   return times * t * sum;
 }
 
-/// Computes areas for a view. A place (x, y) of the picture has the direction (u, v, 1) in eye space; u and v are
-/// affine in x and y. A surface point with key 1 / distance lies at (u, v, 1) / key; in parallel projection at (u, v,
-/// -key), with key -distance.
+/// Computes areas for a view. A place (x, y) of the picture has the direction (u, v, 1) in eye space. A surface point
+/// with key 1 / distance lies at (u, v, 1) / key; in parallel projection at (u, v, -key), with key -distance.
 class AreaRule {
  public:
   explicit AreaRule(const View& view)
@@ -172,12 +171,11 @@ class AreaRule {
         step_x_((view.projection.right - view.projection.left) / view.width),
         step_y_((view.projection.top - view.projection.bottom) / view.height) {}
 
-  /// The areas of a convex polygon in one plane, wound either way. Precondition: at least three corners; keys above 0
-  /// in perspective.
+  /// The areas of a plane convex polygon, wound either way. Precondition: three corners; keys above 0 in perspective.
   [[nodiscard]] Areas areas_of(std::span<const ScreenPoint> polygon) const {
-    // The polygon is a fan about its first corner. The determinant of three directions equals that of two differences
-    // in the image plane, so small triangles lose nothing to rounding. (A. van Oosterom, J. Strackee. The Solid Angle
-    // of a Plane Triangle. 1983.)
+    // A fan about the first corner. The determinant of three directions equals that of two differences in the image
+    // plane, so small triangles lose nothing to rounding. (A. van Oosterom, J. Strackee. The Solid Angle of a Plane
+    // Triangle. 1983.)
     const glm::dvec3 a = direction_to(polygon[0]), at = place_of(a, polygon[0].key);
     const double a_length = glm::length(a);
     glm::dvec3 b = direction_to(polygon[1]), to_b = place_of(b, polygon[1].key) - at, normal(0);
@@ -266,8 +264,7 @@ class PieceCutter {
   /// Reports the remaining steps.
   void tell_rest() { tell_(std::exchange(steps_, 0)); }
 
-  /// Appends the visible parts in `box`. `list` has all faces that may be seen there, ordered by their nearest keys,
-  /// the nearest first.
+  /// Appends the visible parts in `box`. `list` has all faces that may be seen there, the nearest of their keys first.
   void cut(const CellBox& box, std::span<const FaceInBox> list, std::span<const GatheredFace> gathered,
            std::vector<SeenPart>& seen) {
     candidates_.clear();
@@ -341,8 +338,7 @@ class PieceCutter {
  private:
   /// Keys that differ by at most this share of themselves may be equal; doubles are exact to about 2^-45.
   static constexpr double kAlike = 1.0 / (1ll << 36);
-  /// More faces than this are reordered before they are cut. Finding the order takes time, and pays if most faces
-  /// overlap.
+  /// More faces than this are reordered before they are cut, which pays if most of them overlap.
   static constexpr std::size_t kManyToCut = 128;
 
   /// Costs in steps of about ten nanoseconds: examining a face for a piece; cutting by a face or comparing two; testing
@@ -363,8 +359,7 @@ class PieceCutter {
     Range x, y;
     double nearest;
   };
-  /// A piece of the box. `front` is the nearest of the faces examined so far; faces from `next` on are still to be
-  /// examined.
+  /// A piece of the box. `front` is the nearest of the faces examined so far, which are those before `next`.
   struct Piece {
     Piece(std::uint32_t in_front, std::uint32_t next_face) : front(in_front), next(next_face) {}
     explicit Piece(const CellBox& box) : polygon(box), around(box), front(no_index), next(0) {}
@@ -403,9 +398,8 @@ class PieceCutter {
             no_index};
   }
 
-  /// Measures all keys relative to the plane of the first face, and reorders the faces. In a slanted box, keys of close
-  /// sheets differ much more from end to end than from sheet to sheet. Faces in one plane are ordered by id, so that
-  /// each hides those after it.
+  /// Reorders the faces by their keys relative to the plane of the first face. In a slanted box, keys of close sheets
+  /// differ more from end to end than from sheet to sheet. In one plane, a face hides those with greater ids after it.
   void order_by_planes(const CellBox& box) {
     count(kStepsOfPlane * candidates_.size());
     const AffineKey first = candidates_.front().plane;
@@ -572,8 +566,7 @@ class PieceCutter {
     piece.front = number;
   }
 
-  /// Decides between two faces that doubles cannot tell apart: the lower id if they lie in one plane, else the one that
-  /// seems nearer.
+  /// Decides between two faces that doubles cannot tell apart: the lower id in one plane, else what seems nearer.
   bool is_preferred(const Candidate& face, const Candidate& front, const LineDistances& nearer) {
     count(kStepsOfPlane);
     const PrimitiveId id = faces_.screen.faces[face.face].id, front_id = faces_.screen.faces[front.face].id;

@@ -26,8 +26,7 @@ EdgeNeighbours mesh_sides(const Mesh& mesh, const Execution& execution) {
   return {triangles, mesh.positions.size(), execution};
 }
 
-/// Triangles that extend farther beyond the picture than this, in pixels, are clipped, so that doubles keep positions
-/// exact within the picture.
+/// Triangles that extend farther beyond the picture, in pixels, are clipped, so that doubles are exact within it.
 constexpr double kBeyond = 65536;
 /// Distance of the cut from the picture, in pixels.
 constexpr double kRim = 64;

@@ -18,8 +18,7 @@
 
 namespace frontmost::faces_detail {
 
-/// Width in pixels, 2^-30, below which parts are not told apart from their neighbours. Doubles are exact to about 2^-38
-/// pixel.
+/// Width in pixels, 2^-30, below which parts are not told apart from others. Doubles are exact to about 2^-38 pixel.
 inline constexpr double kNarrow = 1.0 / (1 << 30);
 
 /// A place in the picture, in pixels, and the key of the surface there: affine over the screen, greater for nearer.
@@ -72,8 +71,7 @@ struct ViewedFaces {
 /// whatever their numbers. \throws Error limit_exceeded for more than EdgeNeighbours::most_triangles.
 [[nodiscard]] std::vector<EdgeNeighbours> sides_of_meshes(const Scene& scene, const Execution& execution);
 
-/// The faces that are at least partly within the picture, between near and far, wider than kNarrow, and not culled.
-/// `sides` is by mesh.
+/// The faces at least partly in the picture and between near and far, wider than kNarrow, not culled. `sides` by mesh.
 [[nodiscard]] ViewedFaces viewed_faces(const Surfaces& surfaces, const View& view,
                                        const std::vector<EdgeNeighbours>& sides, const Execution& execution);
 

@@ -30,8 +30,7 @@ namespace {
 constexpr double kSmallestCell = 1.0 / 1024;
 /// A cell with at most this number of faces is not divided: its faces are cut by each other.
 constexpr std::size_t kFewFaces = 128;
-/// A cell with more faces than this is divided even if most of them reach into all of its parts: they hide each other
-/// there.
+/// A cell with more faces is divided even if most of them reach into all of its parts, in which they hide each other.
 constexpr std::size_t kManyFaces = 256;
 /// The largest cells with more faces than this are divided before their faces are examined.
 constexpr std::size_t kManyListed = 500;
@@ -251,8 +250,7 @@ class CellSolver {
     return true;
   }
 
-  /// Finishes the cell whose list begins at `first`, and removes the list. No face that was left out of the list is
-  /// nearer than `removed`.
+  /// Finishes the cell whose list begins at `first`, and removes the list. No face left out is nearer than `removed`.
   void divide(const CellBox& box, std::size_t first, double removed) {
     cutter.count(kStepsInCell * (list_.size() - first));
     const Sorted sorted = sort(box, first, removed);
@@ -266,8 +264,8 @@ class CellSolver {
     list_.resize(first);
   }
 
-  /// Divides a cell into four. \returns false if that would not help: the cell is too small, or most of its faces reach
-  /// into all parts.
+  /// Divides a cell into four. \returns false if it is too small for that, or if most of its faces reach into all
+  /// parts.
   bool divide_further(const CellBox& box, std::size_t first, double removed) {
     const double size = std::max(box.right - box.left, box.bottom - box.top);
     if (size <= kSmallestCell) return false;
@@ -300,7 +298,7 @@ class CellSolver {
     return true;
   }
 
-  /// Divides a cell into 4 x 4, at first by the boxes of its faces. \returns false if very many of these boxes meet all
+  /// Divides a cell into 4 x 4, at first by the boxes of its faces. \returns false if very many of these meet all
   /// parts.
   bool divide_crowd(const CellBox& box, std::size_t first, double removed) {
     constexpr int kAlong = 4;
@@ -338,8 +336,7 @@ class CellSolver {
     return true;
   }
 
-  /// Drops faces hidden by a face that covers the cell, if very many faces cover it. \returns the nearest key of the
-  /// dropped faces.
+  /// Drops faces hidden by one that covers the cell, if very many cover it. \returns the nearest key of dropped faces.
   double drop_covered(const CellBox& box, std::size_t first) {
     const std::span<FaceInBox> list = std::span(list_).subspan(first);
     const auto covers = [](const FaceInBox& face) { return face.is_all; };

@@ -88,8 +88,7 @@ struct KeySlopes {
     if (lost > 0.5 * area) return range;
     return std::min(range, (std::abs(x) + std::abs(y)) * moved / (area - lost));
   }
-  /// Greatest effect of roundings between the corners (view/triangle_keys.h): at most sixteen roundings, and none if
-  /// keys are equal.
+  /// Greatest effect of roundings between the corners (view/triangle_keys.h): at most sixteen; none if keys are equal.
   [[nodiscard]] double of_rounding(double nearest) const {
     if (range == 0) return 0;
     // No side is longer along x or y than half of the perimeter.

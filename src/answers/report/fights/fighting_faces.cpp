@@ -186,8 +186,7 @@ class FaceCells {
   TileLists lists_;
 };
 
-/// Finds all pairs of faces of different primitives that have an area in common and keys within reach of each other; in
-/// order.
+/// The pairs of faces of different primitives that have an area in common and keys in reach of each other, in order.
 std::vector<FacePair> find_face_pairs(const std::vector<ScreenFace>& faces, const View& view,
                                       const Execution& execution) {
   const FaceCells cells(faces, view);
@@ -305,9 +304,8 @@ void append_chords(std::span<const glm::dvec2> corners, double spacing, std::vec
   }
 }
 
-/// The area of the union divided by the sum of the areas: 1 if none overlap, at least 1 over their number. The union is
-/// measured along lines 1/16 pixel apart, or farther apart if there would be too many. Parts of a line in several areas
-/// count once.
+/// The area of the union divided by the sum of the areas: 1 if none overlap. The union is measured along lines 1/16
+/// pixel apart, or farther apart if there would be too many. Parts of a line in several areas count once.
 ///
 ///     +-------+
 ///     |-------|-----

@@ -100,8 +100,7 @@ class Frustum {
     return {(p.x / unit - projection_.left) * pixels_across_, (projection_.top - p.y / unit) * pixels_down_};
   }
 
-  /// Winding of a triangle on the screen, even if parts lie behind the eye: positive if its front is seen, 0 if it is
-  /// edge-on.
+  /// Winding of a triangle on the screen, even if parts lie behind the eye: positive if its front is seen, 0 edge-on.
   [[nodiscard]] double facing(const PointAhead& a, const PointAhead& b, const PointAhead& c) const {
     if (projection_.orthographic) return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     return glm::dot(a, glm::cross(b, c));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Explanations in words. Rounding keeps numbers true: only a whole share is written as 100 %, and only an empty one as
-// 0 %.
+// Explanations in words. Rounding keeps numbers true: only a whole share is written as 100 %, only an empty one as 0 %.
 
 #include <cmath>
 #include <unordered_map>
