@@ -336,8 +336,6 @@ double depth_scale_of(const Image& depths, double millimetres) {
   return scale;
 }
 
-void append_element(std::string& list, const Json& json) { list += (list.empty() ? "" : ", ") + json.dump(); }
-
 /// A line for each view, as bop_toolkit writes them.
 void append_view(std::string& file, std::size_t view, const std::string& text) {
   file += (file.empty() ? "  \"" : ",\n  \"") + std::to_string(view) + "\": " + text;
@@ -368,33 +366,34 @@ class BopFolder {
     options.depth_scale = millimetres_ / scale;
     folder_.add("depth/" + six_digits(view_) + ".png", depths, options, execution);
     append_view(cameras_, view_, camera_json(view, millimetres_, scale).dump());
+    append_view(poses_, view_, "[");
+    append_view(infos_, view_, "[");
     object_ = 0;
-    poses_.clear();
-    infos_.clear();
   }
 
   /// \throws Error unsupported for an object that is stretched or mirrored.
   void add(const DatasetView& view, ObjectInFrame object, const Execution& execution) {
     if (visible_ == BopVisible::bop19) mark_within_tolerance(view, object, distances_, execution);
-    const std::string name = "/" + six_digits(view_) + "_" + six_digits(object_++) + ".png";
+    const std::string name = "/" + six_digits(view_) + "_" + six_digits(object_) + ".png";
     const View& camera = view.visible.view;
     folder_.add("mask" + name, mask_image(object.mask, MaskPart::whole, camera), {}, execution);
     folder_.add("mask_visib" + name, mask_image(object.mask, MaskPart::visible, camera), {}, execution);
-    append_element(poses_, pose_json(view, object.number, millimetres_));
-    append_element(infos_, info_json(view.accounts.objects[object.number], object.mask));
+    const char* const separator = object_++ == 0 ? "" : ", ";
+    poses_ += separator + pose_json(view, object.number, millimetres_).dump();
+    infos_ += separator + info_json(view.accounts.objects[object.number], object.mask).dump();
   }
 
   void end_view() {
-    append_view(all_poses_, view_, "[" + poses_ + "]");
-    append_view(all_infos_, view_, "[" + infos_ + "]");
+    poses_ += ']';
+    infos_ += ']';
     ++view_;
   }
 
   [[nodiscard]] std::vector<std::string> finish() {
     const auto add = [&](const char* name, const std::string& views) { folder_.add(name, "{\n" + views + "\n}\n"); };
     add("scene_camera.json", cameras_);
-    add("scene_gt.json", all_poses_);
-    add("scene_gt_info.json", all_infos_);
+    add("scene_gt.json", poses_);
+    add("scene_gt_info.json", infos_);
     return folder_.finish();
   }
 
@@ -404,8 +403,7 @@ class BopFolder {
   std::size_t view_ = 0, object_ = 0;  ///< number of the view, and of the object within the view
   double millimetres_ = 1;             ///< millimetres in a unit of the scene
   Image distances_;                    ///< distances along the rays of the view
-  std::string poses_, infos_;          ///< JSON of the view
-  std::string cameras_, all_poses_, all_infos_;
+  std::string cameras_, poses_, infos_;
 };
 
 /// Masks as pictures: the visible part of each object, and the whole object within the frame.

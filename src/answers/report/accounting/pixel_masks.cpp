@@ -85,20 +85,17 @@ void go_on(MaskRun& above, MaskRun& run, int y) {
 }  // namespace
 
 struct PixelMasks::Parts {
-  Parts(const Surfaces& surfaces, const Visible& seen, Isa chosen)
-      : scene(placed_scene(surfaces)), visible(seen), isa(chosen), canvas(seen.view, 1), mask(scene, canvas, chosen) {}
-
   const PlacedScene& scene;
   const Visible& visible;
   Isa isa;
-  ObjectCanvas canvas;
-  ObjectMask mask;
+  ObjectCanvas canvas{visible.view, 1};
+  ObjectMask mask{scene, canvas, isa};
 };
 
 PixelMasks::PixelMasks(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
   validate(visible.view);
   check_answer(visible, surfaces.primitive_count(), "pixel masks", execution);
-  parts_ = std::make_unique<Parts>(surfaces, visible, execution.isa);
+  parts_.reset(new Parts{placed_scene(surfaces), visible, execution.isa});
 }
 
 PixelMasks::~PixelMasks() = default;

@@ -260,7 +260,7 @@ std::pair<double, double> rows_of(std::span<const glm::dvec2> corners) {
   return {top->y, bottom->y};
 }
 
-RowSpan span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, int width) {
+std::pair<int, int> span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, int width) {
   double low = -1, high = width;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const AffineOverScreen f = inside_of_side(corners[i], corners[i + 1 == corners.size() ? 0 : i + 1]);

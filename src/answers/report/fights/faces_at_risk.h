@@ -98,14 +98,9 @@ class ConvexArea {
 /// The least and the greatest y of some corners.
 [[nodiscard]] std::pair<double, double> rows_of(std::span<const glm::dvec2> corners);
 
-/// Pixels [first, end) of a row.
-struct RowSpan {
-  int first, end;
-};
-
-/// The pixels of a row of samples at `sample.y` that lie in an area, sides included. Samples are `sample.x` to the
-/// right of the left sides of their pixels.
-[[nodiscard]] RowSpan span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, int width);
+/// The pixels [first, end) of a row of samples at `sample.y` that lie in an area, sides included. Samples are
+/// `sample.x` to the right of the left sides of their pixels.
+[[nodiscard]] std::pair<int, int> span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, int width);
 
 /// Calls visit(number, x, y, offset) for the samples of a view in an area, in every `step`-th column and row. Numbers
 /// are in the order of Visible; offsets are relative to the corners of pixels.
@@ -118,9 +113,9 @@ void visit_samples(std::span<const glm::dvec2> corners, const View& view, int st
     const glm::dvec2 offset = glm::dvec2(samples[s]) / double(kSubPixels);
     for (int y = from(std::max(int(std::floor(top - offset.y)), 0)); y < view.height; y += step) {
       if (y + offset.y > bottom + 1) break;
-      const RowSpan row = span_of(corners, {offset.x, y + offset.y}, view.width);
+      const auto [begin, end] = span_of(corners, {offset.x, y + offset.y}, view.width);
       const std::size_t first = (s * std::size_t(view.height) + std::size_t(y)) * std::size_t(view.width);
-      for (int x = from(row.first); x < row.end; x += step) visit(first + std::size_t(x), x, y, offset);
+      for (int x = from(begin); x < end; x += step) visit(first + std::size_t(x), x, y, offset);
     }
   }
 }
