@@ -217,27 +217,21 @@ class NearestInTile {
   /// Compares the depths of `a` and `b` at a ray, where their bounds are `bounds` and `others`.
   [[nodiscard]] int compare_exactly(PrimitiveId a, PrimitiveId b, const BoundedPlane& plane, const DepthBounds& bounds,
                                     const DepthBounds& others, const SampleRay& ray) {
-    const Rival& rival = rival_of(a, b);
+    Rival& rival = rivals_[b % rivals_.size()];
+    if (rival.beside != a || rival.id != b) {
+      steps_ += kStepsOfPlanes;
+      const auto own = field_.surfaces.corners(a), other = field_.surfaces.corners(b);
+      const bool shares_plane = share_a_plane(own, other);
+      const bool has_depth = shares_plane && has_one_depth(own, field_.rays) && has_one_depth(other, field_.rays);
+      rival = {a, b, shares_plane, has_depth, std::nullopt};
+      if (shares_plane) rival.plane.emplace(other, field_.rays);
+    }
     if (rival.shares_plane &&
         (rival.has_one_depth || (plane.is_within_corners(bounds) && rival.plane->is_within_corners(others))))
       return 0;
     steps_ += kStepsOfDepths;
     return exact_depth(field_.surfaces.corners(a), field_.rays, ray)
         .compare(exact_depth(field_.surfaces.corners(b), field_.rays, ray));
-  }
-
-  /// The cached facts about `b` relative to `a`.
-  [[nodiscard]] const Rival& rival_of(PrimitiveId a, PrimitiveId b) {
-    Rival& rival = rivals_[b % rivals_.size()];
-    if (rival.beside == a && rival.id == b) return rival;
-    steps_ += kStepsOfPlanes;
-    const auto own = field_.surfaces.corners(a), other = field_.surfaces.corners(b);
-    rival.beside = a;
-    rival.id = b;
-    rival.shares_plane = share_a_plane(own, other);
-    rival.has_one_depth = rival.shares_plane && has_one_depth(own, field_.rays) && has_one_depth(other, field_.rays);
-    if (rival.shares_plane) rival.plane.emplace(other, field_.rays);
-    return rival;
   }
 
   NearestBounds& field_;
