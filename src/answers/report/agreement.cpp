@@ -146,9 +146,6 @@ class DifferenceMap {
   DifferenceMap(const Question& question, const std::vector<DifferingSample>& samples, const RuledOut& ruled_out,
                 const Execution& execution)
       : question_(question),
-        view_(question.view),
-        columns_((view_.width + kCell - 1) / kCell),
-        rows_((view_.height + kCell - 1) / kCell),
         numbers_(
             std::size_t(columns_) * std::size_t(rows_), samples.size(),
             [&](std::size_t i, const auto& add) { add(cell_of(samples[i]), i); }, execution),
@@ -191,8 +188,8 @@ class DifferenceMap {
   }
 
   const Question& question_;
-  const View& view_;
-  int columns_, rows_;
+  const View& view_ = question_.view;
+  int columns_ = (view_.width + kCell - 1) / kCell, rows_ = (view_.height + kCell - 1) / kCell;
   const Buckets<std::size_t> numbers_;  ///< of samples that differ, by cell
   std::vector<double> farthest_;        ///< by cell: nearness of the farthest of the remaining claims
   std::vector<SampleSquare> squares_;   ///< by cell, around the squares of all of its samples

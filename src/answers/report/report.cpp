@@ -75,13 +75,7 @@ void for_each_group(Buckets<Item>& buckets, const Execution& execution, Oddities
 /// The mesh after welding. Half-edge 3 * triangle + k runs from corner k to the next one.
 class MeshTopology {
  public:
-  MeshTopology(const Mesh& mesh, const Execution& execution)
-      : mesh_(mesh),
-        execution_(execution),
-        corners_(mesh.triangles.size()),
-        kinds_(mesh.triangles.size()),
-        triangle_sets_(mesh.triangles.size()),
-        corner_sets_(mesh.positions.size()) {
+  MeshTopology(const Mesh& mesh, const Execution& execution) : mesh_(mesh), execution_(execution) {
     const Buffer<std::uint32_t> first = first_at_place(mesh.positions, execution);
     parallel_for(execution, corners_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
@@ -201,9 +195,9 @@ class MeshTopology {
 
   const Mesh& mesh_;
   const Execution& execution_;
-  std::vector<glm::uvec3> corners_;
-  std::vector<Kind> kinds_;
-  DisjointSets<> triangle_sets_, corner_sets_;
+  std::vector<glm::uvec3> corners_ = std::vector<glm::uvec3>(mesh_.triangles.size());
+  std::vector<Kind> kinds_ = std::vector<Kind>(mesh_.triangles.size());
+  DisjointSets<> triangle_sets_{mesh_.triangles.size()}, corner_sets_{mesh_.positions.size()};
   std::vector<std::uint32_t> twins_;
 };
 

@@ -160,11 +160,9 @@ bool is_within(const PixelRect& rect, const PixelRect& whole) {
 class Accountant {
  public:
   Accountant(const PlacedScene& scene, const ObjectCanvas& canvas, const SeenObjects& seen, Isa isa)
-      : canvas_(canvas),
-        seen_(seen),
-        isa_(isa),
-        mask_(scene, canvas, isa),
-        counts_{std::vector<std::uint32_t>(scene.instance_bounds.size(), 0), {}} {}
+      : canvas_(canvas), seen_(seen), isa_(isa), mask_(scene, canvas, isa) {
+    counts_.of_object.resize(scene.instance_bounds.size(), 0);
+  }
 
   /// Sets the samples that an object covers, and appends those that others hide, by hider.
   void account(std::uint32_t number, ObjectAccount& object, std::vector<HiddenSamples>& hidden) {

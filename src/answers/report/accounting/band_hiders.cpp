@@ -7,6 +7,7 @@
 //
 // In most columns one of two objects lies wholly in front of the other; then their common bits are counted alone.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <memory>
 
@@ -63,10 +64,8 @@ class BandHiders {
         canvas_(canvas),
         objects_(objects),
         isa_(isa),
-        placer_(scene, canvas, isa),
         plane_(std::size_t(canvas.view.width) * kBandRows, kNotCovered),
-        columns_(std::size_t(canvas.view.width + kWordPixels - 1) / kWordPixels),
-        fronts_(std::size_t(kBandRows) * kWordPixels) {}
+        columns_(std::size_t(canvas.view.width + kWordPixels - 1) / kWordPixels) {}
 
   /// Finds the hidden samples with one sample number, in the pixels of the band that begins at row y0.
   void find(std::size_t sample, int y0, HiderLists& lists) {
@@ -186,7 +185,7 @@ class BandHiders {
 
   void find_fronts(const std::vector<HiderPiece>& column, std::vector<HiddenSamples>& only) {
     if (column.size() < 2) return;
-    std::fill(fronts_.begin(), fronts_.end(), FrontTwo{kNotCovered, kNotCovered, no_index, no_index});
+    fronts_.fill({kNotCovered, kNotCovered, no_index, no_index});
     for (const HiderPiece& piece : column)
       for (int y = piece.y0; y <= piece.y1; ++y) {
         const float* const keys = keys_from(piece, y);
@@ -223,12 +222,12 @@ class BandHiders {
   const ObjectCanvas& canvas_;
   std::span<const ObjectAccount> objects_;
   Isa isa_;
-  RecordPlacer placer_;
+  RecordPlacer placer_{scene_, canvas_, isa_};
   Buffer<float> plane_;  // nearest keys of one object in the band
   std::vector<std::vector<HiderPiece>> columns_;
   std::vector<std::uint64_t> words_;
   std::vector<float> keys_;
-  std::vector<FrontTwo> fronts_;
+  std::array<FrontTwo, std::size_t(kBandRows) * kWordPixels> fronts_;
   RowSpans spans_;
   glm::ivec2 offset_{0};
   PixelRect band_{0, 0, -1, -1};

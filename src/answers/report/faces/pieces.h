@@ -164,12 +164,7 @@ inline double angle_of(double x, double y) {
 /// with key 1 / distance lies at (u, v, 1) / key; in parallel projection at (u, v, -key), with key -distance.
 class AreaRule {
  public:
-  explicit AreaRule(const View& view)
-      : orthographic_(view.projection.orthographic),
-        left_(view.projection.left),
-        top_(view.projection.top),
-        step_x_((view.projection.right - view.projection.left) / view.width),
-        step_y_((view.projection.top - view.projection.bottom) / view.height) {}
+  explicit AreaRule(const View& view) : view_(view) {}
 
   /// The areas of a plane convex polygon, wound either way. Precondition: three corners; keys above 0 in perspective.
   [[nodiscard]] Areas areas_of(std::span<const ScreenPoint> polygon) const {
@@ -205,8 +200,11 @@ class AreaRule {
     return orthographic_ ? glm::dvec3(direction.x, direction.y, -key) : direction / key;
   }
 
-  bool orthographic_;
-  double left_, top_, step_x_, step_y_;
+  const View& view_;
+  const Projection& sides_ = view_.projection;
+  bool orthographic_ = sides_.orthographic;
+  double left_ = sides_.left, step_x_ = (sides_.right - sides_.left) / view_.width;
+  double top_ = sides_.top, step_y_ = (sides_.top - sides_.bottom) / view_.height;
 };
 
 /// A face of one of the largest cells. Such faces lie side by side in memory.

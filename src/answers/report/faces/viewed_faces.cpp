@@ -49,19 +49,7 @@ using EyePoint = glm::dvec3;
 
 class Eye {
  public:
-  explicit Eye(const View& view)
-      : at_(view.eye()),
-        right_(view.right()),
-        up_(view.up()),
-        forward_(view.forward()),
-        scale_x_(view.width / (view.projection.right - view.projection.left)),
-        scale_y_(view.height / (view.projection.top - view.projection.bottom)),
-        left_(view.projection.left * scale_x_),
-        top_(view.projection.top * scale_y_),
-        width_(view.width),
-        height_(view.height),
-        clip_(view.projection.clip),
-        orthographic_(view.projection.orthographic) {}
+  explicit Eye(const View& view) : view_(view) {}
 
   [[nodiscard]] EyePoint see(const glm::vec3& world) const {
     const glm::dvec3 p = glm::dvec3(world) - at_;
@@ -115,10 +103,13 @@ class Eye {
     polygon = std::move(kept);
   }
 
-  glm::dvec3 at_, right_, up_, forward_;
-  double scale_x_, scale_y_, left_, top_, width_, height_;
-  ClipDistances clip_;
-  bool orthographic_;
+  const View& view_;
+  const Projection& sides_ = view_.projection;
+  glm::dvec3 at_ = view_.eye(), right_ = view_.right(), up_ = view_.up(), forward_ = view_.forward();
+  double scale_x_ = view_.width / (sides_.right - sides_.left), scale_y_ = view_.height / (sides_.top - sides_.bottom);
+  double left_ = sides_.left * scale_x_, top_ = sides_.top * scale_y_, width_ = view_.width, height_ = view_.height;
+  ClipDistances clip_ = sides_.clip;
+  bool orthographic_ = sides_.orthographic;
 };
 
 /// The winding of a triangle on the screen: 1 to the right, -1 to the left, 0 if it is too narrow to be seen.

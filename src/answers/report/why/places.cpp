@@ -52,14 +52,7 @@ struct FrustumPolygon {
 /// The viewing volume, in doubles.
 class Frustum {
  public:
-  explicit Frustum(const View& view)
-      : eye_(view.eye()),
-        right_(view.right()),
-        up_(view.up()),
-        forward_(view.forward()),
-        projection_(view.projection),
-        pixels_across_(view.width / (projection_.right - projection_.left)),
-        pixels_down_(view.height / (projection_.top - projection_.bottom)) {}
+  explicit Frustum(const View& view) : view_(view) {}
 
   [[nodiscard]] bool is_orthographic() const { return projection_.orthographic; }
   [[nodiscard]] FrustumPoint see(const glm::vec3& world) const {
@@ -107,9 +100,12 @@ class Frustum {
   }
 
  private:
-  glm::dvec3 eye_, right_, up_, forward_;
-  Projection projection_;
-  double pixels_across_, pixels_down_;  ///< pixels per unit of the projection's rectangle
+  const View& view_;
+  Projection projection_ = view_.projection;
+  glm::dvec3 eye_ = view_.eye(), right_ = view_.right(), up_ = view_.up(), forward_ = view_.forward();
+  // Pixels per unit of the projection's rectangle.
+  double pixels_across_ = view_.width / (projection_.right - projection_.left);
+  double pixels_down_ = view_.height / (projection_.top - projection_.bottom);
 };
 
 /// Number of triangles with area 0 or a non-finite corner.
@@ -160,14 +156,7 @@ struct FrustumScratch {
 /// Finds the places of one range of triangles.
 class PlaceFinder {
  public:
-  PlaceFinder(const PlacedScene& scene, const View& view, Isa isa)
-      : scene_(scene),
-        frustum_(view),
-        facing_(view.culling, scene.sides.get()),
-        isa_(isa),
-        clear_(find_clear_materials(*scene.scene)) {
-    is_any_clear_ = std::find(clear_.begin(), clear_.end(), 1) != clear_.end();
-  }
+  PlaceFinder(const PlacedScene& scene, const View& view, Isa isa) : scene_(scene), view_(view), isa_(isa) {}
 
   /// `needs_area`: whether the triangles' positions on the screen matter.
   [[nodiscard]] ObjectPlaces find(const MeshRange& range, bool needs_area, FrustumScratch& scratch) const {
@@ -316,11 +305,12 @@ class PlaceFinder {
   }
 
   const PlacedScene& scene_;
-  Frustum frustum_;
-  FacingRule facing_;
+  const View& view_;
   Isa isa_;
-  std::vector<std::uint8_t> clear_;
-  bool is_any_clear_ = false;
+  Frustum frustum_{view_};
+  FacingRule facing_{view_.culling, scene_.sides.get()};
+  std::vector<std::uint8_t> clear_ = find_clear_materials(*scene_.scene);
+  bool is_any_clear_ = std::find(clear_.begin(), clear_.end(), 1) != clear_.end();
 };
 
 }  // namespace

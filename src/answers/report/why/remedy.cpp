@@ -97,11 +97,7 @@ double near_for(const ValueRange& nearer, const Projection& projection) {
 /// Turns or moves the camera so that a point comes into the picture, near its middle.
 class CameraAim {
  public:
-  CameraAim(const View& view, const PointAhead& target)
-      : projection_(view.projection),
-        target_(target),
-        middle_((projection_.left + projection_.right) / 2, (projection_.bottom + projection_.top) / 2),
-        size_(projection_.right - projection_.left, projection_.top - projection_.bottom) {}
+  CameraAim(const View& view, const PointAhead& target) : sides_(view.projection), target_(target) {}
 
   /// A move along one axis, if that suffices; otherwise along both.
   [[nodiscard]] Remedy move() const {
@@ -152,9 +148,10 @@ class CameraAim {
            std::abs(up / ahead - middle_.y) <= kInner * size_.y;
   }
 
-  const Projection& projection_;
+  const Projection& sides_;
   PointAhead target_;
-  glm::dvec2 middle_, size_;
+  glm::dvec2 middle_{(sides_.left + sides_.right) / 2, (sides_.bottom + sides_.top) / 2};
+  glm::dvec2 size_{sides_.right - sides_.left, sides_.top - sides_.bottom};
 };
 
 /// A circle of this radius, in pixels, contains a sample wherever it lies, even if corners are snapped.
