@@ -20,16 +20,7 @@
 
 namespace frontmost {
 
-SampleRays::SampleRays(const View& view)
-    : orthographic_(view.projection.orthographic),
-      eye_(view.eye()),
-      forward_(view.forward()),
-      right_(view.right()),
-      up_(view.up()),
-      left_(view.projection.left),
-      top_(view.projection.top),
-      step_x_((view.projection.right - view.projection.left) / view.width),
-      step_y_((view.projection.top - view.projection.bottom) / view.height) {
+SampleRays::SampleRays(const View& view) : view_(view) {
   const ScreenTransform t(view);
   near_ = double(t.near);
   far_ = double(t.far);

@@ -36,9 +36,12 @@ class SampleRays {
   [[nodiscard]] double far() const { return far_; }
 
  private:
-  bool orthographic_;
-  glm::dvec3 eye_, forward_, right_, up_;
-  double left_, top_, step_x_, step_y_, near_, far_, widest_;
+  View view_;
+  bool orthographic_ = view_.projection.orthographic;
+  glm::dvec3 eye_ = view_.eye(), forward_ = view_.forward(), right_ = view_.right(), up_ = view_.up();
+  double left_ = view_.projection.left, step_x_ = (view_.projection.right - view_.projection.left) / view_.width;
+  double top_ = view_.projection.top, step_y_ = (view_.projection.top - view_.projection.bottom) / view_.height;
+  double near_, far_, widest_;
 };
 
 /// The place of a sample in the picture, in 1/256 pixel. Samples are numbered as in Visible.

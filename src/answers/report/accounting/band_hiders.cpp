@@ -28,10 +28,10 @@ constexpr float kNotCovered = -1;  // keys are 0 and more
 /// The part of a column that one object covers.
 struct HiderPiece {
   std::uint32_t object;
-  int x0, x1;  ///< pixels of the column, both inclusive
-  int y0, y1;  ///< rows of the band
-  float nearest, farthest;
+  int x0, x1;               ///< pixels of the column, both inclusive
+  int y0, y1;               ///< rows of the band
   std::size_t words, keys;  ///< beginning of row y0; each row has a word, and a key for each x from x0 to x1
+  float nearest = 0, farthest = std::numeric_limits<float>::infinity();
 };
 
 /// The nearest object of a sample and the second nearest one.
@@ -126,21 +126,15 @@ class BandHiders {
 
   /// Keeps the part of an object in a column of the plane.
   void add_piece(std::uint32_t object, int word, const PixelRect& rect) {
-    HiderPiece piece{object,
-                     std::max(rect.x0 - word * kWordPixels, 0),
-                     std::min(rect.x1 - word * kWordPixels, kWordPixels - 1),
-                     rect.y0 - band_.y0,
-                     rect.y1 - band_.y0,
-                     0,
-                     std::numeric_limits<float>::infinity(),
-                     words_.size(),
-                     keys_.size()};
+    const int x0 = std::max(rect.x0 - word * kWordPixels, 0);
+    const int x1 = std::min(rect.x1 - word * kWordPixels, kWordPixels - 1);
+    HiderPiece piece{object, x0, x1, rect.y0 - band_.y0, rect.y1 - band_.y0, words_.size(), keys_.size()};
     bool is_empty = true;
     for (int y = rect.y0; y <= rect.y1; ++y) {
       const float* const row = key_at(word * kWordPixels, y);
-      keys_.insert(keys_.end(), row + piece.x0, row + piece.x1 + 1);
+      keys_.insert(keys_.end(), row + x0, row + x1 + 1);
       std::uint64_t bits = 0;
-      for (int x = piece.x0; x <= piece.x1; ++x) {
+      for (int x = x0; x <= x1; ++x) {
         if (row[x] == kNotCovered) continue;
         bits |= std::uint64_t(1) << x;
         piece.nearest = std::max(piece.nearest, row[x]);

@@ -348,8 +348,7 @@ class PieceCutter {
     double farthest;
     std::array<CutLine, 3> sides;  ///< positive inside the face
     AffineKey plane;
-    double least, most;  ///< keys of its corners
-    Range x, y;
+    Range keys;                  ///< of its corners
     std::uint32_t plane_number;  ///< equal for candidates that are known to lie in one plane
   };
   /// The bounds of a candidate, checked first.
@@ -384,16 +383,8 @@ class PieceCutter {
   static Candidate candidate(std::uint32_t face, const ScreenPoint* corners, double farthest) {
     const ScreenPoint &a = corners[0], &b = corners[1], &c = corners[2];
     const double inwards = turn_of(a, b, c) > 0 ? 1 : -1;
-    const Range key = range_of(a.key, b.key, c.key);
-    return {face,
-            farthest,
-            {side_of(a, b, inwards), side_of(b, c, inwards), side_of(c, a, inwards)},
-            AffineKey(a, b, c),
-            key.low,
-            key.high,
-            range_of(a.x, b.x, c.x),
-            range_of(a.y, b.y, c.y),
-            no_index};
+    const std::array<CutLine, 3> sides{side_of(a, b, inwards), side_of(b, c, inwards), side_of(c, a, inwards)};
+    return {face, farthest, sides, AffineKey(a, b, c), range_of(a.key, b.key, c.key), no_index};
   }
 
   /// Reorders the faces by their keys relative to the plane of the first face. In a slanted box, keys of close sheets
@@ -578,7 +569,7 @@ class PieceCutter {
     std::array<ScreenPoint, ConvexPiece::most_corners> corners;
     std::size_t count = 0;
     for (const glm::dvec2& p : polygon)
-      corners[count++] = {p.x, p.y, std::clamp(face.plane.at(p), face.least, face.most)};
+      corners[count++] = {p.x, p.y, std::clamp(face.plane.at(p), face.keys.low, face.keys.high)};
     const Areas areas = faces_.rule.areas_of(std::span(corners).first(count));
     if (areas.pixels > 0) seen.push_back({face.face, areas});
   }
