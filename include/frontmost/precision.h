@@ -194,8 +194,8 @@ struct OffsetRemedy {
 
 /// The least offset, in units of powers of two up to 2^16, that makes the pair's second object seen at every sample of
 /// their areas where either object is nearest. Found by drawing up to 17 pictures. None if no such offset suffices, and
-/// for an object with itself or with the clear value. Precondition: `exact` and `fights` are of the same view, and
-/// `pair` is one of `fights`.
+/// for an object with itself or the clear value. Precondition: `exact` and `fights` are of one view, `pair` of
+/// `fights`.
 [[nodiscard]] std::optional<OffsetRemedy> find_offset(const Surfaces& surfaces, const ExactVisible& exact,
                                                       const FightAreas& fights, const FightingObjects& pair,
                                                       const Execution& execution = {});
@@ -252,8 +252,7 @@ struct Agreement {
 
 /// Adds the reason `translucent`, for methods that answer in layers. Considers the samples that agree and where
 /// `behind` shows something: they become `translucent` if Material::is_see_through() holds for what `front` shows, else
-/// `unexplained`. O(samples). \throws Error bad_argument if the layers were made for different views; all must have the
-/// same view.
+/// `unexplained`. O(samples). \throws Error bad_argument if the layers were made for different views.
 void see_through(Agreement& agreement, const Surfaces& surfaces, const Visible& front, const Visible& behind);
 
 }  // namespace frontmost

@@ -434,21 +434,14 @@ struct VisibleFaces {
   std::vector<VisibleFace> faces;  ///< by id, ascending; only triangles that are seen
 };
 
-// How visible_faces() works: the picture is divided into cells, and a cell in which something ends into smaller ones.
-// (J. Warnock. A Hidden Surface Algorithm for Computer Generated Halftone Pictures. 1969.) In a cell where no surface
-// ends, and the nearest surface lies in front of all others, the visible faces are known without cutting. In the
-// smallest cells triangles cut each other. Cuts that would leave less than 2^-30 pixel on one side are not made, so
-// narrower parts are not told apart from their neighbours. The limit of 2^31 steps is 15 times what the most crowded of
-// 237 models takes.
-
 /// Finds every triangle of which a part is seen within the picture, between near and far, with the area of that part.
 /// Vertices are not snapped, so triangles far smaller than a pixel are found. No place counts twice: where triangles
 /// lie exactly in one plane, the lower id is seen; triangles that pass through each other are cut along their
-/// intersection. Triangles with holes (alpha mode MASK) and translucent ones count as whole, and hide. Culled triangles
-/// are left out; View::samples is ignored. The same for any number of threads and every instruction set. Near-linear in
-/// meshes and stacks of parallel sheets; O(n^2) where n triangles pass through each other and none hides the others.
-/// About 150 bytes a triangle, 350 without shared vertices.
-/// \throws Error as validate(view) does; limit_exceeded for a mesh of more than 2^29 triangles, or about 2^31 steps.
+/// intersection. Parts narrower than 2^-30 pixel are not told apart from their neighbours. Triangles with holes (alpha
+/// mode MASK) and translucent ones count as whole, and hide. Culled triangles are left out; View::samples is ignored.
+/// The same for any number of threads and every instruction set. Near-linear in meshes and stacks of parallel sheets;
+/// O(n^2) where n triangles pass through each other and none hides the others. About 150 bytes a triangle, 350 without
+/// shared vertices. \throws Error as validate(view) does; limit_exceeded beyond 2^29 triangles a mesh or 2^31 steps.
 [[nodiscard]] VisibleFaces visible_faces(const Surfaces& surfaces, const View& view, const Execution& execution = {});
 
 /// A triangle that is seen in at least one of several views.
@@ -511,8 +504,7 @@ class DatasetWriter {
   DatasetWriter(const DatasetWriter&) = delete;
   DatasetWriter& operator=(const DatasetWriter&) = delete;
 
-  /// Adds a view; views are numbered from 0. `picture` is COCO's file_name. Views may be of different scenes. After an
-  /// error only the destructor may be called.
+  /// Adds a view, also of another scene; views are numbered from 0. `picture` is COCO's file_name. Not after an error.
   /// \throws Error file_unwritable; unsupported for BOP of a parallel view, or of an object that is stretched or
   /// mirrored; bad_argument for a name in leave_out that nothing has, for several samples a pixel, and for two
   /// categories of one number.

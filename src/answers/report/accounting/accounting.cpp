@@ -74,7 +74,7 @@ struct BandReader {
   const std::vector<PrimitiveId>& first_primitives;
   const Visible& visible;
   int left;  ///< index of the picture's first pixel in its word
-  Isa isa;
+  MaskKernels kernels;
 
   [[nodiscard]] SeenRows read(int sample, int y0, int y1, TallyList& tallies, std::uint64_t& background) const {
     const View& view = visible.view;
@@ -93,7 +93,7 @@ struct BandReader {
           first = *std::prev(next);
           count = *next - first;
         }
-        const SeenSpan span = find_seen_span({ids + x, std::size_t(view.width - x)}, keys + x, first, count, isa);
+        const SeenSpan span = kernels.find_seen_span({ids + x, std::size_t(view.width - x)}, keys + x, first, count);
         const PixelRect run{x, y, x + int(span.end) - 1, y};
         x = run.x1 + 1;
         rows.append(left + run.x0, left + x, object);
@@ -128,7 +128,7 @@ SeenObjects read_picture(const PlacedScene& scene, const Visible& visible, const
   std::vector<std::vector<SeenTally>> tallies(count);
   std::vector<std::uint64_t> background(count, 0);
   Pool<TallyList> lists;
-  const BandReader reader{scene.first_primitives, visible, margin.x % kWordPixels, execution.isa};
+  const BandReader reader{scene.first_primitives, visible, margin.x % kWordPixels, mask_kernels(execution.isa)};
   parallel_for(execution, count, 1, [&](std::size_t begin, std::size_t end) {
     const auto list = lists.borrow([&] { return std::make_unique<TallyList>(result.objects.size()); });
     for (std::size_t i = begin; i < end; ++i) {
@@ -160,7 +160,7 @@ bool is_within(const PixelRect& rect, const PixelRect& whole) {
 class Accountant {
  public:
   Accountant(const PlacedScene& scene, const ObjectCanvas& canvas, const SeenObjects& seen, Isa isa)
-      : canvas_(canvas), seen_(seen), isa_(isa), mask_(scene, canvas, isa) {
+      : canvas_(canvas), seen_(seen), kernels_(mask_kernels(isa)), mask_(scene, canvas, isa) {
     counts_.of_object.resize(scene.instance_bounds.size(), 0);
   }
 
@@ -173,7 +173,7 @@ class Accountant {
     object.alone = count_samples(touched);
     if (in_frame.is_empty()) return;
     object.in_frame = is_within(touched, canvas_.frame) ? object.alone : count_samples(in_frame);
-    for (const MaskPlane& plane : mask_.planes()) count_seen(plane, in_frame, seen_, counts_, isa_);
+    for (const MaskPlane& plane : mask_.planes()) kernels_.count_seen(plane, in_frame, seen_, counts_);
     std::sort(counts_.met.begin(), counts_.met.end());
     for (const std::uint32_t hider : counts_.met) {
       if (hider != number) hidden.push_back({number, hider, counts_.of_object[hider]});
@@ -188,7 +188,7 @@ class Accountant {
     SampleSet set;
     PixelRect outermost = kNoPixels;
     for (const MaskPlane& plane : mask_.planes()) {
-      const MarkedSamples marked = count_marked(plane, rect, isa_);
+      const MarkedSamples marked = kernels_.count_marked(plane, rect);
       if (marked.count == 0) continue;
       set.count += marked.count;
       outermost = around(outermost, marked.rect);
@@ -199,7 +199,7 @@ class Accountant {
 
   const ObjectCanvas& canvas_;
   const SeenObjects& seen_;
-  Isa isa_;
+  MaskKernels kernels_;
   ObjectMask mask_;
   SampleCounts counts_;
 };

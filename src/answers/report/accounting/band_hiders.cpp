@@ -63,7 +63,8 @@ class BandHiders {
       : scene_(scene),
         canvas_(canvas),
         objects_(objects),
-        isa_(isa),
+        kernels_(mask_kernels(isa)),
+        placer_(scene, canvas, isa),
         plane_(std::size_t(canvas.view.width) * kBandRows, kNotCovered),
         columns_(std::size_t(canvas.view.width + kWordPixels - 1) / kWordPixels) {}
 
@@ -94,7 +95,7 @@ class BandHiders {
  private:
   void draw(const TriangleRecord& record, const PixelRect& rect) {
     const MaskPlane plane{nullptr, 0, canvas_.view.width, canvas_.view.height, 0, offset_};
-    find_spans(plane, record, spans_, isa_);
+    kernels_.find_spans(plane, record, spans_);
     std::optional<ScreenCutout> cutout;
     if (scene_.cutouts && scene_.cutouts->has(record.id)) cutout.emplace((*scene_.cutouts)[record.id], canvas_.rays);
     const KeyPlane gentle(record);
@@ -160,9 +161,9 @@ class BandHiders {
         const std::span<const std::uint64_t> of_a = words_from(a, y0, y1), of_b = words_from(b, y0, y1);
         std::uint64_t hidden_b = 0, hidden_a = 0;
         if (a.farthest >= b.nearest)
-          hidden_b = count_common(of_a, of_b, isa_);
+          hidden_b = kernels_.count_common(of_a, of_b);
         else if (b.farthest > a.nearest)
-          hidden_a = count_common(of_a, of_b, isa_);
+          hidden_a = kernels_.count_common(of_a, of_b);
         else
           for (int y = y0; y <= y1; ++y) {
             const float *const keys_a = keys_from(a, y), *const keys_b = keys_from(b, y);
@@ -215,8 +216,8 @@ class BandHiders {
   const PlacedScene& scene_;
   const ObjectCanvas& canvas_;
   std::span<const ObjectAccount> objects_;
-  Isa isa_;
-  RecordPlacer placer_{scene_, canvas_, isa_};
+  MaskKernels kernels_;
+  RecordPlacer placer_;
   Buffer<float> plane_;  // nearest keys of one object in the band
   std::vector<std::vector<HiderPiece>> columns_;
   std::vector<std::uint64_t> words_;

@@ -339,33 +339,11 @@ FRONTMOST_KERNELS(CountCommon);
 FRONTMOST_KERNELS(CountSeen);
 FRONTMOST_KERNELS(FindSeenSpan);
 
-void mark_triangles(const MaskPlane& plane, const BatchColumns& columns, std::size_t count, Isa isa) {
-  kernel_for(MarkTrianglesKernels, isa)(plane, columns, count);
-}
-
-void find_spans(const MaskPlane& plane, const TriangleRecord& record, RowSpans& spans, Isa isa) {
-  kernel_for(FindSpansKernels, isa)(plane, record, spans);
-}
-
-void mark_triangle(const MaskPlane& plane, const TriangleRecord& record, Isa isa) {
-  kernel_for(MarkTriangleKernels, isa)(plane, record);
-}
-
-MarkedSamples count_marked(const MaskPlane& plane, const PixelRect& rect, Isa isa) {
-  return kernel_for(CountMarkedKernels, isa)(plane, rect);
-}
-
-std::uint64_t count_common(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b, Isa isa) {
-  return kernel_for(CountCommonKernels, isa)(a, b);
-}
-
-void count_seen(const MaskPlane& plane, const PixelRect& rect, const SeenObjects& seen, SampleCounts& counts, Isa isa) {
-  kernel_for(CountSeenKernels, isa)(plane, rect, seen, counts);
-}
-
-SeenSpan find_seen_span(std::span<const PrimitiveId> ids, const float* keys, PrimitiveId first, std::uint32_t count,
-                        Isa isa) {
-  return kernel_for(FindSeenSpanKernels, isa)(ids, keys, first, count);
+MaskKernels mask_kernels(Isa isa) {
+  return {kernel_for(MarkTrianglesKernels, isa), kernel_for(MarkTriangleKernels, isa),
+          kernel_for(FindSpansKernels, isa),     kernel_for(CountMarkedKernels, isa),
+          kernel_for(CountCommonKernels, isa),   kernel_for(CountSeenKernels, isa),
+          kernel_for(FindSeenSpanKernels, isa)};
 }
 
 }  // namespace frontmost::accounting_detail

@@ -67,7 +67,7 @@ ObjectMask::ObjectMask(const PlacedScene& scene, const ObjectCanvas& canvas, Isa
     : scene_(scene),
       canvas_(canvas),
       target_(canvas.transform, canvas.view, scene.sides.get(), isa),
-      touched_(kNoPixels) {
+      kernels_(mask_kernels(isa)) {
   const View& view = canvas.view;
   const auto stride = std::size_t(view.width + kWordPixels - 1) / kWordPixels;
   const std::size_t words = stride * std::size_t(view.height);
@@ -146,19 +146,19 @@ void ObjectMask::draw_small() {
     batch_.extract([&](PrimitiveId id) { return scene_.cutouts->has(id); }, cutout_batch_);
     for (std::size_t i = 0; i < cutout_batch_.count; ++i) cutouts_.push_back(cutout_batch_.record(i));
   }
-  for (const MaskPlane& plane : planes_) mark_triangles(plane, batch_.columns(), batch_.count, target_.isa);
+  for (const MaskPlane& plane : planes_) kernels_.mark_triangles(plane, batch_.columns(), batch_.count);
 }
 
 void ObjectMask::draw_large(const TriangleRecord& record) {
   touched_ = around(touched_, pixel_rect(record, canvas_.view.width, canvas_.view.height));
   if (scene_.cutouts && scene_.cutouts->has(record.id)) return cutouts_.push_back(record);
-  for (const MaskPlane& plane : planes_) mark_triangle(plane, record, target_.isa);
+  for (const MaskPlane& plane : planes_) kernels_.mark_triangle(plane, record);
 }
 
 void ObjectMask::draw_cutout(const TriangleRecord& record) {
   const ScreenCutout cutout((*scene_.cutouts)[record.id], canvas_.rays);
   for (const MaskPlane& plane : planes_) {
-    find_spans(plane, record, spans_, target_.isa);
+    kernels_.find_spans(plane, record, spans_);
     const glm::ivec2 first = plane.place - canvas_.margin * kSubPixels;  // relative to the picture's top left
     for (int i = 0; i < spans_.count; ++i) {
       const int y = spans_.first + i;

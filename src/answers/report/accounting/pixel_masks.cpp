@@ -108,7 +108,7 @@ PixelMask PixelMasks::of(std::uint32_t object) {
   PixelMask result;
   if (touched.is_empty()) return result;
   const MaskPlane& plane = parts.mask.planes()[0];
-  const PixelRect rect = count_marked(plane, touched, parts.isa).rect;
+  const PixelRect rect = mask_kernels(parts.isa).count_marked(plane, touched).rect;
   if (rect.is_empty()) return result;
   result.box = {rect.x0, rect.y0, rect.x1 - rect.x0 + 1, rect.y1 - rect.y0 + 1};
   result.pixels = Buffer<MaskPixel>(std::size_t(result.box.width) * std::size_t(result.box.height));

@@ -168,9 +168,8 @@ class AreaRule {
 
   /// The areas of a plane convex polygon, wound either way. Precondition: three corners; keys above 0 in perspective.
   [[nodiscard]] Areas areas_of(std::span<const ScreenPoint> polygon) const {
-    // A fan about the first corner. The determinant of three directions equals that of two differences in the image
-    // plane, so small triangles lose nothing to rounding. (A. van Oosterom, J. Strackee. The Solid Angle of a Plane
-    // Triangle. 1983.)
+    // A fan about the first corner. Determinants of directions are taken in the image plane, so small triangles lose
+    // nothing to rounding. (A. van Oosterom, J. Strackee. The Solid Angle of a Plane Triangle. 1983.)
     const glm::dvec3 a = direction_to(polygon[0]), at = place_of(a, polygon[0].key);
     const double a_length = glm::length(a);
     glm::dvec3 b = direction_to(polygon[1]), to_b = place_of(b, polygon[1].key) - at, normal(0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Visible faces cell by cell of the picture: at once in cells where no relevant surface ends, else in smaller cells.
+// Visible faces cell by cell of the picture: at once where no relevant surface ends, else in smaller cells, at last by
+// cutting. (J. Warnock. A Hidden Surface Algorithm for Computer Generated Halftone Pictures. 1969.)
 //
 //   Surfaces --viewed_faces()--> faces on the screen --cells--> parts of them --added up--> VisibleFaces
 //
@@ -264,8 +265,7 @@ class CellSolver {
     list_.resize(first);
   }
 
-  /// Divides a cell into four. \returns false if it is too small for that, or if most of its faces reach into all
-  /// parts.
+  /// Divides a cell into four. \returns false if it is too small, or if most of its faces reach into all parts.
   bool divide_further(const CellBox& box, std::size_t first, double removed) {
     const double size = std::max(box.right - box.left, box.bottom - box.top);
     if (size <= kSmallestCell) return false;
@@ -298,8 +298,7 @@ class CellSolver {
     return true;
   }
 
-  /// Divides a cell into 4 x 4, at first by the boxes of its faces. \returns false if very many of these meet all
-  /// parts.
+  /// Divides a cell into 4 x 4, at first by boxes of faces. \returns false if very many of these meet all parts.
   bool divide_crowd(const CellBox& box, std::size_t first, double removed) {
     constexpr int kAlong = 4;
     const double width = (box.right - box.left) / kAlong, height = (box.bottom - box.top) / kAlong;

@@ -173,7 +173,7 @@ bool LoneObject::has_sample(const View& view, const ObjectPlaces& places, int fa
   ObjectMask mask(placed_scene(surfaces_), canvas, Isa::best);
   mask.draw(0);
   const auto is_marked = [&](const MaskPlane& plane) {
-    return count_marked(plane, mask.touched(), Isa::best).count > 0;
+    return mask_kernels(Isa::best).count_marked(plane, mask.touched()).count > 0;
   };
   return !mask.touched().is_empty() && std::any_of(mask.planes().begin(), mask.planes().end(), is_marked);
 }
