@@ -194,8 +194,7 @@ struct OffsetRemedy {
 
 /// The least offset, in units of powers of two up to 2^16, that makes the pair's second object seen at every sample of
 /// their areas where either object is nearest. Found by drawing up to 17 pictures. None if no such offset suffices, and
-/// for an object with itself or the clear value. Precondition: `exact` and `fights` are of one view, `pair` of
-/// `fights`.
+/// for an object with itself or the clear value. Precondition: `pair` is of `fights`, and `exact` of the same view.
 [[nodiscard]] std::optional<OffsetRemedy> find_offset(const Surfaces& surfaces, const ExactVisible& exact,
                                                       const FightAreas& fights, const FightingObjects& pair,
                                                       const Execution& execution = {});

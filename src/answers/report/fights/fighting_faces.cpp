@@ -246,7 +246,9 @@ struct FightSearch {
   }
 };
 
-FoundAreas find_areas(const FightSearch& search, const std::vector<FacePair>& pairs, const Execution& execution) {
+/// Appends the areas of all pairs.
+void find_areas(const FightSearch& search, const std::vector<FacePair>& pairs, const Execution& execution,
+                FightAreas& all) {
   constexpr std::size_t kGrain = 4096, kMostAreas = std::size_t(1) << 22, kPairsAtOnce = 16;
   constexpr std::uint64_t kMostLooks = std::uint64_t(1) << 30, kMostLooksOfSample = 64;
   WorkLimit work(execution, kMostLooks + kMostLooksOfSample * search.visible.view.sample_count(), kPlace);
@@ -262,7 +264,6 @@ FoundAreas find_areas(const FightSearch& search, const std::vector<FacePair>& pa
         });
     }
   });
-  FoundAreas all;
   for (const FoundAreas& part : parts) {
     const auto shift = std::uint32_t(all.corners.size());
     all.corners.insert(all.corners.end(), part.corners.begin(), part.corners.end());
@@ -273,7 +274,6 @@ FoundAreas find_areas(const FightSearch& search, const std::vector<FacePair>& pa
     if (all.faces.size() > kMostAreas)
       throw Error(ErrorCode::limit_exceeded, kPlace, "more than 4194304 areas are at risk");
   }
-  return all;
 }
 
 /// The part of a horizontal line within an area.
@@ -389,9 +389,7 @@ FightAreas find_fighting_faces(const Surfaces& surfaces, const View& view, Depth
   for (std::uint32_t i = 0; i < faces.size(); ++i)
     if (finder.may_be_clear_value(faces[i])) pairs.push_back({i, i});
   std::inplace_merge(pairs.begin(), pairs.begin() + of_two, pairs.end());
-  FoundAreas found = find_areas({surfaces, visible, fights.setup, faces}, pairs, execution);
-  fights.faces = std::move(found.faces);
-  fights.corners = std::move(found.corners);
+  find_areas({surfaces, visible, fights.setup, faces}, pairs, execution, fights);
   fights.objects = join_by_objects(fights, surfaces);
   return fights;
 }
