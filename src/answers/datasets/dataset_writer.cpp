@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -81,16 +80,15 @@ class DatasetFolder {
     write(name, [&](const std::string& path) { save_text(text, path); });
   }
 
-  /// Moves the files to their places, and removes other numbered files from the folders within. \returns the paths.
-  [[nodiscard]] std::vector<std::string> finish() {
+  /// Moves the files to their places, removes other numbered files from the folders within, and appends the paths.
+  void finish(std::vector<std::string>& paths) {
     for (const Within& made : within_)
       if (const fs::path path = fs::path(folder_) / made.name; fs::exists(path) && !fs::is_directory(path))
         throw Error(ErrorCode::file_unwritable, path.string(), "", "not a folder");
     for (const Within& made : within_) fs::create_directories(fs::path(folder_) / made.name);
     staged_.commit(names_);
     remove_stale();
-    for (std::string& name : names_) name = (fs::path(folder_) / name).string();
-    return std::move(names_);
+    for (const std::string& name : names_) paths.push_back((fs::path(folder_) / name).string());
   }
 
  private:
@@ -389,12 +387,12 @@ class BopFolder {
     ++view_;
   }
 
-  [[nodiscard]] std::vector<std::string> finish() {
+  void finish(std::vector<std::string>& paths) {
     const auto add = [&](const char* name, const std::string& views) { folder_.add(name, "{\n" + views + "\n}\n"); };
     add("scene_camera.json", cameras_);
     add("scene_gt.json", poses_);
     add("scene_gt_info.json", infos_);
-    return folder_.finish();
+    folder_.finish(paths);
   }
 
  private:
@@ -424,7 +422,7 @@ class MaskFolder {
     for (const auto& [part, word] : {std::pair(MaskPart::visible, "_visible.png"), {MaskPart::whole, "_amodal.png"}})
       folder_.add(begin + word, mask_image(object.mask, part, view.visible.view), {}, execution);
   }
-  [[nodiscard]] std::vector<std::string> finish() { return folder_.finish(); }
+  void finish(std::vector<std::string>& paths) { folder_.finish(paths); }
 
  private:
   DatasetFolder folder_;
@@ -495,16 +493,13 @@ void DatasetWriter::add(const DatasetView& view, const std::string& picture, con
 
 std::vector<std::string> DatasetWriter::finish() {
   std::vector<std::string> files;
-  const auto add = [&](std::vector<std::string> more) {
-    std::move(more.begin(), more.end(), std::back_inserter(files));
-  };
   Parts& parts = *parts_;
   if (parts.coco) {
     save_text(parts.coco->text(), *parts.options.coco);
     files.push_back(*parts.options.coco);
   }
-  if (parts.bop) add(parts.bop->finish());
-  if (parts.masks) add(parts.masks->finish());
+  if (parts.bop) parts.bop->finish(files);
+  if (parts.masks) parts.masks->finish(files);
   return files;
 }
 
