@@ -140,8 +140,9 @@ struct VerticesOfView {
       for (std::size_t number = begin; number < end; ++i) {
         const glm::vec3* const positions = scene.meshes[scene.instances[i].mesh].positions.data();
         const ToWorld world(scene.instances[i].world_from_mesh);
-        for (; number < std::min(first[i + 1], end); ++number) {
-          const EyePoint at = eye.see(world(positions[number - first[i]]));
+        const std::size_t start = first[i], last = std::min(first[i + 1], end);
+        for (; number < last; ++number) {
+          const EyePoint at = eye.see(world(positions[number - start]));
           points[number] = eye.project(at);
           outside[number] = eye.outside(at);
         }
