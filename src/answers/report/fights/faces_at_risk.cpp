@@ -180,10 +180,9 @@ std::vector<ScreenFace> screen_faces(const Surfaces& surfaces, const View& view,
       const WorldTriangles triangles = world_triangles(placed, placed.ranges[i], execution.isa, *scratch);
       snap_vertices(target, triangles.positions, scratch->vertices);
       for (std::size_t k = 0; k < triangles.corners.size(); ++k) {
-        const ClippedPolygon polygon = polygon_of(target, triangles, scratch->vertices, k);
-        if (polygon.count == 0) continue;
         records.clear();
-        append_polygon(target, polygon, PrimitiveId(triangles.first_id + k), records);
+        append_polygon(target, polygon_of(target, triangles, scratch->vertices, k), PrimitiveId(triangles.first_id + k),
+                       records);
         for (const TriangleRecord& record : records) finish(record, parts[i]);
       }
     }
@@ -206,10 +205,6 @@ constexpr double kMostAsked = 4096, kLeastAsked = 64, kAskedOfAll = 1 << 28;
 AffineOverScreen inside_of_side(const glm::dvec2& from, const glm::dvec2& to) {
   const glm::dvec2 normal(from.y - to.y, to.x - from.x);
   return {-glm::dot(normal, from), normal};
-}
-
-std::array<glm::dvec2, 3> corners_of(const ScreenFace& face) {
-  return {face.corner(0), face.corner(1), face.corner(2)};
 }
 
 /// Not negative where `nearer` is not surely shown: constant + relative * nearer - (nearer - other).
@@ -248,12 +243,6 @@ double ConvexArea::area() const {
   return 0.5 * doubled;
 }
 
-glm::dvec2 ConvexArea::centre() const {
-  glm::dvec2 sum(0);
-  for (const glm::dvec2& corner : corners_) sum += corner;
-  return sum / double(corners_.size());
-}
-
 std::pair<double, double> rows_of(std::span<const glm::dvec2> corners) {
   const auto is_above = [](const glm::dvec2& a, const glm::dvec2& b) { return a.y < b.y; };
   const auto [top, bottom] = std::minmax_element(corners.begin(), corners.end(), is_above);
@@ -276,11 +265,6 @@ std::pair<int, int> span_of(std::span<const glm::dvec2> corners, const glm::dvec
   return {first, std::max(first, end)};
 }
 
-RiskFinder::RiskFinder(const View& view, const DepthSetup& setup)
-    : size_(view.width, view.height),
-      step_(setup),
-      farthest_key_(setup.orthographic ? 0 : setup.clip.near / setup.clip.far) {}
-
 void RiskFinder::cut_by_frame() {
   for (int axis = 0; axis < 2; ++axis) {
     glm::dvec2 along(0);
@@ -293,7 +277,7 @@ void RiskFinder::cut_by_frame() {
 const ConvexArea& RiskFinder::of_pair(const ScreenFace& a, const ScreenFace& b) {
   const KeyOverScreen first = a.keys(), second = b.keys();
   const double slack = double(a.slack) + double(b.slack);
-  area_.assign(corners_of(a));
+  area_.assign(a);
   area_.cut(is_not_shown(first, second, step_, slack));
   if (!area_.is_empty()) area_.cut(is_not_shown(second, first, step_, slack));
   for (int k = 0; k < 3 && !area_.is_empty(); ++k) area_.cut(inside_of_side(b.corner(k), b.corner(k == 2 ? 0 : k + 1)));
@@ -303,7 +287,7 @@ const ConvexArea& RiskFinder::of_pair(const ScreenFace& a, const ScreenFace& b) 
 
 const ConvexArea& RiskFinder::of_clear_value(const ScreenFace& face) {
   const KeyOverScreen keys = face.keys();
-  area_.assign(corners_of(face));
+  area_.assign(face);
   cut_by_frame();
   area_.cut({farthest_key_ + 0.5 * step_.constant + double(face.slack) - keys.k, {-keys.gx, -keys.gy}});
   return area_;
@@ -336,7 +320,9 @@ double VisibleShares::of(const ConvexArea& area, const RiskKeys& keys) {
   if (step > 1) look(step);
   if (seen == 0) look(1);
   if (all > 0) return double(seen) / double(all);
-  const glm::dvec2 centre = area.centre();
+  glm::dvec2 sum(0);
+  for (const glm::dvec2& corner : area.corners()) sum += corner;
+  const glm::dvec2 centre = sum / double(area.corners().size());
   const glm::ivec2 last(view.width - 1, view.height - 1);
   const glm::ivec2 pixel = glm::clamp(glm::ivec2(centre), glm::ivec2(0), last);
   const std::size_t number = std::size_t(pixel.y) * std::size_t(view.width) + std::size_t(pixel.x);

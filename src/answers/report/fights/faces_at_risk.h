@@ -81,15 +81,14 @@ struct AffineOverScreen {
 /// Corners are ordered as in a face on the screen: the inside is on the left of each side, with y upwards.
 class ConvexArea {
  public:
-  ConvexArea() = default;
-  void assign(std::span<const glm::dvec2> corners) { corners_.assign(corners.begin(), corners.end()); }
+  /// Replaces the area by that of a face.
+  void assign(const ScreenFace& face) { corners_ = {face.corner(0), face.corner(1), face.corner(2)}; }
   /// Keeps the part where `f` is not negative.
   void cut(const AffineOverScreen& f);
   [[nodiscard]] std::span<const glm::dvec2> corners() const { return corners_; }
   [[nodiscard]] bool is_empty() const { return corners_.size() < 3; }
   /// Area in square pixels.
   [[nodiscard]] double area() const;
-  [[nodiscard]] glm::dvec2 centre() const;
 
  private:
   std::vector<glm::dvec2> corners_, before_;
@@ -123,7 +122,10 @@ void visit_samples(std::span<const glm::dvec2> corners, const View& view, int st
 /// Finds one area after another and reuses its memory.
 class RiskFinder {
  public:
-  RiskFinder(const View& view, const DepthSetup& setup);
+  RiskFinder(const View& view, const DepthSetup& setup)
+      : size_(view.width, view.height),
+        step_(setup),
+        farthest_key_(setup.orthographic ? 0 : setup.clip.near / setup.clip.far) {}
 
   /// The area where both faces are and neither is surely shown; may be empty. Valid until the next call.
   [[nodiscard]] const ConvexArea& of_pair(const ScreenFace& a, const ScreenFace& b);
