@@ -34,37 +34,20 @@ void add(Oddities& sum, const Oddities& odd) {
 
 constexpr std::size_t kGrain = std::size_t(1) << 14;
 
-/// A half-edge among those with the same lower point.
-struct HalfEdge {
-  std::uint32_t upper;   ///< the other point
-  std::uint32_t marked;  ///< number of the half-edge; the highest bit is set where it leads to the lower point
-
-  static constexpr std::uint32_t backward = 1u << 31;
-  [[nodiscard]] std::uint32_t number() const { return marked & ~backward; }
-  friend bool operator<(const HalfEdge& a, const HalfEdge& b) { return a.upper < b.upper; }
-  friend bool operator==(const HalfEdge& a, const HalfEdge& b) { return a.upper == b.upper; }
-};
-
-/// The two greater points of a triangle, among the triangles with the same least point.
-struct UpperPoints {
-  std::uint32_t middle, last;
-
-  friend auto operator<=>(const UpperPoints&, const UpperPoints&) = default;
-};
-
-/// Calls visit(group, sums) for each group of equal items of a bucket, in parallel, and adds all `sums` to `all`.
-template <class Item, class Visit>
-void for_each_group(Buckets<Item>& buckets, const Execution& execution, Oddities& all, const Visit& visit) {
+/// Calls visit(group, sums) for each group of items of a bucket that are equal but for their last `free_bits`, in
+/// parallel, and adds all `sums` to `all`.
+template <class Visit>
+void for_each_group(Buckets<std::uint64_t>& buckets, int free_bits, const Execution& execution, Oddities& all,
+                    const Visit& visit) {
   std::mutex mutex;
   parallel_for(execution, buckets.count(), kGrain, [&](std::size_t begin, std::size_t end) {
     Oddities sums;
     for (std::size_t bucket = begin; bucket < end; ++bucket) {
-      const std::span<Item> items = buckets[bucket];
+      const std::span<std::uint64_t> items = buckets[bucket];
       std::sort(items.begin(), items.end());
-      for (auto first = items.begin(); first != items.end();) {
-        const auto last = std::find_if(first, items.end(), [&](const Item& item) { return !(item == *first); });
-        visit(std::span<const Item>(first, last), sums);
-        first = last;
+      for (std::size_t first = 0, last = 0; first < items.size(); first = last) {
+        while (last < items.size() && items[last] >> free_bits == items[first] >> free_bits) ++last;
+        visit(std::span<const std::uint64_t>(items.subspan(first, last - first)), sums);
       }
     }
     const std::lock_guard lock(mutex);
@@ -129,36 +112,40 @@ class MeshTopology {
       if (c.x > c.y) std::swap(c.x, c.y);
       if (c.y > c.z) std::swap(c.y, c.z);
       if (c.x > c.y) std::swap(c.x, c.y);
-      add(c.x, UpperPoints{c.y, c.z});
+      add(c.x, std::uint64_t(c.y) << 32 | c.z);
     };
-    Buckets<UpperPoints> triangles(mesh_.positions.size(), corners_.size(), list, execution_);
-    for_each_group(triangles, execution_, odd, [](std::span<const UpperPoints> same, Oddities& counts) {
+    Buckets<std::uint64_t> triangles(mesh_.positions.size(), corners_.size(), list, execution_);
+    for_each_group(triangles, 0, execution_, odd, [](std::span<const std::uint64_t> same, Oddities& counts) {
       counts.duplicate_triangles += same.size() - 1;
     });
   }
 
-  // Counts edges by their number of triangles, joins the triangles of each edge, and pairs opposite half-edges.
+  // Counts edges by their number of triangles, joins the triangles of each edge, and pairs opposite half-edges. By
+  // lower point, a half-edge is its other point and, in the last 32 bits, its number and whether it leads to the lower
+  // point.
   void join_edges(Oddities& odd) {
+    constexpr std::uint32_t kBackward = 1u << 31;
     twins_.assign(3 * corners_.size(), no_index);
     const auto list = [&](std::size_t t, const auto& add) {
       if (!has_edges(kinds_[t])) return;
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t from = corners_[t][k], to = corners_[t][(k + 1) % 3],
                             half_edge = 3 * std::uint32_t(t) + std::uint32_t(k);
-        add(std::min(from, to), HalfEdge{std::max(from, to), half_edge | (from < to ? 0 : HalfEdge::backward)});
+        add(std::min(from, to), std::uint64_t(std::max(from, to)) << 32 | half_edge | (from < to ? 0 : kBackward));
       }
     };
-    Buckets<HalfEdge> edges(mesh_.positions.size(), corners_.size(), list, execution_);
-    for_each_group(edges, execution_, odd, [&](std::span<const HalfEdge> edge, Oddities& counts) {
-      for (std::size_t i = 1; i < edge.size(); ++i) triangle_sets_.join(edge[0].number() / 3, edge[i].number() / 3);
+    Buckets<std::uint64_t> edges(mesh_.positions.size(), corners_.size(), list, execution_);
+    for_each_group(edges, 32, execution_, odd, [&](std::span<const std::uint64_t> edge, Oddities& counts) {
+      const auto number = [&](std::size_t i) { return std::uint32_t(edge[i]) & ~kBackward; };
+      for (std::size_t i = 1; i < edge.size(); ++i) triangle_sets_.join(number(0) / 3, number(i) / 3);
       counts.boundary_edges += edge.size() == 1;
       counts.non_manifold_edges += edge.size() > 2;
       if (edge.size() != 2) return;
-      if (((edge[0].marked ^ edge[1].marked) & HalfEdge::backward) == 0) {
+      if (((edge[0] ^ edge[1]) & kBackward) == 0) {
         ++counts.inconsistent_edges;
       } else {
-        twins_[edge[0].number()] = edge[1].number();
-        twins_[edge[1].number()] = edge[0].number();
+        twins_[number(0)] = number(1);
+        twins_[number(1)] = number(0);
       }
     });
   }
