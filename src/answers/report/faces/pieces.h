@@ -239,7 +239,9 @@ struct FacesOfView {
 struct AffineKey {
   double x, y, key, along_x, along_y;
 
-  AffineKey(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c) : x(a.x), y(a.y), key(a.key) {
+  /// The plane of three corners.
+  explicit AffineKey(const ScreenPoint* corners) : x(corners->x), y(corners->y), key(corners->key) {
+    const ScreenPoint &a = corners[0], &b = corners[1], &c = corners[2];
     const double scale = 1 / turn_of(a, b, c), to_b = b.key - a.key, to_c = c.key - a.key;
     along_x = (to_b * (c.y - a.y) - to_c * (b.y - a.y)) * scale;
     along_y = (to_c * (b.x - a.x) - to_b * (c.x - a.x)) * scale;
@@ -287,10 +289,7 @@ class PieceCutter {
                                               std::span<const GatheredFace> gathered) {
     const ConvexPiece corners(box);
     const glm::dvec2 middle(0.5 * (box.left + box.right), 0.5 * (box.top + box.bottom));
-    const auto plane_of = [&](std::uint32_t number) {
-      const ScreenPoint* const p = gathered[number].corners;
-      return AffineKey(p[0], p[1], p[2]);
-    };
+    const auto plane_of = [&](std::uint32_t number) { return AffineKey(gathered[number].corners); };
     const auto id_of = [&](std::uint32_t number) { return faces_.screen.faces[gathered[number].face].id; };
     std::uint32_t cover = no_index;
     double nearest = -std::numeric_limits<double>::infinity();
@@ -383,7 +382,7 @@ class PieceCutter {
     const ScreenPoint &a = corners[0], &b = corners[1], &c = corners[2];
     const double inwards = turn_of(a, b, c) > 0 ? 1 : -1;
     const std::array<CutLine, 3> sides{side_of(a, b, inwards), side_of(b, c, inwards), side_of(c, a, inwards)};
-    return {face, farthest, sides, AffineKey(a, b, c), range_of(a.key, b.key, c.key), no_index};
+    return {face, farthest, sides, AffineKey(corners), range_of(a.key, b.key, c.key), no_index};
   }
 
   /// Reorders the faces by their keys relative to the plane of the first face. In a slanted box, keys of close sheets

@@ -242,7 +242,7 @@ class CellSolver {
           found.is_ending || (std::min(a.x, b.x) <= box.right + kNarrow && std::max(a.x, b.x) >= box.left - kNarrow &&
                               std::min(a.y, b.y) <= box.bottom + kNarrow && std::max(a.y, b.y) >= box.top - kNarrow);
     }
-    const AffineKey plane(p[0], p[1], p[2]);
+    const AffineKey plane(p);
     const double at_middle = plane.at({middle_x, middle_y});
     const double varies = std::abs(plane.along_x) * half_x + std::abs(plane.along_y) * half_y;
     const Range key = range_of(p[0].key, p[1].key, p[2].key);
