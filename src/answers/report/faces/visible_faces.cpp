@@ -395,10 +395,8 @@ class CellSolver {
         if (const ScreenPoint& q = corner(i, k); q.x == p.x && q.y == p.y && q.key == p.key) return true;
       return false;
     };
-    std::size_t i = first + 1;
-    while (i < list_.size() && list_[i].nearest != list_[i - 1].nearest) ++i;
-    std::size_t kept = std::min(i, list_.size());
-    for (; i < list_.size(); ++i) {
+    std::size_t kept = std::min(first + 1, list_.size());
+    for (std::size_t i = kept; i < list_.size(); ++i) {
       const bool is_copy = list_[i].nearest == list_[kept - 1].nearest &&
                            list_[i].farthest == list_[kept - 1].farthest && has_corner(i, corner(kept - 1, 0)) &&
                            has_corner(i, corner(kept - 1, 1)) && has_corner(i, corner(kept - 1, 2));
