@@ -68,8 +68,8 @@ class BandHiders {
         plane_(std::size_t(canvas.view.width) * kBandRows, kNotCovered),
         columns_(std::size_t(canvas.view.width + kWordPixels - 1) / kWordPixels) {}
 
-  /// Finds the hidden samples with one sample number, in the pixels of the band that begins at row y0.
-  void find(std::size_t sample, int y0, HiderLists& lists) {
+  /// The hidden samples with one sample number, in the pixels of the band that begins at row y0.
+  [[nodiscard]] HiderLists find(std::size_t sample, int y0) {
     offset_ = sample_offsets(canvas_.view.samples)[sample];
     band_ = {0, y0, canvas_.view.width - 1, std::min(y0 + kBandRows, canvas_.view.height) - 1};
     words_.clear();
@@ -84,12 +84,14 @@ class BandHiders {
       for (int word = rect.x0 / kWordPixels; word <= rect.x1 / kWordPixels; ++word) add_piece(i, word, rect);
       for (int y = rect.y0; y <= rect.y1; ++y) std::fill(key_at(rect.x0, y), key_at(rect.x1, y) + 1, kNotCovered);
     }
+    HiderLists lists;
     for (const std::vector<HiderPiece>& column : columns_) {
       compare_pieces(column, lists.any);
       find_fronts(column, lists.only);
     }
     combine(lists.any);
     combine(lists.only);
+    return lists;
   }
 
  private:
@@ -239,7 +241,7 @@ HiderLists find_all_hiders(const PlacedScene& scene, const ObjectCanvas& canvas,
   parallel_for(execution, count, 1, [&](std::size_t begin, std::size_t end) {
     const auto finder =
         finders.borrow([&] { return std::make_unique<BandHiders>(scene, canvas, objects, execution.isa); });
-    for (std::size_t i = begin; i < end; ++i) finder->find(i / bands, int(i % bands) * kBandRows, parts[i]);
+    for (std::size_t i = begin; i < end; ++i) parts[i] = finder->find(i / bands, int(i % bands) * kBandRows);
   });
   HiderLists lists;
   for (const HiderLists& part : parts) {

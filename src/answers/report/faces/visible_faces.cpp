@@ -530,12 +530,9 @@ std::vector<VisibleFace> find_faces(const Surfaces& surfaces, const View& view,
 }  // namespace frontmost::faces_detail
 
 namespace frontmost {
-namespace {
 
 /// Limit of steps: fifteen times what the most crowded of 237 models takes.
 constexpr std::uint64_t kMostFaceSteps = std::uint64_t(1) << 31;
-
-}  // namespace
 
 VisibleFaces visible_faces(const Surfaces& surfaces, const View& view, const Execution& execution) {
   const IeeeScope ieee;
