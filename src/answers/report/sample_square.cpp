@@ -63,13 +63,6 @@ int ViewedTriangle::edge_side(std::size_t edge, const SampleRay& ray) const {
   return sign_of_determinant({corners_[edge], ray.origin}, {corners_[(edge + 1) % 3], ray.origin}, {ray.direction});
 }
 
-bool ViewedTriangle::is_inside(const SampleRay& ray) const {
-  if (facing_ == 0) return false;
-  for (std::size_t edge = 0; edge < 3; ++edge)
-    if (edge_side(edge, ray) != facing_) return false;
-  return true;
-}
-
 /// Whether a plane through the eye and a side of either has the triangle and the square on its two sides. They then do
 /// not meet; two convex figures in front of the eye that do not meet always have such a plane. Some triangles that
 /// reach behind the eye and miss the square count as touching.
@@ -121,7 +114,8 @@ LineMeeting ViewedTriangle::meeting(const SampleSquare& square) const {
   const LineMeeting by_planes = between_planes(square);
   if (by_planes != LineMeeting::contains) return by_planes;
   for (const SampleRay& ray : square.corners)
-    if (!is_inside(ray)) return LineMeeting::touches;
+    for (std::size_t edge = 0; edge < 3; ++edge)
+      if (facing_ == 0 || edge_side(edge, ray) != facing_) return LineMeeting::touches;
   return LineMeeting::contains;
 }
 

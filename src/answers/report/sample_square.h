@@ -52,7 +52,6 @@ class ViewedTriangle {
 
  private:
   [[nodiscard]] bool is_separated(const SampleSquare& square) const;
-  [[nodiscard]] bool is_inside(const SampleRay& ray) const;
   [[nodiscard]] int edge_side(std::size_t edge, const SampleRay& ray) const;
   [[nodiscard]] LineMeeting between_planes(const SampleSquare& square) const;
   [[nodiscard]] Fraction exact_nearness(const SampleRay& ray, int extreme) const;
