@@ -120,9 +120,8 @@ class MeshTopology {
     });
   }
 
-  // Counts edges by their number of triangles, joins the triangles of each edge, and pairs opposite half-edges. By
-  // lower point, a half-edge is its other point and, in the last 32 bits, its number and whether it leads to the lower
-  // point.
+  // Counts edges by their number of triangles, joins the triangles of each edge, and pairs opposite half-edges. In the
+  // bucket of its lower point, a half-edge is its other point, then a bit if it leads downwards, then its number.
   void join_edges(Oddities& odd) {
     constexpr std::uint32_t kBackward = 1u << 31;
     twins_.assign(3 * corners_.size(), no_index);
