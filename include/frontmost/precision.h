@@ -35,8 +35,7 @@ struct DepthSetup {
 /// The resolvable gap: a surface exactly at `distance` and one at least this much farther away are stored as different
 /// values. The gap is one full step of the format, converted to distance. For integers it is about distance^2 (far -
 /// near) / (far near (2^n - 1)), for reversed floats at most 2^-23 of the distance. Float buffers are never finer than
-/// the float keys from which depths are made: 2^-24 to 2^-23 of the distance. Infinite if `distance` and infinity may
-/// be stored as the same value.
+/// the float keys from which depths are made: 2^-24 to 2^-23 of the distance. Infinite if nothing farther differs.
 /// \throws Error bad_argument unless near <= distance <= far, and for planes that make_projection() refuses.
 [[nodiscard]] double resolvable_gap(const DepthSetup& setup, double distance);
 
@@ -61,8 +60,7 @@ struct DepthSetup {
 /// is not positive.
 [[nodiscard]] std::optional<double> near_for_gap(const DepthSetup& setup, double distance, double gap);
 
-/// Distances for a table: the near plane, then 1, 2, 5, 10, 20..., then the far plane. An infinite far plane counts as
-/// 10^6 times the near distance.
+/// Distances for a table: near, then 1, 2, 5, 10, 20..., then far. An infinite far plane counts as 10^6 times near.
 [[nodiscard]] std::vector<double> round_distances(const ClipDistances& clip);
 
 /// The nearest triangle at every sample, found without rounding. Coverage is that of zbuffer(), from the same snapped
@@ -97,8 +95,7 @@ struct DepthFights {
   std::uint64_t wrong = 0;          ///< samples that show a strictly farther surface, or nothing
   std::uint64_t tied = 0;           ///< samples with several exactly nearest surfaces, any of which is right
   std::vector<FightingPair> pairs;  ///< most samples first
-  /// By sample: distance of the seen surface behind the nearest one, divided by the nearest distance. 0 if the answer
-  /// is right, +inf if nothing is seen.
+  /// By sample: distance behind the nearest surface, divided by its distance. 0 if right, +inf if nothing is seen.
   Buffer<float> errors;
 };
 
@@ -140,8 +137,7 @@ struct FightingFaces {
   PrimitiveId first = no_primitive, second = no_primitive;  ///< first < second; `clear` has no second
   FightKind kind = FightKind::close;
   double area = 0;  ///< square pixels, within the picture
-  /// The part of `area` in which no other surface is seen in front of both faces. The part is estimated from thousands
-  /// of samples if the area is large.
+  /// The part of `area` at whose samples nothing is seen in front of both faces; estimated if the area is large.
   double visible_area = 0;
   double distance = 0;                               ///< planar depth of the nearest point of the area
   std::uint32_t corner_begin = 0, corner_count = 0;  ///< range of FightAreas::corners
@@ -197,10 +193,9 @@ struct OffsetRemedy {
   PolygonOffset offset;
 };
 
-/// The least offset, in units of powers of two up to 2^16, that makes the second object seen at every sample of the
-/// pair's areas at which one of the two objects is nearest. The offset is found by drawing up to 17 pictures. None if
-/// no such offset suffices, and for an object with itself or with the clear value. Precondition: `exact` and `fights`
-/// are of the same view, and `pair` is one of `fights`.
+/// The least offset, in units of powers of two up to 2^16, that makes the pair's second object seen at every sample of
+/// their areas where either object is nearest. Found by drawing up to 17 pictures. None if no such offset suffices, and
+/// for an object with itself or the clear value. Precondition: `pair` is of `fights`, and `exact` of the same view.
 [[nodiscard]] std::optional<OffsetRemedy> find_offset(const Surfaces& surfaces, const ExactVisible& exact,
                                                       const FightAreas& fights, const FightingObjects& pair,
                                                       const Execution& execution = {});
@@ -209,8 +204,7 @@ struct OffsetRemedy {
 //
 // The z-buffer snaps vertices to 1/256 pixel, ray casting snaps nothing, and the A-buffer answers in layers. Their
 // answers therefore differ along edges and where surfaces nearly coincide, and comparing pictures exactly would prove
-// nothing. Exact arithmetic decides each sample that differs: either both answers are possible, or one of them is
-// wrong.
+// nothing. Exact arithmetic decides each sample that differs: both answers are possible, or one of them is wrong.
 //
 // All methods place vertices within 1/128 pixel of the truth, so a sample stands for the square of +-1/128 pixel around
 // it. An answer is possible if
@@ -257,10 +251,9 @@ struct Agreement {
 [[nodiscard]] Agreement check_agreement(const Surfaces& surfaces, const Visible& a, const Visible& b,
                                         const Execution& execution = {});
 
-/// Adds the reason `translucent`, for methods that answer in layers. A sample at which the answers agree, but `behind`
-/// shows something, becomes `translucent` if Material::is_see_through() holds for the surface that `front` shows, else
-/// `unexplained`. O(samples). \throws Error bad_argument if the layers were made for different views; all must have the
-/// same view.
+/// Adds the reason `translucent`, for methods that answer in layers. Considers the samples that agree and where
+/// `behind` shows something: they become `translucent` if Material::is_see_through() holds for what `front` shows, else
+/// `unexplained`. O(samples). \throws Error bad_argument if the layers were made for different views.
 void see_through(Agreement& agreement, const Surfaces& surfaces, const Visible& front, const Visible& behind);
 
 }  // namespace frontmost

@@ -2,8 +2,7 @@
 // Reports: the contents of a scene and the defects of its meshes; how much of each object is seen, and what hides it.
 //
 // Model files often have holes, duplicate faces and faces that are inside out, which matters to printers, solvers and
-// drawings. All counts compare positions of vertices as they are stored, without a tolerance, so any two programs that
-// count in this way agree:
+// drawings. Counts compare positions of vertices as they are stored, without a tolerance, so all programs can agree:
 //
 //    +---+---+     an edge of two triangles joins them to a shell
 //    | / | / |     an edge of one triangle is a boundary: the rim of a hole
@@ -145,8 +144,7 @@ struct SceneReport {
 //              +-------------+              cut        beyond the frame: %
 //            + - - - - - - - - - - - +
 //
-// An object is an instance of the scene. Samples are counted exactly, without tolerance: the samples that an object
-// covers alone are those at which zbuffer() would show it.
+// An object is an instance of the scene. Samples are counted exactly: an object covers alone what zbuffer() would show.
 
 /// Pixels [x, x + width) x [y, y + height) from the picture's top left; x and y may be negative beyond the picture.
 struct PixelBox {
@@ -207,9 +205,8 @@ struct AccountingOptions {
 struct Accounting {
   PixelBox canvas;                     ///< pixels on which objects were counted alone
   std::vector<ObjectAccount> objects;  ///< by instance
-  std::uint64_t background = 0;        ///< samples that see nothing: all but the visible samples of the objects
-  /// Samples in frame that see `hider` in place of `object`, sorted by object, then by hider. The counts of one object
-  /// add up to its number of hidden samples.
+  std::uint64_t background = 0;        ///< samples that see nothing; together with all visible samples, the picture's
+  /// Samples in frame that see `hider` in place of `object`; by object, then by hider. They add up to the hidden ones.
   std::vector<HiddenSamples> hidden_by_front;
   /// Samples in frame at which `hider` is in front of `object`, even if others are as well; in the same order. Empty
   /// unless AccountingOptions::all_hiders.
@@ -221,9 +218,8 @@ struct Accounting {
 
 /// Accounts for every object in a view. `visible` is the answer of zbuffer() or a ZBuffer for these surfaces; with
 /// other methods, which do not snap vertices, sums hold only approximately. The result is the same for any number of
-/// threads and every instruction set. O(triangles + rows of pixels that each object touches + samples); memory beside
-/// the result: about 8 bytes for each run of samples that see the same object, and in each thread a bit for each sample
-/// of the canvas.
+/// threads and every instruction set. O(triangles + rows of pixels that each object touches + samples); 8 bytes a run
+/// of samples that see the same object, and a bit for each sample of the canvas and thread.
 /// \throws Error bad_argument as validate(view) does, for a canvas out of range, and for a `visible` of other surfaces.
 [[nodiscard]] Accounting account(const Surfaces& surfaces, const Visible& visible,
                                  const AccountingOptions& options = {}, const Execution& execution = {});
@@ -266,9 +262,8 @@ enum class MaskPart : std::uint8_t { visible, whole };
 /// alternate along the columns, from the leftmost column on, each column from the top. O(pixels of the box). Source:
 /// T.-Y. Lin et al. Microsoft COCO: Common Objects in Context. 2014.
 [[nodiscard]] std::string coco_runs(const PixelMask& mask, MaskPart part, const glm::ivec2& size);
-/// A mask as polygons along the sides of pixels: alternating x and y, in pixels from the picture's top left. The
-/// polygons do not overlap, have no holes, and fill the mask exactly, also by the rule of COCO's mask API. O(pixels of
-/// the box).
+/// A mask as polygons along the sides of pixels: alternating x and y, in pixels from the picture's top left. They do
+/// not overlap, have no holes, and fill the mask exactly, also by the rule of COCO's mask API. O(pixels of the box).
 [[nodiscard]] std::vector<std::vector<int>> coco_polygons(const PixelMask& mask, MaskPart part);
 
 /// Makes the masks of one object after another. Borrows its arguments; not for several threads at once.
@@ -403,8 +398,7 @@ struct Explanation {
 /// Unprintable characters are written as by printable_text().
 class ObjectNames {
  public:
-  /// Keeps a reference to the scene. Functions that take names accept a scene as well; keep an ObjectNames if you write
-  /// many texts. O(objects).
+  /// Borrows the scene. Functions that take names accept a scene as well; keep names to write many texts. O(objects).
   ObjectNames(const Scene& scene);
   [[nodiscard]] std::string operator[](std::uint32_t object) const;
 
@@ -443,21 +437,14 @@ struct VisibleFaces {
   std::vector<VisibleFace> faces;  ///< by id, ascending; only triangles that are seen
 };
 
-// How visible_faces() works: the picture is divided into cells, and a cell in which a surface ends is divided into
-// smaller cells. (J. Warnock. A Hidden Surface Algorithm for Computer Generated Halftone Pictures. 1969.) In a cell
-// where no surface ends, and the nearest surface lies in front of all others, the visible faces are known without
-// cutting. In the smallest cells triangles cut each other. Cuts that would leave less than 2^-30 pixel on one side are
-// not made, so narrower parts are not told apart from their neighbours. The limit of 2^31 steps is 15 times what the
-// most crowded of 237 models takes.
-
 /// Finds every triangle of which a part is seen within the picture, between near and far, with the area of that part.
 /// Vertices are not snapped, so triangles far smaller than a pixel are found. No place counts twice: where triangles
 /// lie exactly in one plane, the lower id is seen; triangles that pass through each other are cut along their
-/// intersection. Triangles with holes (alpha mode MASK) and translucent ones count as whole, and hide. Culled triangles
-/// are left out; View::samples is ignored. The same for any number of threads and every instruction set. Near-linear in
-/// meshes and stacks of parallel sheets; O(n^2) where n triangles pass through each other and none hides the others.
-/// About 150 bytes a triangle, 350 without shared vertices.
-/// \throws Error as validate(view) does; limit_exceeded for a mesh of more than 2^29 triangles, or about 2^31 steps.
+/// intersection. Parts narrower than 2^-30 pixel are not told apart from their neighbours. Triangles with holes (alpha
+/// mode MASK) and translucent ones count as whole, and hide. Culled triangles are left out; View::samples is ignored.
+/// The same for any number of threads and every instruction set. Near-linear in meshes and stacks of parallel sheets;
+/// O(n^2) where n triangles pass through each other and none hides the others. About 150 bytes a triangle, 350 without
+/// shared vertices. \throws Error as validate(view) does; limit_exceeded beyond 2^29 triangles a mesh or 2^31 steps.
 [[nodiscard]] VisibleFaces visible_faces(const Surfaces& surfaces, const View& view, const Execution& execution = {});
 
 /// A triangle that is seen in at least one of several views.
@@ -521,8 +508,7 @@ class DatasetWriter {
   DatasetWriter(const DatasetWriter&) = delete;
   DatasetWriter& operator=(const DatasetWriter&) = delete;
 
-  /// Adds a view; views are numbered from 0. `picture` is COCO's file_name. Views may be of different scenes. After an
-  /// error only the destructor may be called.
+  /// Adds a view, also of another scene; views are numbered from 0. `picture` is COCO's file_name. Not after an error.
   /// \throws Error file_unwritable; unsupported for BOP of a parallel view, or of an object that is stretched or
   /// mirrored; bad_argument for a name in leave_out that nothing has, for several samples a pixel, and for two
   /// categories of one number.

@@ -170,7 +170,7 @@ TEST(Agreement, EveryTriangleIsHeardWhereverItHasSomethingToSay) {
         for (int x = 0; x < view.width; ++x) {
           const std::size_t at = right.index(x, y, sample);
           if (right.primitives[at] == naive.primitives[at]) continue;
-          const SampleSquare square(rays, x, y, sample_offsets(view.samples)[std::size_t(sample)]);
+          const SampleSquare square(rays, glm::ivec2(x, y) * 256 + sample_offsets(view.samples)[std::size_t(sample)]);
           ASSERT_EQ(answer.differences[at],
                     asked_of_all(surfaces, rays, view.culling, {right.primitives[at], naive.primitives[at]}, square))
               << x << ", " << y << ", " << sample;

@@ -65,8 +65,8 @@ TEST_P(ExactOfEveryKind, EqualsRationalArithmetic) {
     const ExactVisible answer = find_exact_visible(surfaces, view);
     const SampleRays rays(view);
     for (std::size_t i = 0; i < lists.size(); ++i) {
-      const std::size_t pixel = i % view.pixel_count();
-      const SampleRay ray = rays.at(int(pixel) % view.width, int(pixel) / view.width,
+      const int pixel = int(i % view.pixel_count());
+      const SampleRay ray = rays.at(glm::ivec2(pixel % view.width, pixel / view.width) * 256 +
                                     sample_offsets(view.samples)[i / view.pixel_count()]);
       PrimitiveId best = no_primitive;
       Rational nearest;

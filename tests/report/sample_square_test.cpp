@@ -86,11 +86,10 @@ SampleSquare square_on(const std::array<glm::vec3, 3>& corners, const View& view
                          (p.top - eye.y * scale) / (p.top - p.bottom) * view.height);
   if (!(place.x > 0 && place.y > 0 && place.x < view.width && place.y < view.height)) {
     const int y = random.below(view.height), x = random.below(view.width);
-    return SampleSquare(rays, x, y, {128, 128});
+    return SampleSquare(rays, glm::ivec2(x, y) * 256 + 128);
   }
   const int dy = random.below(9) - 4, dx = random.below(9) - 4;
-  const glm::ivec2 near = glm::ivec2(place * 256.0) + glm::ivec2(dx, dy);
-  return SampleSquare(rays, near.x / 256, near.y / 256, {near.x % 256, near.y % 256});
+  return SampleSquare(rays, glm::ivec2(place * 256.0) + glm::ivec2(dx, dy));
 }
 
 class SquareOfEveryKind : public testing::TestWithParam<Kind> {};
@@ -179,7 +178,7 @@ TEST(SampleSquare, TellsSheetsApartFromTheExactResolutionOn) {
     view.width = view.height = 64;
     view.projection = orthographic ? make_orthographic(-1, 1, -1, 1, {0.5, 4.5}) : make_projection(1, 1, {0.5, 4.5});
     const SampleRays rays(view);
-    const SampleSquare square(rays, 31, 32, {128, 128});
+    const SampleSquare square(rays, glm::ivec2(31, 32) * 256 + 128);
     const ViewedTriangle front(sheet(2), rays);
     int first_apart = 0;
     for (int steps = 1; steps < 64 && first_apart == 0; ++steps) {
@@ -199,7 +198,7 @@ TEST(SampleSquare, TheNearPlaneIsARim) {
   view.width = view.height = 64;
   view.projection = make_projection(1, 1, {2, 50});
   const SampleRays rays(view);
-  const SampleSquare square(rays, 31, 32, {128, 128});
+  const SampleSquare square(rays, glm::ivec2(31, 32) * 256 + 128);
   EXPECT_EQ(ViewedTriangle(sheet(1.99f), rays).meeting(square), LineMeeting::misses);
   EXPECT_EQ(ViewedTriangle(sheet(2), rays).meeting(square), LineMeeting::touches);
   EXPECT_EQ(ViewedTriangle(sheet(2.01f), rays).meeting(square), LineMeeting::contains);

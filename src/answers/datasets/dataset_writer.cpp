@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -81,16 +80,15 @@ class DatasetFolder {
     write(name, [&](const std::string& path) { save_text(text, path); });
   }
 
-  /// Moves the files to their places, and removes all other numbered files from the subfolders. \returns the paths.
-  [[nodiscard]] std::vector<std::string> finish() {
+  /// Moves the files to their places, removes other numbered files from the folders within, and appends the paths.
+  void finish(std::vector<std::string>& paths) {
     for (const Within& made : within_)
       if (const fs::path path = fs::path(folder_) / made.name; fs::exists(path) && !fs::is_directory(path))
         throw Error(ErrorCode::file_unwritable, path.string(), "", "not a folder");
     for (const Within& made : within_) fs::create_directories(fs::path(folder_) / made.name);
     staged_.commit(names_);
     remove_stale();
-    for (std::string& name : names_) name = (fs::path(folder_) / name).string();
-    return std::move(names_);
+    for (const std::string& name : names_) paths.push_back((fs::path(folder_) / name).string());
   }
 
  private:
@@ -255,8 +253,7 @@ std::uint64_t object_number(const Scene& scene, const Instance& instance) {
   return highest + instance.mesh + 1;
 }
 
-/// \throws Error unsupported for an object that is stretched or mirrored: BOP's poses hold rotation and translation
-/// alone.
+/// \throws Error unsupported for an object that is stretched or mirrored: BOP's poses only turn and move.
 Json pose_json(const DatasetView& view, std::uint32_t object, double millimetres) {
   const Scene& scene = view.surfaces.scene();
   const Instance& instance = scene.instances[object];
@@ -275,8 +272,7 @@ Json pose_json(const DatasetView& view, std::uint32_t object, double millimetres
           {"obj_id", object_number(scene, instance)}};
 }
 
-/// A box as in bop_toolkit: its size is the distance from the first pixel to the last, which is one less than the
-/// number of pixels.
+/// A box as in bop_toolkit: its size is the distance from the first pixel to the last.
 Json bop_box(const PixelBox& box, bool is_seen) {
   return is_seen ? Json::array({box.x, box.y, box.width - 1, box.height - 1}) : Json::array({-1, -1, -1, -1});
 }
@@ -339,9 +335,7 @@ double depth_scale_of(const Image& depths, double millimetres) {
   return scale;
 }
 
-void append_element(std::string& list, const Json& json) { list += (list.empty() ? "" : ", ") + json.dump(); }
-
-/// Appends the line of a view, as bop_toolkit writes it.
+/// A line for each view, as bop_toolkit writes them.
 void append_view(std::string& file, std::size_t view, const std::string& text) {
   file += (file.empty() ? "  \"" : ",\n  \"") + std::to_string(view) + "\": " + text;
 }
@@ -371,34 +365,35 @@ class BopFolder {
     options.depth_scale = millimetres_ / scale;
     folder_.add("depth/" + six_digits(view_) + ".png", depths, options, execution);
     append_view(cameras_, view_, camera_json(view, millimetres_, scale).dump());
+    append_view(poses_, view_, "[");
+    append_view(infos_, view_, "[");
     object_ = 0;
-    poses_.clear();
-    infos_.clear();
   }
 
   /// \throws Error unsupported for an object that is stretched or mirrored.
   void add(const DatasetView& view, ObjectInFrame object, const Execution& execution) {
     if (visible_ == BopVisible::bop19) mark_within_tolerance(view, object, distances_, execution);
-    const std::string name = "/" + six_digits(view_) + "_" + six_digits(object_++) + ".png";
+    const std::string name = "/" + six_digits(view_) + "_" + six_digits(object_) + ".png";
     const View& camera = view.visible.view;
     folder_.add("mask" + name, mask_image(object.mask, MaskPart::whole, camera), {}, execution);
     folder_.add("mask_visib" + name, mask_image(object.mask, MaskPart::visible, camera), {}, execution);
-    append_element(poses_, pose_json(view, object.number, millimetres_));
-    append_element(infos_, info_json(view.accounts.objects[object.number], object.mask));
+    const char* const separator = object_++ == 0 ? "" : ", ";
+    poses_ += separator + pose_json(view, object.number, millimetres_).dump();
+    infos_ += separator + info_json(view.accounts.objects[object.number], object.mask).dump();
   }
 
   void end_view() {
-    append_view(all_poses_, view_, "[" + poses_ + "]");
-    append_view(all_infos_, view_, "[" + infos_ + "]");
+    poses_ += ']';
+    infos_ += ']';
     ++view_;
   }
 
-  [[nodiscard]] std::vector<std::string> finish() {
+  void finish(std::vector<std::string>& paths) {
     const auto add = [&](const char* name, const std::string& views) { folder_.add(name, "{\n" + views + "\n}\n"); };
     add("scene_camera.json", cameras_);
-    add("scene_gt.json", all_poses_);
-    add("scene_gt_info.json", all_infos_);
-    return folder_.finish();
+    add("scene_gt.json", poses_);
+    add("scene_gt_info.json", infos_);
+    folder_.finish(paths);
   }
 
  private:
@@ -407,8 +402,7 @@ class BopFolder {
   std::size_t view_ = 0, object_ = 0;  ///< number of the view, and of the object within the view
   double millimetres_ = 1;             ///< millimetres in a unit of the scene
   Image distances_;                    ///< distances along the rays of the view
-  std::string poses_, infos_;          ///< JSON of the view
-  std::string cameras_, all_poses_, all_infos_;
+  std::string cameras_, poses_, infos_;
 };
 
 /// Masks as pictures: the visible part of each object, and the whole object within the frame.
@@ -429,7 +423,7 @@ class MaskFolder {
     for (const auto& [part, word] : {std::pair(MaskPart::visible, "_visible.png"), {MaskPart::whole, "_amodal.png"}})
       folder_.add(begin + word, mask_image(object.mask, part, view.visible.view), {}, execution);
   }
-  [[nodiscard]] std::vector<std::string> finish() { return folder_.finish(); }
+  void finish(std::vector<std::string>& paths) { folder_.finish(paths); }
 
  private:
   DatasetFolder folder_;
@@ -500,16 +494,13 @@ void DatasetWriter::add(const DatasetView& view, const std::string& picture, con
 
 std::vector<std::string> DatasetWriter::finish() {
   std::vector<std::string> files;
-  const auto add = [&](std::vector<std::string> more) {
-    std::move(more.begin(), more.end(), std::back_inserter(files));
-  };
   Parts& parts = *parts_;
   if (parts.coco) {
     save_text(parts.coco->text(), *parts.options.coco);
     files.push_back(*parts.options.coco);
   }
-  if (parts.bop) add(parts.bop->finish());
-  if (parts.masks) add(parts.masks->finish());
+  if (parts.bop) parts.bop->finish(files);
+  if (parts.masks) parts.masks->finish(files);
   return files;
 }
 

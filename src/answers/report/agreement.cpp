@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each sample is examined alone first: do the ids differ, are the keys right? Then every triangle of the scene,
-// whatever the methods made of it, is compared with the samples that differ, to find a surface that rules an answer
-// out.
+// whatever the methods made of it, is compared with the samples that differ: does it rule an answer out?
 //
 //   samples   --ids differ--> DifferingSample: two claims --every triangle over them--> is a claim ruled out?
 //                                                                                    neither: edge or depth
@@ -13,6 +12,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -24,6 +24,7 @@
 #include "view/facing_rule.h"
 #include "view/screen_cutout.h"
 #include "view/screen_transform.h"
+#include "view/sight.h"
 
 namespace frontmost {
 namespace {
@@ -42,12 +43,10 @@ struct Question {
   const View& view;
   const SampleRays rays;
   const ScreenRays screen_rays;
-  const std::span<const glm::ivec2> offsets;
   const FacingRule facing;
 
   [[nodiscard]] SampleSquare square(std::size_t sample) const {
-    const std::size_t pixel = sample % view.pixel_count(), width = std::size_t(view.width);
-    return SampleSquare(rays, int(pixel % width), int(pixel / width), offsets[sample / view.pixel_count()]);
+    return SampleSquare(rays, place_of_sample(view, sample));
   }
   /// The triangle of an id. None for invalid ids, and for triangles that are never seen.
   [[nodiscard]] std::optional<ViewedTriangle> triangle(PrimitiveId id) const {
@@ -65,8 +64,7 @@ struct Question {
   [[nodiscard]] bool is_hole(PrimitiveId id, std::size_t sample) const {
     const Cutouts* const cutouts = placed_scene(surfaces).cutouts.get();
     if (!cutouts || !cutouts->has(id)) return false;
-    const std::size_t pixel = sample % view.pixel_count(), width = std::size_t(view.width);
-    const glm::ivec2 at = glm::ivec2(pixel % width, pixel / width) * kSubPixels + offsets[sample / view.pixel_count()];
+    const glm::ivec2 at = place_of_sample(view, sample);
     return ScreenCutout((*cutouts)[id], screen_rays).is_hole(at.x, at.y);
   }
   /// How the square meets a triangle as a method sees it. A culled triangle counts as absent, unless it is so thin that
@@ -77,35 +75,26 @@ struct Question {
     if (meeting != LineMeeting::misses && is_hole(id, sample)) return LineMeeting::misses;
     return meeting == LineMeeting::contains && is_culled(triangle, id) ? LineMeeting::misses : meeting;
   }
-  /// Converts a key to nearness.
-  [[nodiscard]] double nearness_of(float key) const {
-    if (view.projection.orthographic) return double(key) * (rays.far() - rays.near()) - rays.far();
-    return double(key) / rays.near();
-  }
 };
 
 /// Checks keys. Keeps the last triangle, since neighbouring samples mostly show the same one.
-class KeyCheck {
- public:
-  explicit KeyCheck(const Question& question) : question_(question) {}
+struct KeyCheck {
+  const Question& question;
+  PrimitiveId last = no_primitive;
+  std::optional<ViewedTriangle> triangle{};
 
   [[nodiscard]] bool is_right(PrimitiveId id, float key, const SampleSquare& square) {
     if (id == no_primitive) return key == 0;
-    if (id != id_) {
-      triangle_ = question_.triangle(id);
-      id_ = id;
-    }
-    if (!triangle_) return false;
-    const double nearness = question_.nearness_of(key);
-    const NearnessRange range = triangle_->nearness(square);
-    return nearness >= range.least.low - triangle_->resolution(range.least.low) &&
-           nearness <= range.greatest.high + triangle_->resolution(range.greatest.high);
+    if (id != last) triangle = question.triangle(id);
+    last = id;
+    if (!triangle) return false;
+    const SampleRays& rays = question.rays;
+    const double nearness =
+        rays.is_orthographic() ? double(key) * (rays.far() - rays.near()) - rays.far() : double(key) / rays.near();
+    const NearnessRange range = triangle->nearness(square);
+    return nearness >= range.least.low - triangle->resolution(range.least.low) &&
+           nearness <= range.greatest.high + triangle->resolution(range.greatest.high);
   }
-
- private:
-  const Question& question_;
-  std::optional<ViewedTriangle> triangle_;
-  PrimitiveId id_ = no_primitive;
 };
 
 /// The claim of one answer at a sample that differs.
@@ -127,15 +116,36 @@ struct DifferingSample {
 /// For both claims of every sample: true if the scene rules the claim out. Values only change from false to true.
 using RuledOut = std::vector<std::array<std::atomic<bool>, 2>>;
 
-/// The samples that differ, in cells of the screen.
+/// A rectangle of the screen, in pixels, around the visible part of a triangle.
+struct ScreenRect {
+  glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+};
+
+ScreenRect rect_of(const std::array<glm::vec3, 3>& corners, const Sight& sight) {
+  std::array<glm::dvec3, 3> c;
+  for (std::size_t i = 0; i < 3; ++i) c[i] = sight.in_eye(glm::dvec3(corners[i]));
+  ScreenRect rect;
+  const auto include = [&](const glm::dvec3& at) {
+    const glm::dvec2 place(sight.to_screen(at));
+    rect.low = glm::min(rect.low, place);
+    rect.high = glm::max(rect.high, place);
+  };
+  const double near = 0.99 * sight.near();  // with a margin: keys decide at the plane itself
+  for (std::size_t i = 0; i < 3; ++i) {
+    const glm::dvec3 &a = c[i], &b = c[(i + 1) % 3];
+    if (sight.is_parallel() || a.z >= near) include(a);
+    if (!sight.is_parallel() && (a.z >= near) != (b.z >= near)) include(a + (near - a.z) / (b.z - a.z) * (b - a));
+  }
+  // A margin of one pixel, many times what doubles and the squares need.
+  return {rect.low - 1.0, rect.high + 1.0};
+}
+
+/// The samples that differ, by their position.
 class DifferenceMap {
  public:
   DifferenceMap(const Question& question, const std::vector<DifferingSample>& samples, const RuledOut& ruled_out,
                 const Execution& execution)
       : question_(question),
-        view_(question.view),
-        columns_((view_.width + kCell - 1) / kCell),
-        rows_((view_.height + kCell - 1) / kCell),
         numbers_(
             std::size_t(columns_) * std::size_t(rows_), samples.size(),
             [&](std::size_t i, const auto& add) { add(cell_of(samples[i]), i); }, execution),
@@ -143,7 +153,8 @@ class DifferenceMap {
     squares_.reserve(farthest_.size());
     for (int y = 0; y < rows_; ++y)
       for (int x = 0; x < columns_; ++x)
-        squares_.emplace_back(question.rays, glm::ivec2(x, y) * kCell, glm::ivec2(x, y) * kCell + (kCell - 1));
+        squares_.emplace_back(question.rays, glm::ivec2(x, y) * (kCell * kSubPixels),
+                              glm::ivec2(x + 1, y + 1) * (kCell * kSubPixels));
     for (std::size_t i = 0; i < samples.size(); ++i)
       for (std::size_t k = 0; k < 2; ++k)
         if (double& farthest = farthest_[cell_of(samples[i])]; !ruled_out[i][k])
@@ -153,9 +164,9 @@ class DifferenceMap {
   /// Visits the samples of each cell that a triangle and its rectangle on the screen, in pixels, both meet. Skips cells
   /// in which the triangle is behind all claims.
   template <class Visit>
-  void in_rect(const glm::dvec2& low, const glm::dvec2& high, const std::array<glm::vec3, 3>& corners,
-               const Visit& visit) const {
+  void in_rect(const ScreenRect& rect, const std::array<glm::vec3, 3>& corners, const Visit& visit) const {
     std::optional<ViewedTriangle> triangle;
+    const auto& [low, high] = rect;
     const auto cell = [](double at, int count) { return int(std::clamp(std::floor(at / kCell), 0.0, count - 1.0)); };
     if (high.x < 0 || high.y < 0 || low.x > view_.width || low.y > view_.height) return;
     const int last_x = cell(high.x, columns_), last_y = cell(high.y, rows_);
@@ -177,39 +188,12 @@ class DifferenceMap {
   }
 
   const Question& question_;
-  const View& view_;
-  int columns_, rows_;
-  const Buckets<std::size_t> numbers_;  ///< numbers of the samples that differ, by cell
+  const View& view_ = question_.view;
+  int columns_ = (view_.width + kCell - 1) / kCell, rows_ = (view_.height + kCell - 1) / kCell;
+  const Buckets<std::size_t> numbers_;  ///< of samples that differ, by cell
   std::vector<double> farthest_;        ///< by cell: nearness of the farthest of the remaining claims
   std::vector<SampleSquare> squares_;   ///< by cell: a square around the squares of all of its samples
 };
-
-/// A rectangle of the screen, in pixels, around the visible part of a triangle.
-struct ScreenRect {
-  glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
-};
-
-ScreenRect rect_of(const std::array<glm::vec3, 3>& corners, const View& view, const glm::dmat4& eye_from_world) {
-  const Projection& p = view.projection;
-  std::array<glm::dvec3, 3> c;
-  for (std::size_t i = 0; i < 3; ++i) c[i] = glm::dvec3(eye_from_world * glm::dvec4(corners[i], 1));
-  ScreenRect rect;
-  const auto include = [&](const glm::dvec3& at) {
-    const double scale = p.orthographic ? 1 : -1 / at.z;
-    const glm::dvec2 place((at.x * scale - p.left) / (p.right - p.left) * view.width,
-                           (p.top - at.y * scale) / (p.top - p.bottom) * view.height);
-    rect.low = glm::min(rect.low, place);
-    rect.high = glm::max(rect.high, place);
-  };
-  const double near = -0.99 * p.clip.near;  // with a margin, because the keys decide at the plane
-  for (std::size_t i = 0; i < 3; ++i) {
-    const glm::dvec3 &a = c[i], &b = c[(i + 1) % 3];
-    if (p.orthographic || a.z <= near) include(a);
-    if (!p.orthographic && (a.z <= near) != (b.z <= near)) include(a + (near - a.z) / (b.z - a.z) * (b - a));
-  }
-  // A margin of one pixel, many times what doubles and the squares need.
-  return {rect.low - 1.0, rect.high + 1.0};
-}
 
 /// Rules out claims of a sample that triangle `id` contradicts, if the triangle surely covers the sample.
 void rule_out_by(const Question& question, PrimitiveId id, const ViewedTriangle& triangle,
@@ -239,29 +223,16 @@ void compare_all_triangles(const Question& question, const std::vector<Differing
         if (claim.triangle) rule_out_by(question, claim.id, *claim.triangle, samples[i], ruled_out[i]);
   });
   const DifferenceMap map(question, samples, ruled_out, execution);
-  const glm::dmat4 eye_from_world = glm::inverse(question.view.world_from_eye);
+  const Sight sight(question.view);
   parallel_for(execution, question.surfaces.primitive_count(), kTriangleGrain, [&](std::size_t begin, std::size_t end) {
     for (auto id = PrimitiveId(begin); id < end; ++id) {
       const std::array<glm::vec3, 3> corners = question.surfaces.corners(id);
       if (!are_finite(corners)) continue;
-      const ScreenRect rect = rect_of(corners, question.view, eye_from_world);
-      map.in_rect(rect.low, rect.high, corners, [&](std::size_t number, const ViewedTriangle& triangle) {
+      map.in_rect(rect_of(corners, sight), corners, [&](std::size_t number, const ViewedTriangle& triangle) {
         rule_out_by(question, id, triangle, samples[number], ruled_out[number]);
       });
     }
   });
-}
-
-DifferingSample differing_sample(const Question& question, std::size_t number, PrimitiveId a, PrimitiveId b) {
-  DifferingSample sample{number, question.square(number), {Claim{a, {}}, Claim{b, {}}}};
-  for (Claim& claim : sample.claims) {
-    if (claim.id == no_primitive) continue;
-    claim.triangle = question.triangle(claim.id);
-    if (claim.triangle) claim.nearness = claim.triangle->nearness(sample.square).greatest.low;
-    claim.meeting =
-        claim.triangle ? question.meeting(*claim.triangle, claim.id, sample.square, number) : LineMeeting::misses;
-  }
-  return sample;
 }
 
 Difference verdict(const DifferingSample& sample, const std::array<std::atomic<bool>, 2>& ruled_out) {
@@ -279,7 +250,7 @@ void look_at_samples(const Question& question, const Visible& a, const Visible& 
                      Agreement& result) {
   const std::size_t width = std::size_t(question.view.width), rows = question.view.sample_count() / width;
   parallel_for(execution, rows, kRowGrain, [&](std::size_t begin, std::size_t end) {
-    std::array<KeyCheck, 2> checks{KeyCheck(question), KeyCheck(question)};
+    std::array<KeyCheck, 2> checks{KeyCheck{question}, KeyCheck{question}};
     for (std::size_t i = begin * width; i < end * width; ++i) {
       Difference& difference = result.differences[i];
       const PrimitiveId ids[] = {a.primitives[i], b.primitives[i]};
@@ -297,9 +268,17 @@ void look_at_samples(const Question& question, const Visible& a, const Visible& 
 std::vector<DifferingSample> differing_samples(const Question& question, const Visible& a, const Visible& b,
                                                const Agreement& result) {
   std::vector<DifferingSample> samples;
-  for (std::size_t i = 0; i < result.differences.size(); ++i)
-    if (result.differences[i] == Difference::edge)
-      samples.push_back(differing_sample(question, i, a.primitives[i], b.primitives[i]));
+  for (std::size_t i = 0; i < result.differences.size(); ++i) {
+    if (result.differences[i] != Difference::edge) continue;
+    samples.push_back({i, question.square(i), {Claim{a.primitives[i], {}}, Claim{b.primitives[i], {}}}});
+    const SampleSquare& square = samples.back().square;
+    for (Claim& claim : samples.back().claims) {
+      if (claim.id == no_primitive) continue;
+      claim.triangle = question.triangle(claim.id);
+      claim.meeting = claim.triangle ? question.meeting(*claim.triangle, claim.id, square, i) : LineMeeting::misses;
+      if (claim.triangle) claim.nearness = claim.triangle->nearness(square).greatest.low;
+    }
+  }
   return samples;
 }
 
@@ -320,10 +299,7 @@ std::string_view name(Difference difference) {
 }
 
 std::uint64_t Agreement::differing() const {
-  std::uint64_t sum = 0;
-  for (const Difference d : {Difference::edge, Difference::depth, Difference::translucent, Difference::unexplained})
-    sum += count(d);
-  return sum;
+  return std::accumulate(counts.begin() + 1, counts.end(), std::uint64_t(0));  // without Difference::none
 }
 
 Agreement check_agreement(const Surfaces& surfaces, const Visible& a, const Visible& b, const Execution& execution) {
@@ -333,11 +309,7 @@ Agreement check_agreement(const Surfaces& surfaces, const Visible& a, const Visi
   Agreement result;
   result.view = a.view;
   result.differences = Buffer<Difference>(a.primitives.size());
-  const Question question{surfaces,
-                          result.view,
-                          SampleRays(a.view),
-                          ScreenRays(a.view),
-                          sample_offsets(a.view.samples),
+  const Question question{surfaces, result.view, SampleRays(a.view), ScreenRays(a.view),
                           FacingRule(a.view.culling, placed_scene(surfaces).sides.get())};
   look_at_samples(question, a, b, execution, result);
   const std::vector<DifferingSample> samples = differing_samples(question, a, b, result);

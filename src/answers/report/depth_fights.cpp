@@ -2,8 +2,7 @@
 // Samples at which an answer differs from the exact one, by how much, and between which objects.
 //
 // An answer is wrong where it shows a surface strictly behind the nearest one. Bounds in doubles decide most differing
-// samples; where bounds overlap, exact depths decide. Surfaces that are exactly as near are therefore never called
-// wrong.
+// samples; where bounds overlap, exact depths decide. Surfaces that are exactly as near are never called wrong.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -23,43 +22,30 @@ constexpr float kNothingSeen = std::numeric_limits<float>::infinity();
 
 double middle(const DepthBounds& bounds) { return 0.5 * (bounds.low + bounds.high); }
 
-class Judge {
- public:
-  Judge(const Surfaces& surfaces, const View& view) : surfaces_(surfaces), rays_(view) {}
+struct Judge {
+  const Surfaces& surfaces;
+  const View& view;
+  const SampleRays rays{view};
 
-  /// The error of showing `seen` where `nearest` is, as in DepthFights::errors; never 0 if the answer is wrong.
-  [[nodiscard]] float error(PrimitiveId seen, PrimitiveId nearest, const SampleRay& ray) const {
+  /// The error of showing `seen` instead of `nearest`, as in DepthFights::errors; never 0 if the answer is wrong.
+  [[nodiscard]] float error(PrimitiveId seen, PrimitiveId nearest, std::size_t sample) const {
     if (seen == nearest) return 0;
     if (seen == no_primitive || nearest == no_primitive) return kNothingSeen;
-    const auto a = surfaces_.corners(seen), b = surfaces_.corners(nearest);
-    const DepthBounds at_seen = BoundedPlane(a, rays_).at(ray), at_nearest = BoundedPlane(b, rays_).at(ray);
+    const SampleRay ray = rays.at(place_of_sample(view, sample));
+    const auto a = surfaces.corners(seen), b = surfaces.corners(nearest);
+    const DepthBounds at_seen = BoundedPlane(a, rays).at(ray), at_nearest = BoundedPlane(b, rays).at(ray);
     // Exact numbers cost far more than bounds, so they decide only what bounds leave open.
     const bool is_decided = at_seen.low > at_nearest.high;
-    if (!is_decided && exact_depth(a, rays_, ray).compare(exact_depth(b, rays_, ray)) <= 0) return 0;
+    if (!is_decided && exact_depth(a, rays, ray).compare(exact_depth(b, rays, ray)) <= 0) return 0;
     const double behind = middle(at_seen) - middle(at_nearest);
     // In orthographic views, depths may be 0.
     const auto share = float(behind / std::max(std::abs(middle(at_nearest)), 1e-300));
     return std::max(share, std::numeric_limits<float>::min());
   }
-  [[nodiscard]] const SampleRays& rays() const { return rays_; }
-  [[nodiscard]] double distance(PrimitiveId id, const SampleRay& ray) const {
-    return middle(BoundedPlane(surfaces_.corners(id), rays_).at(ray));
+  [[nodiscard]] double distance(PrimitiveId id, std::size_t sample) const {
+    return middle(BoundedPlane(surfaces.corners(id), rays).at(rays.at(place_of_sample(view, sample))));
   }
-
- private:
-  const Surfaces& surfaces_;
-  SampleRays rays_;
 };
-
-/// Calls visit(index, ray) for every sample in a row of a plane; ray() returns the sample's ray.
-template <class Visit>
-void for_each_sample(const View& view, const SampleRays& rays, std::size_t row, const Visit& visit) {
-  const auto height = std::size_t(view.height), width = std::size_t(view.width);
-  // Planes of samples follow each other in memory, and row numbers run through all of them.
-  const glm::ivec2 offset = sample_offsets(view.samples)[row / height];
-  for (std::size_t x = 0; x < width; ++x)
-    visit(row * width + x, [&, x] { return rays.at(int(x), int(row % height), offset); });
-}
 
 void check_views(const ExactVisible& exact, const Visible& answer) {
   const View &a = exact.view, &b = answer.view;
@@ -102,11 +88,6 @@ Visible draw(const Surfaces& surfaces, const View& view, const DepthSetup& setup
   return std::move(buffer).visible(view);
 }
 
-View with_clip(View view, const ClipDistances& clip) {
-  view.projection.clip = clip;
-  return view;
-}
-
 /// Near and far planes as close as the faces in the picture allow.
 ClipDistances tight_planes(const Surfaces& surfaces, const View& view, const DepthSetup& setup,
                            const Execution& execution) {
@@ -138,36 +119,31 @@ DepthFights find_depth_fights(const Surfaces& surfaces, const ExactVisible& exac
   DepthFights fights;
   fights.view = view;
   fights.errors = Buffer<float>(exact.primitives.size());
-  const Judge judge(surfaces, view);
-  const std::size_t rows = std::size_t(view.height) * std::size_t(view.samples);
-  parallel_for(execution, rows, 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row)
-      for_each_sample(view, judge.rays(), row, [&](std::size_t i, const auto& ray) {
-        const PrimitiveId seen = answer.primitives[i], nearest = exact.primitives[i];
-        fights.errors[i] = seen == nearest ? 0.0f : judge.error(seen, nearest, ray());
-      });
+  constexpr std::size_t kSamplesAtOnce = 1 << 14;
+  const Judge judge{surfaces, view};
+  parallel_for(execution, fights.errors.size(), kSamplesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      fights.errors[i] = judge.error(answer.primitives[i], exact.primitives[i], i);
   });
 
   // One thread suffices: wrong samples are rare, and all others only take a look at an array.
   std::map<std::pair<std::uint32_t, std::uint32_t>, FightingPair> pairs;
   const auto object = [&](PrimitiveId id) { return id == no_primitive ? no_index : surfaces.source(id).instance; };
-  for (std::size_t row = 0; row < rows; ++row)
-    for_each_sample(view, judge.rays(), row, [&](std::size_t i, const auto& ray) {
-      const PrimitiveId nearest = exact.primitives[i];
-      fights.covered += nearest != no_primitive;
-      fights.tied += exact.tied[i];
-      if (fights.errors[i] == 0) return;
-      ++fights.wrong;
-      const std::uint32_t seen = object(answer.primitives[i]), nearer = object(nearest);
-      FightingPair& pair = pairs[{seen, nearer}];
-      pair.seen = seen;
-      pair.nearer = nearer;
-      ++pair.samples;
-      if (seen == no_index || nearer == no_index) return;
-      pair.farthest = std::max(pair.farthest, double(fights.errors[i]) * judge.distance(nearest, ray()));
-    });
-  // The map is ordered and the sort is stable, so pairs with equally many samples are ordered by their objects on every
-  // machine.
+  for (std::size_t i = 0; i < fights.errors.size(); ++i) {
+    const PrimitiveId nearest = exact.primitives[i];
+    fights.covered += nearest != no_primitive;
+    fights.tied += exact.tied[i];
+    if (fights.errors[i] == 0) continue;
+    ++fights.wrong;
+    const std::uint32_t seen = object(answer.primitives[i]), nearer = object(nearest);
+    FightingPair& pair = pairs[{seen, nearer}];
+    pair.seen = seen;
+    pair.nearer = nearer;
+    ++pair.samples;
+    if (seen == no_index || nearer == no_index) continue;
+    pair.farthest = std::max(pair.farthest, double(fights.errors[i]) * judge.distance(nearest, i));
+  }
+  // From a map by a stable sort: pairs with equally many samples are ordered by their objects, on every machine.
   for (const auto& [key, pair] : pairs) fights.pairs.push_back(pair);
   std::stable_sort(fights.pairs.begin(), fights.pairs.end(),
                    [](const FightingPair& a, const FightingPair& b) { return a.samples > b.samples; });
@@ -198,7 +174,7 @@ std::vector<FightRemedy> try_remedies(const Surfaces& surfaces, const ExactVisib
                                       const Execution& execution) {
   const IeeeScope ieee;
   const auto wrong_with = [&](const DepthSetup& tried) {
-    const View view = with_clip(exact.view, tried.clip);
+    const View view = exact.view.between(tried.clip.near, tried.clip.far);
     return find_depth_fights(surfaces, exact, draw(surfaces, view, tried, {}, execution), execution).wrong;
   };
   DepthSetup tight = setup, finer = setup, floats = setup;

@@ -4,23 +4,18 @@
 // N. Reed. Depth Precision Visualized. 2015. E. Lengyel. Foundations of Game Engine Development 2. 2019, 7.2.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
+#include "base/memory.h"
 #include "frontmost/precision.h"
 
 namespace frontmost {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 void check(const DepthSetup& setup, double distance) {
-  Projection p;
-  p.orthographic = setup.orthographic;
-  p.clip = setup.clip;
   if (setup.orthographic)
-    (void)make_orthographic(-1, 1, -1, 1, p.clip);
+    (void)make_orthographic(-1, 1, -1, 1, setup.clip);
   else
-    (void)make_frustum(-1, 1, -1, 1, p.clip);
+    (void)make_frustum(-1, 1, -1, 1, setup.clip);
   if (!(distance >= setup.clip.near && distance <= setup.clip.far) || !std::isfinite(distance))
     throw Error(ErrorCode::bad_argument, "distance", "must lie between near and far");
 }
@@ -44,22 +39,12 @@ double float_spacing(double depth) {
 /// Spacing of floats below `depth`: half as much if `depth` is a power of two.
 double spacing_below(double depth) { return float_spacing(depth * (1 - 1e-12)); }
 
-/// The difference from which two keys (see Visible in view.h) round to different floats. Depths are made from keys, so
-/// the finer values of a float buffer next to zero gain nothing.
-double key_step(double key) { return spacing_below(key); }
-
 /// A difference of z with which two depths never share a value; the first depth is `depth`, the second is farther away.
 double full_step(const DepthSetup& setup, double depth) {
   if (setup.format != DepthFormat::f32) return 1 / double((std::uint32_t(1) << integer_bits(setup.format)) - 1);
   if (setup.reversed) return spacing_below(depth);
   // Rounding separates depths one spacing apart; the wider spacing, farther away, counts. No depth exceeds 1.
   return spacing_below(std::min(depth + float_spacing(depth), 1.0));
-}
-
-/// The gap for a step of 1/d at a distance.
-double gap_of(double distance, double step) {
-  const double left = 1 - distance * step;
-  return left > 0 ? distance * distance * step / left : kInfinity;
 }
 
 /// The default reach of vertices: twice the distance of the surface, enough for pictures of up to 120 degrees; in
@@ -69,24 +54,15 @@ double reach_of(const DepthSetup& setup, double distance) {
   return kTimes * (setup.orthographic ? std::max(std::abs(setup.clip.near), std::abs(setup.clip.far)) : distance);
 }
 
-/// The error of a distance before it is stored. These numbers are rounded once each: a vertex's differences to the eye,
-/// its row of the transform, their products, the three sums, and its world position. At the rim of the guard band the
-/// triangle is cut, which rounds twice. Making the key takes a reciprocal and a product; in parallel projection, the
-/// difference to the far plane and a product.
+/// The error of a distance before it is stored. Rounded once each: a vertex's differences to the eye, its row of the
+/// transform, their products, the three sums, and its world position. Cutting at the guard band takes two steps. Making
+/// the key takes a reciprocal and a product; in parallel projection, the difference to the far plane and a product.
 double rounding(const DepthSetup& setup, double distance, double reach) {
   constexpr double kUnit = 0x1p-24;
   return kUnit * (9 * reach + 2 * (setup.orthographic ? setup.clip.far - distance : distance));
 }
 
-double bits_of(double depth) {
-  const auto rounded = float(depth);
-  std::uint32_t bits;
-  std::memcpy(&bits, &rounded, sizeof bits);
-  return bits;
-}
-
-/// Bisects for the near plane, for floats that are not reversed. Bisection works because the gap only shrinks as the
-/// near plane moves away from the eye.
+/// For floats that are not reversed. The gap only shrinks as the near plane moves away from the eye.
 std::optional<double> bisected_near(DepthSetup setup, double distance, double gap) {
   double low = std::log(distance) - 70, high = std::log(distance);
   for (int i = 0; i < 200; ++i) {
@@ -105,9 +81,13 @@ double resolvable_gap(const DepthSetup& setup, double distance) {
   const auto& [near, far] = setup.clip;
   const bool is_float = setup.format == DepthFormat::f32;
   const double step = full_step(setup, depth_of(setup, distance));
-  if (setup.orthographic)
-    return std::max(step, is_float ? key_step((far - distance) / (far - near)) : 0.0) * (far - near);
-  return gap_of(distance, std::max(step * span(setup.clip), is_float ? key_step(near / distance) : 0.0) / near);
+  // Depths are made from keys (see Visible in view.h), so the finer values of a float buffer next to zero gain nothing.
+  const double key = setup.orthographic ? (far - distance) / (far - near) : near / distance;
+  const double key_step = is_float ? spacing_below(key) : 0;
+  if (setup.orthographic) return std::max(step, key_step) * (far - near);
+  const double inverse_step = std::max(step * span(setup.clip), key_step) / near;  // of 1/d
+  const double left = 1 - distance * inverse_step;
+  return left > 0 ? distance * distance * inverse_step / left : std::numeric_limits<double>::infinity();
 }
 
 double rounding_gap(const DepthSetup& setup, double distance, std::optional<double> reach) {
@@ -130,7 +110,8 @@ double share_of_values(const DepthSetup& setup, double distance) {
   check(setup, distance);
   const double depth = depth_of(setup, distance);
   if (setup.format != DepthFormat::f32) return setup.reversed ? 1 - depth : depth;
-  const double share = bits_of(depth) / bits_of(1);
+  // Floats that are not negative are ordered like their bits.
+  const double share = double(bits_as<std::uint32_t>(float(depth))) / bits_as<std::uint32_t>(1.0f);
   return setup.reversed ? 1 - share : share;
 }
 

@@ -20,16 +20,7 @@
 
 namespace frontmost {
 
-SampleRays::SampleRays(const View& view)
-    : orthographic_(view.projection.orthographic),
-      eye_(view.eye()),
-      forward_(view.forward()),
-      right_(view.right()),
-      up_(view.up()),
-      left_(view.projection.left),
-      top_(view.projection.top),
-      step_x_((view.projection.right - view.projection.left) / view.width),
-      step_y_((view.projection.top - view.projection.bottom) / view.height) {
+SampleRays::SampleRays(const View& view) : view_(view) {
   const ScreenTransform t(view);
   near_ = double(t.near);
   far_ = double(t.far);
@@ -39,11 +30,17 @@ SampleRays::SampleRays(const View& view)
                              (guard + 0.5 * view.height) * step_y_ + std::abs(top_ - 0.5 * view.height * step_y_), 1));
 }
 
-SampleRay SampleRays::at(int x, int y, const glm::ivec2& offset) const {
-  const double along = left_ + (x + offset.x / 256.0) * step_x_, upwards = top_ - (y + offset.y / 256.0) * step_y_;
+SampleRay SampleRays::at(const glm::ivec2& place) const {
+  const double along = left_ + (place.x / 256.0) * step_x_, upwards = top_ - (place.y / 256.0) * step_y_;
   const glm::dvec3 aside = along * right_ + upwards * up_;
   if (orthographic_) return {eye_ + aside, forward_};
   return {eye_, forward_ + aside};
+}
+
+glm::ivec2 place_of_sample(const View& view, std::size_t sample) {
+  const std::size_t pixel = sample % view.pixel_count(), width = std::size_t(view.width);
+  return glm::ivec2(pixel % width, pixel / width) * kSubPixels +
+         sample_offsets(view.samples)[sample / view.pixel_count()];
 }
 
 BoundedPlane::BoundedPlane(const std::array<glm::vec3, 3>& corners, const SampleRays& rays) : corner_(corners[0]) {
@@ -64,14 +61,8 @@ BoundedPlane::BoundedPlane(const std::array<glm::vec3, 3>& corners, const Sample
 DepthBounds BoundedPlane::at(const SampleRay& ray) const {
   const Bounded above = bounded_dot(normal_.value, normal_.error, corner_ - ray.origin);
   const Bounded below = bounded_dot(normal_.value, normal_.error, ray.direction);
-  // If the plane is seen nearly edge-on, or contains the eye, only the corners' range is known. The test is written so
-  // that NaN passes it.
-  if (!(std::abs(below.value) > 4 * below.error)) return {limits_low_.low, limits_high_.high};
-  const double depth = above.value / below.value;
-  const double error = (above.error + std::abs(depth) * below.error) / (std::abs(below.value) - below.error) +
-                       kRounding * std::abs(depth);
-  return {std::min(std::max(depth - error, limits_low_.low), limits_high_.low),
-          std::min(std::max(depth + error, limits_low_.high), limits_high_.high)};
+  // If the plane is seen nearly edge-on, or contains the eye, only the corners' range is known.
+  return bounded_quotient(above, below, limits_low_, limits_high_);
 }
 
 bool lie_in_one_plane(const std::array<glm::vec3, 3>& a, const std::array<glm::vec3, 3>& b) {
@@ -82,29 +73,33 @@ bool lie_in_one_plane(const std::array<glm::vec3, 3>& a, const std::array<glm::v
   });
 }
 
-Fraction exact_depth(const std::array<glm::vec3, 3>& corners, const SampleRays& rays, const SampleRay& ray) {
-  const glm::dvec3 a(corners[0]), b(corners[1]), c(corners[2]);
+Fraction exact_plane_depth(const std::array<glm::dvec3, 3>& corners, const SampleRay& ray) {
+  const auto& [a, b, c] = corners;
   const ExactVector normal = cross(difference(b, a), difference(c, a));
-  Fraction depth{dot(normal, difference(a, ray.origin)), dot(normal, exact(ray.direction))};
-  if (depth.denominator.sign() < 0) depth = {-depth.numerator, -depth.denominator};
-  // Edge-on: the ray lies in the plane or misses it. The depth of the nearest corner is used.
-  if (depth.denominator.sign() == 0) depth = {Expansion(-std::numeric_limits<float>::max()), Expansion(1)};
-  // Limits the depth to the corners' range, by the same rule as the bounds above; otherwise exact depths and bounds
-  // would disagree about slivers.
-  Expansion nearest, farthest;
+  return {dot(normal, difference(a, ray.origin)), dot(normal, exact(ray.direction))};
+}
+
+Expansion exact_corner_depth(const std::array<glm::dvec3, 3>& corners, const SampleRays& rays, int extreme) {
+  Expansion depth;
   for (std::size_t i = 0; i < 3; ++i) {
-    const Expansion at = dot(exact(rays.forward()), difference(glm::dvec3(corners[i]), rays.eye()));
-    if (i == 0 || (at - nearest).sign() < 0) nearest = at;
-    if (i == 0 || (at - farthest).sign() > 0) farthest = at;
+    const Expansion here = dot(exact(rays.forward()), difference(corners[i], rays.eye()));
+    if (i == 0 || (depth - here).sign() == extreme) depth = here;
   }
-  // Limits the depth from below (side 1) or from above (side -1).
-  const auto limit = [&](const Expansion& bound, int side) {
-    if ((bound * depth.denominator - depth.numerator).sign() == side) depth = {bound, Expansion(1)};
-  };
-  limit(nearest, 1);
-  limit(farthest, -1);
-  limit(Expansion(rays.near()), 1);
-  limit(Expansion(rays.far()), -1);
+  const Expansion near(rays.near()), far(rays.far());
+  if ((depth - near).sign() < 0) return near;
+  return (depth - far).sign() > 0 ? far : depth;
+}
+
+Fraction exact_depth(const std::array<glm::vec3, 3>& corners, const SampleRays& rays, const SampleRay& ray) {
+  const std::array<glm::dvec3, 3> all{glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])};
+  Fraction depth = exact_plane_depth(all, ray);
+  // Edge-on: the depth of the nearest corner is used.
+  if (depth.denominator.sign() == 0) depth = {Expansion(-std::numeric_limits<float>::max()), Expansion(1)};
+  // Limited to the corners' range, by the rule of the bounds above; otherwise both would disagree about slivers.
+  for (const int extreme : {1, -1}) {
+    const Expansion bound = exact_corner_depth(all, rays, extreme);
+    if ((bound * depth.denominator - depth.numerator).sign() == extreme) depth = {bound, Expansion(1)};
+  }
   return depth;
 }
 
@@ -134,9 +129,8 @@ bool has_one_depth(const std::array<glm::vec3, 3>& corners, const SampleRays& ra
   return is_level(corners[1]) && is_level(corners[2]);
 }
 
-/// A triangle at a sample is one step of work if doubles decide. Entering a triangle into a tile, comparing two planes
-/// exactly, and comparing two depths exactly take the following numbers of steps. A tile reports its steps in portions
-/// of kStepsAtOnce.
+/// A triangle at a sample is one step of work if doubles decide. The constants are the steps of entering a triangle
+/// into a tile, of comparing two planes exactly, and of comparing two depths; and a portion that a tile reports.
 constexpr std::uint64_t kStepsOfTriangle = 16, kStepsOfPlanes = 16, kStepsOfDepths = 64, kStepsAtOnce = 1 << 14;
 /// The limit of the steps is a constant, plus a number for each sample and one for each triangle.
 constexpr std::uint64_t kMostSteps = std::uint64_t(1) << 29, kMostStepsOfSample = 128, kMostStepsOfTriangle = 1024;
@@ -193,7 +187,7 @@ class NearestInTile {
   void fragment(int x, int y, std::size_t sample, PrimitiveId id, const BoundedPlane& plane) {
     ++steps_;
     ExactVisible& answer = field_.answer;
-    const SampleRay ray = field_.rays.at(x, y, field_.samples[sample]);
+    const SampleRay ray = field_.rays.at(glm::ivec2(x, y) * kSubPixels + field_.samples[sample]);
     const DepthBounds bounds = plane.at(ray);
     const std::size_t i =
         (sample * std::size_t(answer.view.height) + std::size_t(y)) * std::size_t(answer.view.width) + std::size_t(x);
@@ -215,27 +209,21 @@ class NearestInTile {
   /// Compares the depths of `a` and `b` at a ray, where their bounds are `bounds` and `others`.
   [[nodiscard]] int compare_exactly(PrimitiveId a, PrimitiveId b, const BoundedPlane& plane, const DepthBounds& bounds,
                                     const DepthBounds& others, const SampleRay& ray) {
-    const Rival& rival = rival_of(a, b);
+    Rival& rival = rivals_[b % rivals_.size()];
+    if (rival.beside != a || rival.id != b) {
+      steps_ += kStepsOfPlanes;
+      const auto own = field_.surfaces.corners(a), other = field_.surfaces.corners(b);
+      const bool shares_plane = share_a_plane(own, other);
+      const bool has_depth = shares_plane && has_one_depth(own, field_.rays) && has_one_depth(other, field_.rays);
+      rival = {a, b, shares_plane, has_depth, std::nullopt};
+      if (shares_plane) rival.plane.emplace(other, field_.rays);
+    }
     if (rival.shares_plane &&
         (rival.has_one_depth || (plane.is_within_corners(bounds) && rival.plane->is_within_corners(others))))
       return 0;
     steps_ += kStepsOfDepths;
     return exact_depth(field_.surfaces.corners(a), field_.rays, ray)
         .compare(exact_depth(field_.surfaces.corners(b), field_.rays, ray));
-  }
-
-  /// The cached facts about `b` relative to `a`.
-  [[nodiscard]] const Rival& rival_of(PrimitiveId a, PrimitiveId b) {
-    Rival& rival = rivals_[b % rivals_.size()];
-    if (rival.beside == a && rival.id == b) return rival;
-    steps_ += kStepsOfPlanes;
-    const auto own = field_.surfaces.corners(a), other = field_.surfaces.corners(b);
-    rival.beside = a;
-    rival.id = b;
-    rival.shares_plane = share_a_plane(own, other);
-    rival.has_one_depth = rival.shares_plane && has_one_depth(own, field_.rays) && has_one_depth(other, field_.rays);
-    if (rival.shares_plane) rival.plane.emplace(other, field_.rays);
-    return rival;
   }
 
   NearestBounds& field_;

@@ -26,53 +26,28 @@ namespace frontmost {
 namespace {
 
 void add(Oddities& sum, const Oddities& odd) {
-  sum.non_finite_triangles += odd.non_finite_triangles;
-  sum.degenerate_triangles += odd.degenerate_triangles;
-  sum.duplicate_triangles += odd.duplicate_triangles;
-  sum.boundary_edges += odd.boundary_edges;
-  sum.non_manifold_edges += odd.non_manifold_edges;
-  sum.inconsistent_edges += odd.inconsistent_edges;
+  using O = Oddities;
+  for (std::uint64_t O::*const count : {&O::non_finite_triangles, &O::degenerate_triangles, &O::duplicate_triangles,
+                                        &O::boundary_edges, &O::non_manifold_edges, &O::inconsistent_edges})
+    sum.*count += odd.*count;
 }
 
-constexpr std::size_t kMaxTriangles = std::size_t(1) << 29;  // leaves a free bit beside a half-edge's number
 constexpr std::size_t kGrain = std::size_t(1) << 14;
-constexpr std::uint32_t kUnpaired = no_index;
 
-/// A half-edge, in the bucket of half-edges with the same lower point.
-struct HalfEdge {
-  std::uint32_t upper;   ///< the other point
-  std::uint32_t marked;  ///< number of the half-edge; the highest bit is set if the half-edge leads to the lower point
-
-  static constexpr std::uint32_t backward = 1u << 31;
-  [[nodiscard]] std::uint32_t number() const { return marked & ~backward; }
-  friend bool operator<(const HalfEdge& a, const HalfEdge& b) {
-    return a.upper != b.upper ? a.upper < b.upper : a.number() < b.number();
-  }
-  [[nodiscard]] bool is_same(const HalfEdge& other) const { return upper == other.upper; }
-};
-
-/// The two greater points of a triangle, in the bucket of triangles with the same least point.
-struct UpperPoints {
-  std::uint32_t middle, last;
-
-  friend auto operator<=>(const UpperPoints&, const UpperPoints&) = default;
-  [[nodiscard]] bool is_same(const UpperPoints& other) const { return *this == other; }
-};
-
-/// Sorts each bucket, and calls visit(group, sums) for each group of equal items, from several threads. Adds all `sums`
-/// to `all`.
-template <class Item, class Visit>
-void for_each_group(Buckets<Item>& buckets, const Execution& execution, Oddities& all, const Visit& visit) {
+/// Calls visit(group, sums) for each group of items of a bucket that are equal but for their last `free_bits`, in
+/// parallel, and adds all `sums` to `all`.
+template <class Visit>
+void for_each_group(Buckets<std::uint64_t>& buckets, int free_bits, const Execution& execution, Oddities& all,
+                    const Visit& visit) {
   std::mutex mutex;
   parallel_for(execution, buckets.count(), kGrain, [&](std::size_t begin, std::size_t end) {
     Oddities sums;
     for (std::size_t bucket = begin; bucket < end; ++bucket) {
-      const std::span<Item> items = buckets[bucket];
+      const std::span<std::uint64_t> items = buckets[bucket];
       std::sort(items.begin(), items.end());
-      for (auto first = items.begin(); first != items.end();) {
-        const auto last = std::find_if(first, items.end(), [&](const Item& item) { return !item.is_same(*first); });
-        visit(std::span<const Item>(first, last), sums);
-        first = last;
+      for (std::size_t first = 0, last = 0; first < items.size(); first = last) {
+        while (last < items.size() && items[last] >> free_bits == items[first] >> free_bits) ++last;
+        visit(std::span<const std::uint64_t>(items.subspan(first, last - first)), sums);
       }
     }
     const std::lock_guard lock(mutex);
@@ -83,13 +58,7 @@ void for_each_group(Buckets<Item>& buckets, const Execution& execution, Oddities
 /// The mesh after welding. Half-edge 3 * triangle + k runs from corner k to the next one.
 class MeshTopology {
  public:
-  MeshTopology(const Mesh& mesh, const Execution& execution)
-      : mesh_(mesh),
-        execution_(execution),
-        corners_(mesh.triangles.size()),
-        kinds_(mesh.triangles.size()),
-        triangle_sets_(mesh.triangles.size()),
-        corner_sets_(mesh.positions.size()) {
+  MeshTopology(const Mesh& mesh, const Execution& execution) : mesh_(mesh), execution_(execution) {
     const Buffer<std::uint32_t> first = first_at_place(mesh.positions, execution);
     parallel_for(execution, corners_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
@@ -143,48 +112,50 @@ class MeshTopology {
       if (c.x > c.y) std::swap(c.x, c.y);
       if (c.y > c.z) std::swap(c.y, c.z);
       if (c.x > c.y) std::swap(c.x, c.y);
-      add(c.x, UpperPoints{c.y, c.z});
+      add(c.x, std::uint64_t(c.y) << 32 | c.z);
     };
-    Buckets<UpperPoints> triangles(mesh_.positions.size(), corners_.size(), list, execution_);
-    for_each_group(triangles, execution_, odd, [](std::span<const UpperPoints> same, Oddities& counts) {
+    Buckets<std::uint64_t> triangles(mesh_.positions.size(), corners_.size(), list, execution_);
+    for_each_group(triangles, 0, execution_, odd, [](std::span<const std::uint64_t> same, Oddities& counts) {
       counts.duplicate_triangles += same.size() - 1;
     });
   }
 
-  // Counts edges by their number of triangles, joins the triangles of each edge, and pairs opposite half-edges.
+  // Counts edges by their number of triangles, joins the triangles of each edge, and pairs opposite half-edges. In the
+  // bucket of its lower point, a half-edge is its other point, then a bit if it leads downwards, then its number.
   void join_edges(Oddities& odd) {
-    twins_.assign(3 * corners_.size(), kUnpaired);
+    constexpr std::uint32_t kBackward = 1u << 31;
+    twins_.assign(3 * corners_.size(), no_index);
     const auto list = [&](std::size_t t, const auto& add) {
       if (!has_edges(kinds_[t])) return;
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t from = corners_[t][k], to = corners_[t][(k + 1) % 3],
                             half_edge = 3 * std::uint32_t(t) + std::uint32_t(k);
-        add(std::min(from, to), HalfEdge{std::max(from, to), half_edge | (from < to ? 0 : HalfEdge::backward)});
+        add(std::min(from, to), std::uint64_t(std::max(from, to)) << 32 | half_edge | (from < to ? 0 : kBackward));
       }
     };
-    Buckets<HalfEdge> edges(mesh_.positions.size(), corners_.size(), list, execution_);
-    for_each_group(edges, execution_, odd, [&](std::span<const HalfEdge> edge, Oddities& counts) {
-      for (std::size_t i = 1; i < edge.size(); ++i) triangle_sets_.join(edge[0].number() / 3, edge[i].number() / 3);
+    Buckets<std::uint64_t> edges(mesh_.positions.size(), corners_.size(), list, execution_);
+    for_each_group(edges, 32, execution_, odd, [&](std::span<const std::uint64_t> edge, Oddities& counts) {
+      const auto number = [&](std::size_t i) { return std::uint32_t(edge[i]) & ~kBackward; };
+      for (std::size_t i = 1; i < edge.size(); ++i) triangle_sets_.join(number(0) / 3, number(i) / 3);
       counts.boundary_edges += edge.size() == 1;
       counts.non_manifold_edges += edge.size() > 2;
       if (edge.size() != 2) return;
-      if (((edge[0].marked ^ edge[1].marked) & HalfEdge::backward) == 0) {
+      if (((edge[0] ^ edge[1]) & kBackward) == 0) {
         ++counts.inconsistent_edges;
       } else {
-        twins_[edge[0].number()] = edge[1].number();
-        twins_[edge[1].number()] = edge[0].number();
+        twins_[number(0)] = number(1);
+        twins_[number(1)] = number(0);
       }
     });
   }
 
-  // The number of fans of triangles around vertices. A vertex has one fan, unless several fans touch in it. The surface
-  // then passes the vertex several times, and counting the vertex once would turn the contact into a handle.
-  // Precondition: every half-edge has its twin.
+  // The number of fans of triangles around vertices. Where two fans touch in a point, the surface passes that point
+  // twice; counting it once would turn it into a handle. Precondition: every half-edge has its twin.
   [[nodiscard]] std::uint64_t count_fans() const {
     std::uint64_t fans = 0;
     std::vector<bool> seen(twins_.size(), false);
     for (std::uint32_t start = 0; start < twins_.size(); ++start) {
-      if (seen[start] || twins_[start] == kUnpaired) continue;
+      if (seen[start] || twins_[start] == no_index) continue;
       ++fans;
       // The previous half-edge in its triangle ends where this one starts, so its twin starts there, too.
       for (std::uint32_t h = start; !seen[h]; h = twins_[h % 3 == 0 ? h + 2 : h - 1]) seen[h] = true;
@@ -210,9 +181,9 @@ class MeshTopology {
 
   const Mesh& mesh_;
   const Execution& execution_;
-  std::vector<glm::uvec3> corners_;
-  std::vector<Kind> kinds_;
-  DisjointSets<> triangle_sets_, corner_sets_;
+  std::vector<glm::uvec3> corners_ = std::vector<glm::uvec3>(mesh_.triangles.size());
+  std::vector<Kind> kinds_ = std::vector<Kind>(mesh_.triangles.size());
+  DisjointSets<> triangle_sets_{mesh_.triangles.size()}, corner_sets_{mesh_.positions.size()};
   std::vector<std::uint32_t> twins_;
 };
 
@@ -231,16 +202,9 @@ std::vector<MaterialUse> materials_of(const Mesh& mesh) {
   return uses;
 }
 
-std::uint64_t face_count(const Mesh& mesh) {
-  if (mesh.face_ids.empty()) return mesh.triangles.size();
-  // The triangles of a polygon are consecutive.
-  std::uint64_t faces = 1;
-  for (std::size_t i = 1; i < mesh.face_ids.size(); ++i) faces += mesh.face_ids[i] != mesh.face_ids[i - 1];
-  return faces;
-}
-
 /// Reports a mesh. Sets `points` to the different positions of finite triangles. Precondition: indices are in range.
 MeshReport report_mesh(const Mesh& mesh, const Execution& execution, std::vector<glm::vec3>& points) {
+  constexpr std::size_t kMaxTriangles = std::size_t(1) << 29;  // leaves a free bit beside a half-edge's number
   if (mesh.triangles.size() > kMaxTriangles)
     throw Error(ErrorCode::limit_exceeded, "mesh " + mesh.name, "more than 536870912 triangles to examine");
   MeshReport report;
@@ -249,7 +213,9 @@ MeshReport report_mesh(const Mesh& mesh, const Execution& execution, std::vector
   report.triangles = mesh.triangles.size();
   report.vertices = mesh.positions.size();
   report.positions = points.size();
-  report.faces = face_count(mesh);
+  report.faces = mesh.face_ids.empty() ? mesh.triangles.size() : 1;
+  for (std::size_t i = 1; i < mesh.face_ids.size(); ++i)  // the triangles of a polygon are consecutive
+    report.faces += mesh.face_ids[i] != mesh.face_ids[i - 1];
   report.has_normals = !mesh.normals.empty();
   report.has_texcoords = !mesh.texcoords.empty();
   report.has_colors = !mesh.colors.empty();
@@ -277,70 +243,39 @@ struct Measures {
   double area = 0, volume = 0;
 };
 
-/// Area and volume of a placed mesh. Triangles are summed in blocks, so that the number of threads does not change the
-/// result. The volume is the sum of tetrahedra with their tip in the middle of the bounds; a tip far from the object
-/// would cause cancellation.
+/// Area and volume. Triangles are summed in blocks, so that the number of threads does not change the result. The
+/// volume is that of tetrahedra with their tip in the middle of the bounds; tips far away would cause cancellation.
 Measures measures_of(const Mesh& mesh, const glm::dmat4& world_from_mesh, const Box& bounds,
                      const Execution& execution) {
-  constexpr std::size_t block = std::size_t(1) << 14;
-  std::vector<Measures> sums((mesh.triangles.size() + block - 1) / block);
+  std::vector<Measures> sums((mesh.triangles.size() + kGrain - 1) / kGrain);
   const glm::dvec3 tip = (glm::dvec3(bounds.low) + glm::dvec3(bounds.high)) * 0.5;
   const auto world = [&](std::uint32_t vertex) {
     return glm::dvec3(world_from_mesh * glm::dvec4(glm::dvec3(mesh.positions[vertex]), 1));
   };
-  parallel_for(execution, sums.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b)
-      for (std::size_t t = b * block; t < std::min((b + 1) * block, mesh.triangles.size()); ++t) {
-        const glm::uvec3& c = mesh.triangles[t];
-        const glm::dvec3 p = world(c.x) - tip, q = world(c.y) - tip, r = world(c.z) - tip;
-        const glm::dvec3 across = glm::cross(q - p, r - p);
-        const double area = 0.5 * glm::length(across), volume = glm::dot(p, across) / 6;
-        if (!std::isfinite(area) || !std::isfinite(volume)) continue;
-        sums[b].area += area;
-        sums[b].volume += volume;
-      }
+  parallel_for(execution, mesh.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    Measures& sum = sums[begin / kGrain];
+    for (std::size_t t = begin; t < end; ++t) {
+      const glm::uvec3& c = mesh.triangles[t];
+      const glm::dvec3 p = world(c.x) - tip, q = world(c.y) - tip, r = world(c.z) - tip;
+      const glm::dvec3 across = glm::cross(q - p, r - p);
+      const double area = 0.5 * glm::length(across), volume = glm::dot(p, across) / 6;
+      if (!std::isfinite(area) || !std::isfinite(volume)) continue;
+      sum.area += area;
+      sum.volume += volume;
+    }
   });
   Measures all;
   for (const Measures& sum : sums) all = {all.area + sum.area, all.volume + sum.volume};
   return all;
 }
 
-double rounding_within(const Box& bounds) {
-  if (bounds.is_empty()) return 0;
-  float farthest = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    farthest = std::max({farthest, std::abs(bounds.low[axis]), std::abs(bounds.high[axis])});
-  return 0.5 * (double(farthest) - double(std::nextafter(farthest, 0.0f)));
-}
-
-MaterialReport report_material(const Material& material) {
-  MaterialReport report;
-  report.name = material.name;
-  for (const TextureUse* use : texture_uses_of(material)) report.textures += use->is_set();
-  report.alpha = material.alpha;
-  report.double_sided = material.double_sided;
-  return report;
-}
-
 glm::dvec3 unit(const glm::dvec4& v) {
   const glm::dvec3 direction(v);
-  const double length = std::sqrt(glm::dot(direction, direction));
+  const double length = glm::length(direction);
   return length > 0 ? direction / length : direction;
 }
 
-CameraReport report_camera(const Camera& camera) {
-  const glm::dmat4& pose = camera.world_from_eye;
-  return {camera.name, glm::dvec3(pose[3]), unit(-pose[2]), unit(pose[1]), camera.orthographic, camera.vertical};
-}
-
-LightReport report_light(const Light& light) {
-  const glm::dmat4& pose = light.world_from_light;
-  return {light.name,      light.kind,  glm::dvec3(pose[3]), unit(-pose[2]),  light.color,
-          light.intensity, light.range, light.inner_cone,    light.outer_cone};
-}
-
-// Reports the objects of one mesh, which need its points. Meshes are examined one after the other, so only one mesh's
-// points are in memory at a time.
+// Objects of one mesh need its points. Meshes are examined one by one, so only one mesh's points are in memory.
 void report_objects(const Scene& scene, const std::vector<std::uint32_t>& instances,
                     const std::vector<glm::vec3>& points, const Execution& execution, SceneReport& report) {
   for (const std::uint32_t i : instances) {
@@ -363,8 +298,6 @@ void report_objects(const Scene& scene, const std::vector<std::uint32_t>& instan
   }
 }
 
-constexpr double millimetre = 0.001, centimetre = 0.01, inch = 0.0254, metre = 1;
-
 }  // namespace
 
 SceneReport inspect(const Scene& scene, const Execution& execution) {
@@ -375,9 +308,19 @@ SceneReport inspect(const Scene& scene, const Execution& execution) {
   report.origin = scene.origin;
   report.texture_count = scene.textures.size();
   report.warnings = scene.warnings;
-  for (const Material& material : scene.materials) report.materials.push_back(report_material(material));
-  for (const Camera& camera : scene.cameras) report.cameras.push_back(report_camera(camera));
-  for (const Light& light : scene.lights) report.lights.push_back(report_light(light));
+  for (const Material& m : scene.materials) {
+    report.materials.push_back({m.name, 0, 0, m.alpha, m.double_sided});
+    for (const TextureUse* use : texture_uses_of(m)) report.materials.back().textures += use->is_set();
+  }
+  for (const Camera& c : scene.cameras) {
+    const glm::dmat4& pose = c.world_from_eye;
+    report.cameras.push_back({c.name, glm::dvec3(pose[3]), unit(-pose[2]), unit(pose[1]), c.orthographic, c.vertical});
+  }
+  for (const Light& l : scene.lights) {
+    const glm::dmat4& pose = l.world_from_light;
+    report.lights.push_back({l.name, l.kind, glm::dvec3(pose[3]), unit(-pose[2]), l.color, l.intensity, l.range,
+                             l.inner_cone, l.outer_cone});
+  }
   std::vector<std::vector<std::uint32_t>> instances(scene.meshes.size());
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) instances[scene.instances[i].mesh].push_back(i);
   report.objects.resize(scene.instances.size());
@@ -390,7 +333,11 @@ SceneReport inspect(const Scene& scene, const Execution& execution) {
     add(report.odd, report.meshes[m].odd);
     report_objects(scene, instances[m], points, execution, report);
   }
-  report.rounding = rounding_within(report.bounds);
+  if (!report.bounds.is_empty()) {
+    const glm::vec3 reach = glm::max(glm::abs(report.bounds.low), glm::abs(report.bounds.high));
+    const float farthest = std::max({reach.x, reach.y, reach.z});
+    report.rounding = 0.5 * (double(farthest) - double(std::nextafter(farthest, 0.0f)));
+  }
   return report;
 }
 
@@ -398,10 +345,10 @@ std::vector<double> likely_units(const Box& bounds) {
   if (bounds.is_empty()) return {};
   const glm::dvec3 size = glm::dvec3(bounds.high) - glm::dvec3(bounds.low);
   const double greatest = std::max({size.x, size.y, size.z});
-  constexpr double least_part = 5, greatest_part = 2000, grain = 1, least_in_metres = 0.001;
-  if (!(greatest >= least_in_metres && greatest <= greatest_part)) return {};
-  if (greatest >= least_part) return {millimetre};
-  if (greatest < grain) return {metre};
+  constexpr double millimetre = 0.001, centimetre = 0.01, inch = 0.0254, metre = 1;
+  if (!(greatest >= 0.001 && greatest <= 2000)) return {};
+  if (greatest >= 5) return {millimetre};
+  if (greatest < 1) return {metre};
   return {centimetre, inch, metre};
 }
 

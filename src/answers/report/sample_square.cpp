@@ -19,15 +19,10 @@ constexpr double kKeyRounding = 20 * 0x1p-24, kDistanceRounding = 6 * 0x1p-24;
 
 }  // namespace
 
-SampleSquare::SampleSquare(const SampleRays& rays, int x, int y, const glm::ivec2& offset)
-    : corners{rays.at(x, y, offset + glm::ivec2(-kMargin, -kMargin)),
-              rays.at(x, y, offset + glm::ivec2(kMargin, -kMargin)), rays.at(x, y, offset + glm::ivec2(kMargin)),
-              rays.at(x, y, offset + glm::ivec2(-kMargin, kMargin))} {}
-
-SampleSquare::SampleSquare(const SampleRays& rays, const glm::ivec2& low, const glm::ivec2& high)
-    : corners{rays.at(low.x, low.y, glm::ivec2(-kMargin)), rays.at(high.x + 1, low.y, glm::ivec2(kMargin, -kMargin)),
-              rays.at(high.x + 1, high.y + 1, glm::ivec2(kMargin)),
-              rays.at(low.x, high.y + 1, glm::ivec2(-kMargin, kMargin))} {}
+SampleSquare::SampleSquare(const SampleRays& rays, const glm::ivec2& low, const glm::ivec2& high) {
+  const glm::ivec2 from = low - kMargin, to = high + kMargin;
+  corners = {rays.at(from), rays.at({to.x, from.y}), rays.at(to), rays.at({from.x, to.y})};
+}
 
 double ViewedTriangle::of_depth(double depth) const {
   const double cut = std::min(std::max(depth, rays_->near()), rays_->far());
@@ -68,16 +63,9 @@ int ViewedTriangle::edge_side(std::size_t edge, const SampleRay& ray) const {
   return sign_of_determinant({corners_[edge], ray.origin}, {corners_[(edge + 1) % 3], ray.origin}, {ray.direction});
 }
 
-bool ViewedTriangle::is_inside(const SampleRay& ray) const {
-  if (facing_ == 0) return false;
-  for (std::size_t edge = 0; edge < 3; ++edge)
-    if (edge_side(edge, ray) != facing_) return false;
-  return true;
-}
-
-/// Whether a plane separates triangle and square. Planes through the eye and a side of either are tested; two convex
-/// figures in front of the eye that do not meet always have such a plane. Some triangles that reach behind the eye and
-/// miss the square are not separated, and count as touching.
+/// Whether a plane through the eye and a side of either has the triangle and the square on its two sides. They then do
+/// not meet; two convex figures in front of the eye that do not meet always have such a plane. Some triangles that
+/// reach behind the eye and miss the square count as touching.
 bool ViewedTriangle::is_separated(const SampleSquare& square) const {
   for (std::size_t edge = 0; edge < 3; ++edge) {
     std::array<int, 4> sides;
@@ -126,22 +114,17 @@ LineMeeting ViewedTriangle::meeting(const SampleSquare& square) const {
   const LineMeeting by_planes = between_planes(square);
   if (by_planes != LineMeeting::contains) return by_planes;
   for (const SampleRay& ray : square.corners)
-    if (!is_inside(ray)) return LineMeeting::touches;
+    for (std::size_t edge = 0; edge < 3; ++edge)
+      if (facing_ == 0 || edge_side(edge, ray) != facing_) return LineMeeting::touches;
   return LineMeeting::contains;
 }
 
 DepthBounds ViewedTriangle::nearness_at(const SampleRay& ray) const {
   const Bounded along = bounded_dot(normal_.value, normal_.error, corners_[0] - ray.origin);
   const Bounded across = bounded_dot(normal_.value, normal_.error, ray.direction);
-  const Bounded& below = rays_->is_orthographic() ? across : along;
-  const Bounded& above = rays_->is_orthographic() ? along : across;
-  // Taken if the plane contains the eye, as far as doubles can tell. The test is written so that NaN passes it.
-  if (!(std::abs(below.value) > 4 * below.error)) return {limits_least_.low, limits_greatest_.high};
-  const double value = (rays_->is_orthographic() ? -above.value : above.value) / below.value;
-  const double error = (above.error + std::abs(value) * below.error) / (std::abs(below.value) - below.error) +
-                       kRounding * std::abs(value);
-  return {std::min(std::max(value - error, limits_least_.low), limits_greatest_.low),
-          std::min(std::max(value + error, limits_least_.high), limits_greatest_.high)};
+  return rays_->is_orthographic()
+             ? bounded_quotient({-along.value, along.error}, across, limits_least_, limits_greatest_)
+             : bounded_quotient(across, along, limits_least_, limits_greatest_);
 }
 
 NearnessRange ViewedTriangle::nearness(const SampleSquare& square) const {
@@ -157,44 +140,26 @@ NearnessRange ViewedTriangle::nearness(const SampleSquare& square) const {
 
 /// The nearness of the nearest (extreme 1) or farthest (-1) corner, limited to that of the near and far planes.
 Fraction ViewedTriangle::exact_limit(int extreme) const {
-  Expansion depth;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Expansion here = dot(exact(rays_->forward()), difference(corners_[i], rays_->eye()));
-    if (i == 0 || (depth - here).sign() == extreme) depth = here;
-  }
-  const Expansion near(rays_->near()), far(rays_->far());
-  if ((depth - near).sign() < 0) depth = near;
-  if ((depth - far).sign() > 0) depth = far;
-  return rays_->is_orthographic() ? Fraction{-depth, Expansion(1)} : Fraction{Expansion(1), depth};
+  const Expansion depth = exact_corner_depth(corners_, *rays_, extreme);
+  return rays_->is_orthographic() ? Fraction(-depth, Expansion(1)) : Fraction(Expansion(1), depth);
 }
 
 Fraction ViewedTriangle::exact_nearness(const SampleRay& ray, int extreme) const {
-  const ExactVector normal = cross(difference(corners_[1], corners_[0]), difference(corners_[2], corners_[0]));
-  const Expansion along = dot(normal, difference(corners_[0], ray.origin)), across = dot(normal, exact(ray.direction));
-  Fraction value = rays_->is_orthographic() ? Fraction{-along, across} : Fraction{across, along};
-  if (value.denominator.sign() == 0) return exact_limit(extreme);
-  if (value.denominator.sign() < 0) value = {-value.numerator, -value.denominator};
-  return value;
+  const Fraction depth = exact_plane_depth(corners_, ray);
+  const Fraction nearness = rays_->is_orthographic() ? Fraction(-depth.numerator, depth.denominator)
+                                                     : Fraction(depth.denominator, depth.numerator);
+  return nearness.denominator.sign() == 0 ? exact_limit(extreme) : nearness;
 }
 
-Fraction ViewedTriangle::exact_extreme(const ViewedTriangle& triangle, const SampleSquare& square, int extreme) {
-  Fraction best = triangle.exact_nearness(square.corners[0], extreme);
+Fraction ViewedTriangle::exact_extreme(const SampleSquare& square, int extreme) const {
+  Fraction best = exact_nearness(square.corners[0], extreme);
   for (std::size_t i = 1; i < 4; ++i) {
-    const Fraction here = triangle.exact_nearness(square.corners[i], extreme);
+    const Fraction here = exact_nearness(square.corners[i], extreme);
     if (here.compare(best) == extreme) best = here;
   }
-  const Fraction least = triangle.exact_limit(-1), greatest = triangle.exact_limit(1);
+  const Fraction least = exact_limit(-1), greatest = exact_limit(1);
   if (best.compare(least) < 0) return least;
   return best.compare(greatest) > 0 ? greatest : best;
-}
-
-bool ViewedTriangle::exactly_nearer(const ViewedTriangle& a, const ViewedTriangle& b, const SampleSquare& square) {
-  const Fraction least = exact_extreme(a, square, -1), greatest = exact_extreme(b, square, 1);
-  // Equals greatest + resolution; both terms of the resolution are doubles by definition.
-  const double relative = std::max(a.relative_, b.relative_), absolute = std::max(a.absolute_, b.absolute_);
-  const Fraction reach{greatest.numerator * Expansion(1 + relative) + Expansion(absolute) * greatest.denominator,
-                       greatest.denominator};
-  return least.compare(reach) > 0;
 }
 
 bool is_surely_nearer(const ViewedTriangle& a, const ViewedTriangle& b, const SampleSquare& square) {
@@ -203,7 +168,12 @@ bool is_surely_nearer(const ViewedTriangle& a, const ViewedTriangle& b, const Sa
   const double rounding = kRounding * (std::abs(greatest.high) + resolution);
   if (least.low > greatest.high + resolution + rounding) return true;
   if (least.high < greatest.low + resolution - rounding) return false;
-  return ViewedTriangle::exactly_nearer(a, b, square);
+  const Fraction exact_least = a.exact_extreme(square, -1), exact_greatest = b.exact_extreme(square, 1);
+  // Equals greatest + resolution; both terms of the resolution are doubles by definition.
+  const double relative = std::max(a.relative_, b.relative_), absolute = std::max(a.absolute_, b.absolute_);
+  const Expansion& below = exact_greatest.denominator;
+  return exact_least.compare(
+             {exact_greatest.numerator * Expansion(1 + relative) + Expansion(absolute) * below, below}) > 0;
 }
 
 }  // namespace frontmost

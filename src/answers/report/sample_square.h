@@ -18,8 +18,9 @@ namespace frontmost {
 /// The square as the rays through its corners, in order around the square.
 struct SampleSquare {
   std::array<SampleRay, 4> corners;
-  SampleSquare(const SampleRays& rays, int x, int y, const glm::ivec2& offset);
-  /// A rectangle that holds the squares of all samples of pixels from `low` to `high`.
+  /// The square around a place of the picture, in 1/256 pixel.
+  SampleSquare(const SampleRays& rays, const glm::ivec2& place) : SampleSquare(rays, place, place) {}
+  /// A rectangle that holds the squares around all places from `low` to `high`.
   SampleSquare(const SampleRays& rays, const glm::ivec2& low, const glm::ivec2& high);
 };
 
@@ -52,14 +53,11 @@ class ViewedTriangle {
 
  private:
   [[nodiscard]] bool is_separated(const SampleSquare& square) const;
-  [[nodiscard]] bool is_inside(const SampleRay& ray) const;
   [[nodiscard]] int edge_side(std::size_t edge, const SampleRay& ray) const;
   [[nodiscard]] LineMeeting between_planes(const SampleSquare& square) const;
   [[nodiscard]] Fraction exact_nearness(const SampleRay& ray, int extreme) const;
   [[nodiscard]] Fraction exact_limit(int extreme) const;
-  [[nodiscard]] static Fraction exact_extreme(const ViewedTriangle& triangle, const SampleSquare& square, int extreme);
-  [[nodiscard]] static bool exactly_nearer(const ViewedTriangle& a, const ViewedTriangle& b,
-                                           const SampleSquare& square);
+  [[nodiscard]] Fraction exact_extreme(const SampleSquare& square, int extreme) const;
   [[nodiscard]] double of_depth(double depth) const;
   [[nodiscard]] DepthBounds nearness_at(const SampleRay& ray) const;
 

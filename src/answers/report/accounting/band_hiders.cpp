@@ -5,9 +5,9 @@
 //    band       32 rows of the picture
 //    column     64 pixels of a band: each object there has a word for each row, and its keys
 //
-// In most columns one of two objects lies wholly in front of the other. The common bits of their words are then
-// counted, without comparing keys.
+// In most columns one of two objects lies wholly in front of the other; then their common bits are counted alone.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <memory>
 
@@ -28,10 +28,10 @@ constexpr float kNotCovered = -1;  // keys are 0 and more
 /// The part of a column that one object covers.
 struct HiderPiece {
   std::uint32_t object;
-  int x0, x1;  ///< pixels of the column, both inclusive
-  int y0, y1;  ///< rows of the band
-  float nearest, farthest;
-  std::size_t words, keys;  ///< first word and key of row y0; a row has one word, and a key for each x from x0 to x1
+  int x0, x1;               ///< pixels of the column, both inclusive
+  int y0, y1;               ///< rows of the band
+  std::size_t words, keys;  ///< beginning of row y0; each row has a word, and a key for each x from x0 to x1
+  float nearest = 0, farthest = std::numeric_limits<float>::infinity();
 };
 
 /// The keys of the nearest and the second nearest surface at a sample, and their objects.
@@ -53,6 +53,7 @@ void combine(std::vector<HiddenSamples>& pairs) {
       pairs[count++] = pair;
   }
   pairs.resize(count);
+  pairs.shrink_to_fit();
 }
 
 /// Finds the hiding pairs of one band after another. For one thread; borrows everything.
@@ -62,14 +63,13 @@ class BandHiders {
       : scene_(scene),
         canvas_(canvas),
         objects_(objects),
-        isa_(isa),
+        kernels_(mask_kernels(isa)),
         placer_(scene, canvas, isa),
         plane_(std::size_t(canvas.view.width) * kBandRows, kNotCovered),
-        columns_(std::size_t(canvas.view.width + kWordPixels - 1) / kWordPixels),
-        fronts_(std::size_t(kBandRows) * kWordPixels) {}
+        columns_(std::size_t(canvas.view.width + kWordPixels - 1) / kWordPixels) {}
 
-  /// Adds the hidden samples of one sample number in the band that begins at row y0.
-  void find(std::size_t sample, int y0, HiderLists& lists) {
+  /// The hidden samples with one sample number, in the pixels of the band that begins at row y0.
+  [[nodiscard]] HiderLists find(std::size_t sample, int y0) {
     offset_ = sample_offsets(canvas_.view.samples)[sample];
     band_ = {0, y0, canvas_.view.width - 1, std::min(y0 + kBandRows, canvas_.view.height) - 1};
     words_.clear();
@@ -78,30 +78,26 @@ class BandHiders {
     for (std::uint32_t i = 0; i < objects_.size(); ++i) {
       const PixelBox& box = objects_[i].in_frame.box;
       const PixelRect rect = common_part({box.x, box.y, box.x + box.width - 1, box.y + box.height - 1}, band_);
-      if (!box.is_empty() && !rect.is_empty()) add_object(i, rect);
+      if (box.is_empty() || rect.is_empty()) continue;
+      for (const MeshRange& range : ranges_of(scene_, i))
+        placer_.visit(range, [&](const TriangleRecord& record) { draw(record, rect); });
+      for (int word = rect.x0 / kWordPixels; word <= rect.x1 / kWordPixels; ++word) add_piece(i, word, rect);
+      for (int y = rect.y0; y <= rect.y1; ++y) std::fill(key_at(rect.x0, y), key_at(rect.x1, y) + 1, kNotCovered);
     }
-    HiderLists found;
+    HiderLists lists;
     for (const std::vector<HiderPiece>& column : columns_) {
-      compare_pieces(column, found.any);
-      find_fronts(column, found.only);
+      compare_pieces(column, lists.any);
+      find_fronts(column, lists.only);
     }
-    combine(found.any);
-    combine(found.only);
-    lists.any.insert(lists.any.end(), found.any.begin(), found.any.end());
-    lists.only.insert(lists.only.end(), found.only.begin(), found.only.end());
+    combine(lists.any);
+    combine(lists.only);
+    return lists;
   }
 
  private:
-  void add_object(std::uint32_t object, const PixelRect& rect) {
-    for (const MeshRange& range : ranges_of(scene_, object))
-      placer_.visit(range, [&](const TriangleRecord& record) { draw(record, rect); });
-    for (int word = rect.x0 / kWordPixels; word <= rect.x1 / kWordPixels; ++word) add_piece(object, word, rect);
-    for (int y = rect.y0; y <= rect.y1; ++y) std::fill(key_at(rect.x0, y), key_at(rect.x1, y) + 1, kNotCovered);
-  }
-
   void draw(const TriangleRecord& record, const PixelRect& rect) {
     const MaskPlane plane{nullptr, 0, canvas_.view.width, canvas_.view.height, 0, offset_};
-    find_spans(plane, record, spans_, isa_);
+    kernels_.find_spans(plane, record, spans_);
     std::optional<ScreenCutout> cutout;
     if (scene_.cutouts && scene_.cutouts->has(record.id)) cutout.emplace((*scene_.cutouts)[record.id], canvas_.rays);
     const KeyPlane gentle(record);
@@ -133,21 +129,15 @@ class BandHiders {
 
   /// Copies the part of an object in one column from the plane.
   void add_piece(std::uint32_t object, int word, const PixelRect& rect) {
-    HiderPiece piece{object,
-                     std::max(rect.x0 - word * kWordPixels, 0),
-                     std::min(rect.x1 - word * kWordPixels, kWordPixels - 1),
-                     rect.y0 - band_.y0,
-                     rect.y1 - band_.y0,
-                     0,
-                     std::numeric_limits<float>::infinity(),
-                     words_.size(),
-                     keys_.size()};
+    const int x0 = std::max(rect.x0 - word * kWordPixels, 0);
+    const int x1 = std::min(rect.x1 - word * kWordPixels, kWordPixels - 1);
+    HiderPiece piece{object, x0, x1, rect.y0 - band_.y0, rect.y1 - band_.y0, words_.size(), keys_.size()};
     bool is_empty = true;
     for (int y = rect.y0; y <= rect.y1; ++y) {
       const float* const row = key_at(word * kWordPixels, y);
-      keys_.insert(keys_.end(), row + piece.x0, row + piece.x1 + 1);
+      keys_.insert(keys_.end(), row + x0, row + x1 + 1);
       std::uint64_t bits = 0;
-      for (int x = piece.x0; x <= piece.x1; ++x) {
+      for (int x = x0; x <= x1; ++x) {
         if (row[x] == kNotCovered) continue;
         bits |= std::uint64_t(1) << x;
         piece.nearest = std::max(piece.nearest, row[x]);
@@ -173,9 +163,9 @@ class BandHiders {
         const std::span<const std::uint64_t> of_a = words_from(a, y0, y1), of_b = words_from(b, y0, y1);
         std::uint64_t hidden_b = 0, hidden_a = 0;
         if (a.farthest >= b.nearest)
-          hidden_b = count_common(of_a, of_b, isa_);
+          hidden_b = kernels_.count_common(of_a, of_b);
         else if (b.farthest > a.nearest)
-          hidden_a = count_common(of_a, of_b, isa_);
+          hidden_a = kernels_.count_common(of_a, of_b);
         else
           for (int y = y0; y <= y1; ++y) {
             const float *const keys_a = keys_from(a, y), *const keys_b = keys_from(b, y);
@@ -192,7 +182,7 @@ class BandHiders {
 
   void find_fronts(const std::vector<HiderPiece>& column, std::vector<HiddenSamples>& only) {
     if (column.size() < 2) return;
-    std::fill(fronts_.begin(), fronts_.end(), FrontTwo{kNotCovered, kNotCovered, no_index, no_index});
+    fronts_.fill({kNotCovered, kNotCovered, no_index, no_index});
     for (const HiderPiece& piece : column)
       for (int y = piece.y0; y <= piece.y1; ++y) {
         const float* const keys = keys_from(piece, y);
@@ -228,13 +218,13 @@ class BandHiders {
   const PlacedScene& scene_;
   const ObjectCanvas& canvas_;
   std::span<const ObjectAccount> objects_;
-  Isa isa_;
+  MaskKernels kernels_;
   RecordPlacer placer_;
   Buffer<float> plane_;  // nearest keys of one object in the band
   std::vector<std::vector<HiderPiece>> columns_;
   std::vector<std::uint64_t> words_;
   std::vector<float> keys_;
-  std::vector<FrontTwo> fronts_;
+  std::array<FrontTwo, std::size_t(kBandRows) * kWordPixels> fronts_;
   RowSpans spans_;
   glm::ivec2 offset_{0};
   PixelRect band_{0, 0, -1, -1};
@@ -251,7 +241,7 @@ HiderLists find_all_hiders(const PlacedScene& scene, const ObjectCanvas& canvas,
   parallel_for(execution, count, 1, [&](std::size_t begin, std::size_t end) {
     const auto finder =
         finders.borrow([&] { return std::make_unique<BandHiders>(scene, canvas, objects, execution.isa); });
-    for (std::size_t i = begin; i < end; ++i) finder->find(i / bands, int(i % bands) * kBandRows, parts[i]);
+    for (std::size_t i = begin; i < end; ++i) parts[i] = finder->find(i / bands, int(i % bands) * kBandRows);
   });
   HiderLists lists;
   for (const HiderLists& part : parts) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order of objects that hide each other. Tarjan's search joins each cycle into one component; the components have
-// ranks.
+// The order of objects that hide each other. Tarjan's search joins each cycle into one component; components get ranks.
 //
 //    a hides b, b hides c, c hides b, c hides d          a  ->  { b, c }  ->  d
 //                                                        0        1           2
@@ -20,7 +19,6 @@ class CycleSearch {
                 {.threads = 1}),
         next_(count, 0),
         numbers_(count, 0),
-        lowest_(count, 0),
         component_(count, no_index) {
     for (std::uint32_t object = 0; object < count; ++object)
       if (numbers_[object] == 0) search(object);
@@ -83,7 +81,7 @@ class CycleSearch {
 
   const Buckets<std::uint32_t> hidden_;  // hidden objects, by hider
   std::vector<std::size_t> next_;        // by object: number of its hidden objects that were visited
-  std::vector<std::uint32_t> numbers_, lowest_, component_, open_;
+  std::vector<std::uint32_t> numbers_, lowest_ = numbers_, component_, open_;
   std::uint32_t entered_ = 0, component_count_ = 0;
 };
 

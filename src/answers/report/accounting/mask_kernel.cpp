@@ -38,12 +38,7 @@ using DD = hn::ScalableTag<double>;
 using VD = hn::Vec<DD>;
 constexpr std::size_t kMaxRows = hn::MaxLanes(DD());  // rows whose spans are found at once
 
-/// The corners of a triangle, ordered so that its area is positive.
-struct MaskTriangle {
-  std::int32_t x[3], y[3];
-};
-
-/// The bound that an edge sets for spans, as a linear function of the row, in pixels. The edge is not level.
+/// The bound of spans at an edge that is not level, as a linear function of the row, in pixels.
 struct SpanSide {
   double numerator, step;  ///< numerator at the first row, an integer less 1/2, and its change per row
   double inverse;
@@ -51,7 +46,8 @@ struct SpanSide {
 
 class SpanFinder {
  public:
-  SpanFinder(const MaskPlane& plane, const MaskTriangle& t) : width_(plane.width) {
+  /// Uses only the corners of the record.
+  SpanFinder(const MaskPlane& plane, const TriangleRecord& t) : width_(plane.width) {
     const std::int32_t low = std::min({t.y[0], t.y[1], t.y[2]}), high = std::max({t.y[0], t.y[1], t.y[2]});
     first_ = std::max((low + 255 - plane.place.y) >> 8, 0);
     last_ = std::min((high - plane.place.y) >> 8, plane.height - 1);
@@ -82,7 +78,7 @@ class SpanFinder {
     return hn::Ceil(hn::Mul(numerator, hn::Set(d, side.inverse)));
   }
 
-  HWY_INLINE void AddEdge(const MaskPlane& plane, const MaskTriangle& t, int k) {
+  HWY_INLINE void AddEdge(const MaskPlane& plane, const TriangleRecord& t, int k) {
     const int n = k == 2 ? 0 : k + 1;
     const double dx = t.x[n] - t.x[k], dy = t.y[n] - t.y[k];
     if (dy == 0) {
@@ -120,9 +116,9 @@ HWY_INLINE void MarkSpan(std::uint64_t* row, int begin, int end) {
 }
 
 /// Marks one triangle, many rows at once.
-void MarkTriangle(const MaskPlane& plane, const MaskTriangle& triangle) {
+void MarkTriangle(const MaskPlane& plane, const TriangleRecord& record) {
   const hn::Rebind<std::int32_t, DD> d32;
-  const SpanFinder finder(plane, triangle);
+  const SpanFinder finder(plane, record);
   finder.ForRows([&](int row, VD begin, VD end) HWY_ATTR {
     HWY_ALIGN_MAX std::int32_t begins[kMaxRows], ends[kMaxRows];
     hn::Store(hn::DemoteTo(d32, begin), d32, begins);
@@ -159,9 +155,12 @@ class SmallMarker {
     const VI height = hn::Sub(rows_.last, rows_.first);
     const MI small = hn::And(hn::Lt(extent, hn::Set(d, kMostPixels * 256)), hn::Lt(height, hn::Set(d, kMostRows)));
     ForEachBit(BitsOf(d, hn::AndNot(small, live)), [&](std::size_t lane) {
-      const std::size_t i = first + lane;
-      MarkTriangle(plane_, {{columns_.x[0][i], columns_.x[1][i], columns_.x[2][i]},
-                            {columns_.y[0][i], columns_.y[1][i], columns_.y[2][i]}});
+      TriangleRecord record{};
+      for (int k = 0; k < 3; ++k) {
+        record.x[k] = columns_.x[k][first + lane];
+        record.y[k] = columns_.y[k][first + lane];
+      }
+      MarkTriangle(plane_, record);
     });
     MarkSmall(hn::And(small, live), height);
   }
@@ -243,10 +242,7 @@ void MarkTriangles(const MaskPlane& plane, const BatchColumns& columns, std::siz
 
 void FindSpans(const MaskPlane& plane, const TriangleRecord& record, RowSpans& spans) {
   const hn::Rebind<std::int32_t, DD> d32;
-  MaskTriangle triangle;
-  std::copy_n(record.x, 3, triangle.x);
-  std::copy_n(record.y, 3, triangle.y);
-  const SpanFinder finder(plane, triangle);
+  const SpanFinder finder(plane, record);
   spans.first = finder.first();
   spans.count = std::max(finder.last() - finder.first() + 1, 0);
   const std::size_t room = std::size_t(spans.count) + kMaxRows;
@@ -255,13 +251,6 @@ void FindSpans(const MaskPlane& plane, const TriangleRecord& record, RowSpans& s
     hn::StoreU(hn::DemoteTo(d32, begin), d32, spans.begin.data() + (row - spans.first));
     hn::StoreU(hn::DemoteTo(d32, end), d32, spans.end.data() + (row - spans.first));
   });
-}
-
-void MarkSpans(const MaskPlane& plane, const RowSpans& spans) {
-  for (int i = 0; i < spans.count; ++i) {
-    const std::int32_t begin = spans.begin[std::size_t(i)], end = spans.end[std::size_t(i)];
-    if (begin < end) MarkSpan(plane.row(spans.first + i), begin, end);
-  }
 }
 
 /// The bits of a word for pixels [x0, x1].
@@ -345,40 +334,18 @@ HWY_AFTER_NAMESPACE();
 namespace frontmost::accounting_detail {
 
 FRONTMOST_KERNELS(MarkTriangles);
+FRONTMOST_KERNELS(MarkTriangle);
 FRONTMOST_KERNELS(FindSpans);
-FRONTMOST_KERNELS(MarkSpans);
 FRONTMOST_KERNELS(CountMarked);
 FRONTMOST_KERNELS(CountCommon);
 FRONTMOST_KERNELS(CountSeen);
 FRONTMOST_KERNELS(FindSeenSpan);
 
-void mark_triangles(const MaskPlane& plane, const BatchColumns& columns, std::size_t count, Isa isa) {
-  kernel_for(MarkTrianglesKernels, isa)(plane, columns, count);
-}
-
-void find_spans(const MaskPlane& plane, const TriangleRecord& record, RowSpans& spans, Isa isa) {
-  kernel_for(FindSpansKernels, isa)(plane, record, spans);
-}
-
-void mark_spans(const MaskPlane& plane, const RowSpans& spans, Isa isa) {
-  kernel_for(MarkSpansKernels, isa)(plane, spans);
-}
-
-MarkedSamples count_marked(const MaskPlane& plane, const PixelRect& rect, Isa isa) {
-  return kernel_for(CountMarkedKernels, isa)(plane, rect);
-}
-
-std::uint64_t count_common(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b, Isa isa) {
-  return kernel_for(CountCommonKernels, isa)(a, b);
-}
-
-void count_seen(const MaskPlane& plane, const PixelRect& rect, const SeenObjects& seen, SampleCounts& counts, Isa isa) {
-  kernel_for(CountSeenKernels, isa)(plane, rect, seen, counts);
-}
-
-SeenSpan find_seen_span(std::span<const PrimitiveId> ids, const float* keys, PrimitiveId first, std::uint32_t count,
-                        Isa isa) {
-  return kernel_for(FindSeenSpanKernels, isa)(ids, keys, first, count);
+MaskKernels mask_kernels(Isa isa) {
+  return {kernel_for(MarkTrianglesKernels, isa), kernel_for(MarkTriangleKernels, isa),
+          kernel_for(FindSpansKernels, isa),     kernel_for(CountMarkedKernels, isa),
+          kernel_for(CountCommonKernels, isa),   kernel_for(CountSeenKernels, isa),
+          kernel_for(FindSeenSpanKernels, isa)};
 }
 
 }  // namespace frontmost::accounting_detail

@@ -18,19 +18,11 @@ namespace {
 
 constexpr int kLargestCanvas = 2 * kGuardBand / kSubPixels;  // pixels; triangles that reach farther are clipped
 
-int margin_of(int size, double scale) { return int(std::min((scale - 1) / 2 * size, (kLargestCanvas - size) / 2.0)); }
-
-View view_of_canvas(const View& picture, const glm::ivec2& margin) {
-  View view = picture;
-  view.width += 2 * margin.x;
-  view.height += 2 * margin.y;
-  return view;
-}
-
-ScreenTransform moved(ScreenTransform transform, const glm::ivec2& margin) {
-  transform.centre_x += margin.x * kSubPixels;
-  transform.centre_y += margin.y * kSubPixels;
-  return transform;
+/// The pixels of a canvas of `scale` times the picture's size, from the picture's top left.
+PixelRect rect_of_canvas(const View& picture, double scale) {
+  const auto margin = [&](int size) { return int(std::min((scale - 1) / 2 * size, (kLargestCanvas - size) / 2.0)); };
+  const int x = margin(picture.width), y = margin(picture.height);
+  return {-x, -y, picture.width + x - 1, picture.height + y - 1};
 }
 
 /// Whether a triangle crosses the near plane. Precondition: it does not lie wholly outside.
@@ -46,21 +38,19 @@ bool crosses_near(const glm::uvec3& vertices, const SnappedVertices& snapped) {
 
 }  // namespace
 
-ObjectCanvas::ObjectCanvas(const View& picture, double scale)
-    : margin(margin_of(picture.width, scale), margin_of(picture.height, scale)),
-      frame{margin.x, margin.y, margin.x + picture.width - 1, margin.y + picture.height - 1},
-      view(view_of_canvas(picture, margin)),
-      transform(moved(ScreenTransform(picture), margin)),
-      rays(picture) {}
+ObjectCanvas::ObjectCanvas(const View& picture, double scale) : ObjectCanvas(picture, rect_of_canvas(picture, scale)) {}
 
 ObjectCanvas::ObjectCanvas(const View& picture, const PixelRect& part)
     : margin(-part.x0, -part.y0),
-      frame{0, 0, part.x1 - part.x0, part.y1 - part.y0},
+      frame{std::max(margin.x, 0), std::max(margin.y, 0), std::min(part.x1, picture.width - 1) + margin.x,
+            std::min(part.y1, picture.height - 1) + margin.y},
       view(picture),
-      transform(moved(ScreenTransform(picture), margin)),
+      transform(picture),
       rays(picture) {
-  view.width = frame.x1 + 1;
-  view.height = frame.y1 + 1;
+  view.width = part.x1 - part.x0 + 1;
+  view.height = part.y1 - part.y0 + 1;
+  transform.centre_x += margin.x * kSubPixels;
+  transform.centre_y += margin.y * kSubPixels;
 }
 
 std::span<const MeshRange> ranges_of(const PlacedScene& scene, std::uint32_t object) {
@@ -77,7 +67,7 @@ ObjectMask::ObjectMask(const PlacedScene& scene, const ObjectCanvas& canvas, Isa
     : scene_(scene),
       canvas_(canvas),
       target_(canvas.transform, canvas.view, scene.sides.get(), isa),
-      touched_(kNoPixels) {
+      kernels_(mask_kernels(isa)) {
   const View& view = canvas.view;
   const auto stride = std::size_t(view.width + kWordPixels - 1) / kWordPixels;
   const std::size_t words = stride * std::size_t(view.height);
@@ -90,7 +80,12 @@ ObjectMask::ObjectMask(const PlacedScene& scene, const ObjectCanvas& canvas, Isa
 
 void ObjectMask::draw(std::uint32_t object) {
   const std::span<const MeshRange> ranges = ranges_of(scene_, object);
-  clear();
+  if (!touched_.is_empty())
+    for (const MaskPlane& plane : planes_)
+      for (int y = touched_.y0; y <= touched_.y1; ++y)
+        std::fill(plane.row(y) + touched_.x0 / kWordPixels, plane.row(y) + touched_.x1 / kWordPixels + 1, 0);
+  touched_ = kNoPixels;
+  is_cut_by_near_ = false;
   if (is_strewn(ranges))
     draw_at_once(ranges);
   else
@@ -102,15 +97,6 @@ void ObjectMask::draw(std::uint32_t object) {
   if (touched_.is_empty()) return;
   for (const TriangleRecord& record : cutouts_) draw_cutout(record);
   cutouts_.clear();
-}
-
-void ObjectMask::clear() {
-  if (!touched_.is_empty())
-    for (const MaskPlane& plane : planes_)
-      for (int y = touched_.y0; y <= touched_.y1; ++y)
-        std::fill(plane.row(y) + touched_.x0 / kWordPixels, plane.row(y) + touched_.x1 / kWordPixels + 1, 0);
-  touched_ = kNoPixels;
-  is_cut_by_near_ = false;
 }
 
 bool ObjectMask::is_strewn(std::span<const MeshRange> ranges) const {
@@ -160,25 +146,19 @@ void ObjectMask::draw_small() {
     batch_.extract([&](PrimitiveId id) { return scene_.cutouts->has(id); }, cutout_batch_);
     for (std::size_t i = 0; i < cutout_batch_.count; ++i) cutouts_.push_back(cutout_batch_.record(i));
   }
-  for (const MaskPlane& plane : planes_) mark_triangles(plane, batch_.columns(), batch_.count, target_.isa);
+  for (const MaskPlane& plane : planes_) kernels_.mark_triangles(plane, batch_.columns(), batch_.count);
 }
 
 void ObjectMask::draw_large(const TriangleRecord& record) {
   touched_ = around(touched_, pixel_rect(record, canvas_.view.width, canvas_.view.height));
-  if (scene_.cutouts && scene_.cutouts->has(record.id)) {
-    cutouts_.push_back(record);
-    return;
-  }
-  for (const MaskPlane& plane : planes_) {
-    find_spans(plane, record, spans_, target_.isa);
-    mark_spans(plane, spans_, target_.isa);
-  }
+  if (scene_.cutouts && scene_.cutouts->has(record.id)) return cutouts_.push_back(record);
+  for (const MaskPlane& plane : planes_) kernels_.mark_triangle(plane, record);
 }
 
 void ObjectMask::draw_cutout(const TriangleRecord& record) {
   const ScreenCutout cutout((*scene_.cutouts)[record.id], canvas_.rays);
   for (const MaskPlane& plane : planes_) {
-    find_spans(plane, record, spans_, target_.isa);
+    kernels_.find_spans(plane, record, spans_);
     const glm::ivec2 first = plane.place - canvas_.margin * kSubPixels;  // relative to the picture's top left
     for (int i = 0; i < spans_.count; ++i) {
       const int y = spans_.first + i;

@@ -84,8 +84,7 @@ struct SeenObjects {
   std::vector<SeenRows> bands;  ///< by sample number, then from top to bottom
   std::size_t bands_in_sample = 0;
 
-  /// The runs of a row and a word of the canvas. Preconditions: the row is in the picture, and the word has pixels of
-  /// the picture.
+  /// The runs of a row and a word of the canvas. Precondition: the word has pixels of the picture in this row.
   [[nodiscard]] std::span<const SeenRun> in(std::size_t sample, int y, int word) const {
     const int row = y - margin.y;
     return bands[sample * bands_in_sample + std::size_t(row / rows_in_band)].in(
@@ -98,10 +97,6 @@ struct SeenSpan {
   std::size_t end = 0;
   float nearest = 0;  ///< the greatest of their keys
 };
-
-/// Finds how many ids at the beginning lie in [first, first + count). `keys` has as many elements as `ids`.
-[[nodiscard]] SeenSpan find_seen_span(std::span<const PrimitiveId> ids, const float* keys, PrimitiveId first,
-                                      std::uint32_t count, Isa isa);
 
 /// The bits of one sample number in all pixels of the canvas. Borrows the words; `stride` words make a row.
 struct MaskPlane {
@@ -132,19 +127,25 @@ struct SampleCounts {
   std::vector<std::uint32_t> met;  ///< objects whose count is not 0
 };
 
-/// Marks the samples that the first `count` triangles of a batch cover. Corners are relative to the canvas' top left.
-void mark_triangles(const MaskPlane& plane, const BatchColumns& columns, std::size_t count, Isa isa);
-/// Finds the span of each row that a triangle of any size covers.
-void find_spans(const MaskPlane& plane, const TriangleRecord& record, RowSpans& spans, Isa isa);
-/// Marks the spans.
-void mark_spans(const MaskPlane& plane, const RowSpans& spans, Isa isa);
-
-/// Counts the marked samples in a rectangle of the plane.
-[[nodiscard]] MarkedSamples count_marked(const MaskPlane& plane, const PixelRect& rect, Isa isa);
-/// Number of bits that two lists of words have in common. Precondition: both have the same length.
-[[nodiscard]] std::uint64_t count_common(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b, Isa isa);
-/// Adds to the count of each object the number of marked samples that see the object, in a rectangle of the picture.
-void count_seen(const MaskPlane& plane, const PixelRect& rect, const SeenObjects& seen, SampleCounts& counts, Isa isa);
+/// The functions of one instruction set.
+struct MaskKernels {
+  /// Marks the samples that the first `count` triangles of a batch cover, whose corners are relative to the canvas.
+  void (*mark_triangles)(const MaskPlane& plane, const BatchColumns& columns, std::size_t count);
+  /// Marks the samples that a triangle of any size covers.
+  void (*mark_triangle)(const MaskPlane& plane, const TriangleRecord& record);
+  /// Finds the span of each row that a triangle of any size covers.
+  void (*find_spans)(const MaskPlane& plane, const TriangleRecord& record, RowSpans& spans);
+  /// Counts the marked samples in a rectangle of the plane.
+  MarkedSamples (*count_marked)(const MaskPlane& plane, const PixelRect& rect);
+  /// Number of bits that two lists of words of one length have in common.
+  std::uint64_t (*count_common)(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b);
+  /// Adds to the count of every object the samples that see it and are marked, within a part of the picture.
+  void (*count_seen)(const MaskPlane& plane, const PixelRect& rect, const SeenObjects& seen, SampleCounts& counts);
+  /// The number of ids at the beginning that lie in [first, first + count). `keys` has as many elements as `ids`.
+  SeenSpan (*find_seen_span)(std::span<const PrimitiveId> ids, const float* keys, PrimitiveId first,
+                             std::uint32_t count);
+};
+[[nodiscard]] MaskKernels mask_kernels(Isa isa);
 
 /// The picture and its surroundings. Vertices have the picture's positions, to the bit, shifted by the margin.
 struct ObjectCanvas {
@@ -156,16 +157,14 @@ struct ObjectCanvas {
 
   /// `scale`: AccountingOptions::canvas. Preconditions: the view is valid, and the scale in range.
   ObjectCanvas(const View& picture, double scale);
-  /// A canvas of a part of the picture. Preconditions: the view is valid; the part is not empty and lies within the
-  /// picture.
+  /// A canvas of these pixels, some of which lie in the picture. Precondition: the view is valid.
   ObjectCanvas(const View& picture, const PixelRect& part);
 };
 
 /// The ranges of an object's triangles.
 [[nodiscard]] std::span<const MeshRange> ranges_of(const PlacedScene& scene, std::uint32_t object);
 
-/// Places the triangles of one range after another as the z-buffer does. For one thread; borrows the scene and the
-/// canvas.
+/// Places the triangles of one range after another as the z-buffer does. For one thread; borrows everything.
 class RecordPlacer {
  public:
   RecordPlacer(const PlacedScene& scene, const ObjectCanvas& canvas, Isa isa)
@@ -210,7 +209,6 @@ class ObjectMask {
   [[nodiscard]] bool is_cut_by_near() const { return is_cut_by_near_; }
 
  private:
-  void clear();
   /// Whether consecutive triangles have vertices from all over the mesh. All vertices are then placed at once.
   [[nodiscard]] bool is_strewn(std::span<const MeshRange> ranges) const;
   void draw_at_once(std::span<const MeshRange> ranges);
@@ -223,13 +221,14 @@ class ObjectMask {
   const PlacedScene& scene_;
   const ObjectCanvas& canvas_;
   zbuffer_detail::PlaceTarget target_;
+  MaskKernels kernels_;
   Buffer<std::uint64_t> words_;
   std::vector<MaskPlane> planes_;
   zbuffer_detail::TriangleBatch batch_, cutout_batch_;
   zbuffer_detail::PlaceScratch scratch_;
   std::vector<TriangleRecord> large_, cutouts_;
   RowSpans spans_;
-  PixelRect touched_;
+  PixelRect touched_ = kNoPixels;
   bool is_cut_by_near_ = false;
 };
 

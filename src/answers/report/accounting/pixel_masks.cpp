@@ -86,20 +86,17 @@ void go_on(MaskRun& above, MaskRun& run, int y) {
 }  // namespace
 
 struct PixelMasks::Parts {
-  Parts(const Surfaces& surfaces, const Visible& seen, Isa chosen)
-      : scene(placed_scene(surfaces)), visible(seen), isa(chosen), canvas(seen.view, 1), mask(scene, canvas, chosen) {}
-
   const PlacedScene& scene;
   const Visible& visible;
   Isa isa;
-  ObjectCanvas canvas;
-  ObjectMask mask;
+  ObjectCanvas canvas{visible.view, 1};
+  ObjectMask mask{scene, canvas, isa};
 };
 
 PixelMasks::PixelMasks(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
   validate(visible.view);
   check_answer(visible, surfaces.primitive_count(), "pixel masks", execution);
-  parts_ = std::make_unique<Parts>(surfaces, visible, execution.isa);
+  parts_.reset(new Parts{placed_scene(surfaces), visible, execution.isa});
 }
 
 PixelMasks::~PixelMasks() = default;
@@ -112,7 +109,7 @@ PixelMask PixelMasks::of(std::uint32_t object) {
   PixelMask result;
   if (touched.is_empty()) return result;
   const MaskPlane& plane = parts.mask.planes()[0];
-  const PixelRect rect = count_marked(plane, touched, parts.isa).rect;
+  const PixelRect rect = mask_kernels(parts.isa).count_marked(plane, touched).rect;
   if (rect.is_empty()) return result;
   result.box = {rect.x0, rect.y0, rect.x1 - rect.x0 + 1, rect.y1 - rect.y0 + 1};
   result.pixels = Buffer<MaskPixel>(std::size_t(result.box.width) * std::size_t(result.box.height));

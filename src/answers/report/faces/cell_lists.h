@@ -9,11 +9,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <span>
 #include <vector>
 
+#include "base/memory.h"
 #include "geometry/buckets.h"
 #include "report/faces/viewed_faces.h"
 
@@ -24,18 +24,14 @@ using ListedFace = std::uint64_t;
 [[nodiscard]] inline std::uint32_t face_of(ListedFace listed) { return std::uint32_t(listed); }
 /// A number by which keys are ordered: a greater key has a lesser or equal order.
 [[nodiscard]] inline std::uint32_t order_of(double key) {
-  const float rounded = float(key) + 0.0f;  // turns -0 into 0
-  std::uint32_t bits;
-  std::memcpy(&bits, &rounded, sizeof bits);
+  const auto bits = bits_as<std::uint32_t>(float(key) + 0.0f);  // no -0
   return (bits >> 31) != 0 ? bits : ~bits & 0x7FFFFFFFu;
 }
 
 /// A key that is not exceeded by any key of this order or a greater one.
 [[nodiscard]] inline double key_before(std::uint32_t order) {
   const std::uint32_t bits = (order >> 31) != 0 ? order : ~order & 0x7FFFFFFFu;
-  float rounded;
-  std::memcpy(&rounded, &bits, sizeof bits);
-  return double(std::nextafter(rounded, std::numeric_limits<float>::infinity()));
+  return double(std::nextafter(bits_as<float>(bits), std::numeric_limits<float>::infinity()));
 }
 
 /// The faces whose boxes meet each of the largest cells, with the nearest key of each whole face.
@@ -108,8 +104,7 @@ class CellLists {
       return std::uint32_t(std::clamp(int(at * (1.0 / kPart)), 0, (size - 1) / kPart));  // clamps to the picture
     };
     for (std::uint32_t i = 0; i < spans_.size(); ++i) {
-      const auto& c = screen.faces[i].corners;
-      const ScreenPoint &p = screen.points[c[0]], &q = screen.points[c[1]], &r = screen.points[c[2]];
+      const auto [p, q, r] = screen.corners(i);
       const Range x = range_of(p.x, q.x, r.x), y = range_of(p.y, q.y, r.y);
       spans_[i] = {part_at(x.low, view.width), part_at(x.high, view.width), part_at(y.low, view.height),
                    part_at(y.high, view.height)};

@@ -4,20 +4,209 @@
 //    .---------.        .----.----.       .--.-.----.
 //    |         |  --->  |    |  0 |  -->  |  |1|0|  |     The box is cut by the sides of face 0, then by those of
 //    |_________|        |____|____|       |__|_|_|__|     face 1 where it is nearer. Pieces do not overlap.
+//
+//        +-----.
+//   left |    / .       A corner at most kNarrow away from the line lies on the line. A line along a side that was
+//        |   /   .      cut before, and that rounding has moved slightly, therefore cuts nothing more off.
+//        |  /     | right
+//        '-/------'
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "report/exact_depth.h"
-#include "report/faces/polygon.h"
+#include "report/faces/viewed_faces.h"
 
 namespace frontmost::faces_detail {
 
-/// A face that meets one of the largest cells. The gathered faces of a cell lie side by side in memory.
+/// A line of the screen. Called with a point: its distance from the line, in pixels, positive on one side.
+struct CutLine {
+  double a, b, c;
+
+  [[nodiscard]] double operator()(const glm::dvec2& p) const { return a * p.x + b * p.y + c; }
+};
+
+/// The corners of a convex polygon in order. Corners that cuts leave on one line are kept.
+class ConvexPiece {
+ public:
+  static constexpr int most_corners = 28;
+
+  ConvexPiece() {}  // NOLINT: corners are set by add()
+  ConvexPiece(const ConvexPiece& other) { *this = other; }
+  ConvexPiece& operator=(const ConvexPiece& other) {
+    count_ = other.count_;
+    std::copy_n(other.corners_.begin(), count_, corners_.begin());  // other corners are not set
+    return *this;
+  }
+  explicit ConvexPiece(const CellBox& box)
+      : corners_{{{box.left, box.top}, {box.right, box.top}, {box.right, box.bottom}, {box.left, box.bottom}}},
+        count_(4) {}
+
+  [[nodiscard]] int size() const { return count_; }
+  [[nodiscard]] const glm::dvec2* begin() const { return corners_.data(); }
+  [[nodiscard]] const glm::dvec2* end() const { return corners_.data() + count_; }
+  /// Whether the polygon may lack room for four cuts, which add one corner each.
+  [[nodiscard]] bool is_full() const { return count_ + 4 > most_corners; }
+  void add(const glm::dvec2& corner) {
+    if (count_ < most_corners) corners_[std::size_t(count_++)] = corner;
+  }
+  void clear() { count_ = 0; }
+  /// Moves the corners from the middle on into another polygon, which meets this one along a diagonal.
+  [[nodiscard]] ConvexPiece halve() {
+    ConvexPiece other;
+    for (int i = count_ / 2; i < count_; ++i) other.add(corners_[std::size_t(i)]);
+    other.add(corners_[0]);
+    count_ = count_ / 2 + 1;
+    return other;
+  }
+
+ private:
+  std::array<glm::dvec2, most_corners> corners_;  // set by add()
+  int count_ = 0;
+};
+
+/// Whether a polygon is nowhere wider than about kNarrow.
+[[nodiscard]] inline bool is_narrow(const ConvexPiece& polygon) {
+  if (polygon.size() < 3) return true;
+  const glm::dvec2* const p = polygon.begin();
+  double doubled = 0, reach = 0;
+  for (int i = 1; i < polygon.size(); ++i) {
+    const glm::dvec2 last = p[i - 1] - p[0], next = p[i] - p[0];
+    doubled += last.x * next.y - last.y * next.x;
+    reach = std::max({reach, std::abs(next.x), std::abs(next.y)});
+  }
+  return !(std::abs(doubled) > kNarrow * reach);
+}
+
+/// The sides of a line on which a polygon extends farther than kNarrow.
+enum class LineSide { neither, left, right, both };
+
+/// Distances of a polygon's corners from a line, positive on its left. A distance of less than `narrow` counts as 0.
+struct LineDistances {
+  std::array<double, ConvexPiece::most_corners> at;  ///< by corner
+  int size;
+  double narrow;
+  LineSide side;
+
+  /// Measures the corners of a polygon by distance(corner).
+  template <class Distance>
+  void measure(const ConvexPiece& polygon, const Distance& distance, double narrow_distance = kNarrow) {
+    size = polygon.size();
+    narrow = narrow_distance;
+    double least = 0, greatest = 0;
+    for (int i = 0; i < size; ++i) {
+      const double d = distance(polygon.begin()[i]);
+      at[std::size_t(i)] = d;
+      least = d < least ? d : least;
+      greatest = d > greatest ? d : greatest;
+    }
+    const bool is_left = greatest > narrow, is_right = least < -narrow;
+    side = is_left ? (is_right ? LineSide::both : LineSide::left) : is_right ? LineSide::right : LineSide::neither;
+  }
+};
+
+/// Cuts a polygon that extends to both sides of a line.
+inline void cut_polygon(const ConvexPiece& polygon, const LineDistances& line, ConvexPiece& left, ConvexPiece& right) {
+  left.clear();
+  right.clear();
+  const glm::dvec2* const p = polygon.begin();
+  for (int i = 0; i < polygon.size(); ++i) {
+    const int j = i + 1 == polygon.size() ? 0 : i + 1;
+    const double from = line.at[std::size_t(i)], to = line.at[std::size_t(j)];
+    if (from >= -line.narrow) left.add(p[i]);
+    if (from <= line.narrow) right.add(p[i]);
+    if ((from > line.narrow && to < -line.narrow) || (from < -line.narrow && to > line.narrow)) {
+      const glm::dvec2 cut = p[i] + (p[j] - p[i]) * (from / (from - to));
+      left.add(cut);
+      right.add(cut);
+    }
+  }
+}
+
+/// Three areas of a polygon: in the picture, in the scene, and as a solid angle from the eye.
+struct Areas {
+  double pixels = 0, units = 0, solid_angle = 0;
+
+  Areas& operator+=(const Areas& other) {
+    pixels += other.pixels;
+    units += other.units;
+    solid_angle += other.solid_angle;
+    return *this;
+  }
+};
+
+/// The angle of the point (x, y) from the x axis, for y >= 0. Uses only square roots and a series, so it is the same on
+/// every machine, up to a few units in the last place.
+inline double angle_of(double x, double y) {
+  // The angle is halved, by its tangent, until the series of the arctangent is short.
+  double t = y, times = 1;
+  if (x > 0 && y < 0.05 * x) {
+    t = y / x;
+  } else {
+    t = y / (x + std::sqrt(x * x + y * y));
+    for (times = 2; t >= 0.05; times *= 2) t /= 1 + std::sqrt(1 + t * t);
+  }
+  const double s = t * t;
+  double sum = 0;
+  for (int n = 13; n > 0; n -= 2) sum = 1.0 / n - s * sum;
+  return times * t * sum;
+}
+
+/// Computes areas for a view. A place (x, y) of the picture has the direction (u, v, 1) in eye space. A surface point
+/// with key 1 / distance lies at (u, v, 1) / key; in parallel projection at (u, v, -key), with key -distance.
+class AreaRule {
+ public:
+  explicit AreaRule(const View& view) : view_(view) {}
+
+  /// The areas of a plane convex polygon, wound either way. Precondition: three corners; keys above 0 in perspective.
+  [[nodiscard]] Areas areas_of(std::span<const ScreenPoint> polygon) const {
+    // A fan about the first corner. Determinants of directions are taken in the image plane, so small triangles lose
+    // nothing to rounding. (A. van Oosterom, J. Strackee. The Solid Angle of a Plane Triangle. 1983.)
+    const glm::dvec3 a = direction_to(polygon[0]), at = place_of(a, polygon[0].key);
+    const double a_length = glm::length(a);
+    glm::dvec3 b = direction_to(polygon[1]), to_b = place_of(b, polygon[1].key) - at, normal(0);
+    double b_length = glm::length(b), doubled = 0, solid_angle = 0;
+    for (std::size_t i = 2; i < polygon.size(); ++i) {
+      const glm::dvec3 c = direction_to(polygon[i]), to_c = place_of(c, polygon[i].key) - at;
+      const double c_length = glm::length(c);
+      const double part = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+      doubled += part;
+      normal += glm::cross(to_b, to_c);
+      if (!orthographic_)
+        solid_angle += 2 * angle_of(a_length * b_length * c_length + glm::dot(a, b) * c_length +
+                                        glm::dot(b, c) * a_length + glm::dot(c, a) * b_length,
+                                    std::abs(part));
+      b = c;
+      to_b = to_c;
+      b_length = c_length;
+    }
+    return {0.5 * std::abs(doubled) / (step_x_ * step_y_), 0.5 * glm::length(normal), solid_angle};
+  }
+
+ private:
+  [[nodiscard]] glm::dvec3 direction_to(const ScreenPoint& p) const {
+    return {left_ + p.x * step_x_, top_ - p.y * step_y_, 1};
+  }
+  [[nodiscard]] glm::dvec3 place_of(const glm::dvec3& direction, double key) const {
+    return orthographic_ ? glm::dvec3(direction.x, direction.y, -key) : direction / key;
+  }
+
+  const View& view_;
+  const Projection& sides_ = view_.projection;
+  bool orthographic_ = sides_.orthographic;
+  double left_ = sides_.left, step_x_ = (sides_.right - sides_.left) / view_.width;
+  double top_ = sides_.top, step_y_ = (sides_.top - sides_.bottom) / view_.height;
+};
+
+/// A face of one of the largest cells. Such faces lie side by side in memory.
 struct GatheredFace {
   ScreenPoint corners[3];
   Range x, y;  ///< extent of the whole face, also outside the cell
@@ -50,7 +239,9 @@ struct FacesOfView {
 struct AffineKey {
   double x, y, key, along_x, along_y;
 
-  AffineKey(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c) : x(a.x), y(a.y), key(a.key) {
+  /// The plane of three corners.
+  explicit AffineKey(const ScreenPoint* corners) : x(corners->x), y(corners->y), key(corners->key) {
+    const ScreenPoint &a = corners[0], &b = corners[1], &c = corners[2];
     const double scale = 1 / turn_of(a, b, c), to_b = b.key - a.key, to_c = c.key - a.key;
     along_x = (to_b * (c.y - a.y) - to_c * (b.y - a.y)) * scale;
     along_y = (to_c * (b.x - a.x) - to_b * (c.x - a.x)) * scale;
@@ -72,8 +263,7 @@ class PieceCutter {
   /// Reports the remaining steps.
   void tell_rest() { tell_(std::exchange(steps_, 0)); }
 
-  /// Appends the visible parts in `box`. `list` has all faces that may be seen there, ordered by their nearest keys,
-  /// the nearest first.
+  /// Appends the visible parts in `box`. `list` has all faces that may be seen there, the nearest of their keys first.
   void cut(const CellBox& box, std::span<const FaceInBox> list, std::span<const GatheredFace> gathered,
            std::vector<SeenPart>& seen) {
     candidates_.clear();
@@ -99,10 +289,7 @@ class PieceCutter {
                                               std::span<const GatheredFace> gathered) {
     const ConvexPiece corners(box);
     const glm::dvec2 middle(0.5 * (box.left + box.right), 0.5 * (box.top + box.bottom));
-    const auto plane_of = [&](std::uint32_t number) {
-      const ScreenPoint* const p = gathered[number].corners;
-      return AffineKey(p[0], p[1], p[2]);
-    };
+    const auto plane_of = [&](std::uint32_t number) { return AffineKey(gathered[number].corners); };
     const auto id_of = [&](std::uint32_t number) { return faces_.screen.faces[gathered[number].face].id; };
     std::uint32_t cover = no_index;
     double nearest = -std::numeric_limits<double>::infinity();
@@ -138,10 +325,7 @@ class PieceCutter {
 
   /// Appends the part of a face within `box`. Precondition: all of that part is seen.
   void clip(const CellBox& box, std::uint32_t face, std::vector<SeenPart>& seen) {
-    const ViewedFace& f = faces_.screen.faces[face];
-    const auto& points = faces_.screen.points;
-    const ScreenPoint corners[3] = {points[f.corners[0]], points[f.corners[1]], points[f.corners[2]]};
-    const Candidate whole = candidate(face, corners, 0);
+    const Candidate whole = candidate(face, faces_.screen.corners(face).data(), 0);
     Piece piece(box);
     if (cut_to(whole, piece)) emit(piece.polygon, whole, seen);
     pieces_.clear();
@@ -150,8 +334,7 @@ class PieceCutter {
  private:
   /// Keys that differ by at most this share may be equal; doubles are exact to about 2^-45.
   static constexpr double kAlike = 1.0 / (1ll << 36);
-  /// More faces than this are reordered before they are cut. Finding the order takes time, and pays if most faces
-  /// overlap.
+  /// More faces than this are reordered before they are cut, which pays if most of them overlap.
   static constexpr std::size_t kManyToCut = 128;
 
   /// Costs in steps of about ten nanoseconds: of examining a face for a piece; of cutting by a face or comparing two
@@ -163,8 +346,7 @@ class PieceCutter {
     double farthest;
     std::array<CutLine, 3> sides;  ///< positive inside the face
     AffineKey plane;
-    double least, most;  ///< keys of its corners
-    Range x, y;
+    Range keys;                  ///< of its corners
     std::uint32_t plane_number;  ///< equal for candidates that are known to lie in one plane
   };
   /// The bounds of a candidate, checked first.
@@ -172,8 +354,7 @@ class PieceCutter {
     Range x, y;
     double nearest;
   };
-  /// A piece of the box. `front` is the nearest of the faces examined so far; faces from `next` on are still to be
-  /// examined.
+  /// A piece of the box. `front` is the nearest of the faces examined so far, which are those before `next`.
   struct Piece {
     Piece(std::uint32_t in_front, std::uint32_t next_face) : front(in_front), next(next_face) {}
     explicit Piece(const CellBox& box) : polygon(box), around(box), front(no_index), next(0) {}
@@ -200,21 +381,12 @@ class PieceCutter {
   static Candidate candidate(std::uint32_t face, const ScreenPoint* corners, double farthest) {
     const ScreenPoint &a = corners[0], &b = corners[1], &c = corners[2];
     const double inwards = turn_of(a, b, c) > 0 ? 1 : -1;
-    const Range key = range_of(a.key, b.key, c.key);
-    return {face,
-            farthest,
-            {side_of(a, b, inwards), side_of(b, c, inwards), side_of(c, a, inwards)},
-            AffineKey(a, b, c),
-            key.low,
-            key.high,
-            range_of(a.x, b.x, c.x),
-            range_of(a.y, b.y, c.y),
-            no_index};
+    const std::array<CutLine, 3> sides{side_of(a, b, inwards), side_of(b, c, inwards), side_of(c, a, inwards)};
+    return {face, farthest, sides, AffineKey(corners), range_of(a.key, b.key, c.key), no_index};
   }
 
-  /// Measures all keys relative to the plane of the first face, and reorders the faces. In a box of slanted surfaces,
-  /// the keys of one surface differ much more from end to end than those of close surfaces from each other. Faces in
-  /// one plane are ordered by id, so that each hides those after it.
+  /// Reorders the faces by their keys relative to the plane of the first face. In a slanted box, keys of close sheets
+  /// differ more from end to end than from sheet to sheet. In one plane, a face hides those with greater ids after it.
   void order_by_planes(const CellBox& box) {
     count(kStepsOfPlane * candidates_.size());
     const AffineKey first = candidates_.front().plane;
@@ -273,10 +445,7 @@ class PieceCutter {
         piece.next = plane_ends_[candidates_[piece.next].plane_number] - 1;  // the others in its plane have greater ids
         continue;
       }
-      const CellBox& around = piece.around;
-      if (reach.x.high <= around.left || reach.x.low >= around.right || reach.y.high <= around.top ||
-          reach.y.low >= around.bottom)
-        continue;
+      if (!piece.around.meets(reach.x, reach.y)) continue;
       const Candidate& face = candidates_[piece.next];
       if (piece.front != no_index && lies_behind(face, candidates_[piece.front], piece.polygon)) continue;
       count(kStepsOfCut);
@@ -326,20 +495,19 @@ class PieceCutter {
     const std::size_t before = pieces_.size();
     ConvexPiece parts[2];
     const ConvexPiece* rest = &piece.polygon;
+    bool is_some_left = true;
     for (std::size_t k = 0; k < 3; ++k) {
       if (distances[k].side == LineSide::left) continue;
       if (rest != &piece.polygon) distances[k].measure(*rest, face.sides[k]);
       if (distances[k].side == LineSide::left) continue;
-      if (distances[k].side != LineSide::both) {
-        pieces_.erase(pieces_.begin() + std::ptrdiff_t(before), pieces_.end());
-        return false;
-      }
+      is_some_left = distances[k].side == LineSide::both;
+      if (!is_some_left) break;
       ConvexPiece& within = parts[rest == parts ? 1 : 0];
       put_aside(piece.front, piece.next + 1,
                 [&](ConvexPiece& beside) { cut_polygon(*rest, distances[k], within, beside); });
       rest = &within;
     }
-    if (is_narrow(*rest)) {
+    if (!is_some_left || is_narrow(*rest)) {
       pieces_.erase(pieces_.begin() + std::ptrdiff_t(before), pieces_.end());
       return false;
     }
@@ -387,8 +555,7 @@ class PieceCutter {
     piece.front = number;
   }
 
-  /// Decides between two faces that doubles cannot tell apart: the lower id if the faces lie in one plane, else the
-  /// face that seems nearer.
+  /// Decides between two faces that doubles cannot tell apart: the lower id in one plane, else what seems nearer.
   bool is_preferred(const Candidate& face, const Candidate& front, const LineDistances& nearer) {
     count(kStepsOfPlane);
     const PrimitiveId id = faces_.screen.faces[face.face].id, front_id = faces_.screen.faces[front.face].id;
@@ -402,7 +569,7 @@ class PieceCutter {
     std::array<ScreenPoint, ConvexPiece::most_corners> corners;
     std::size_t count = 0;
     for (const glm::dvec2& p : polygon)
-      corners[count++] = {p.x, p.y, std::clamp(face.plane.at(p), face.least, face.most)};
+      corners[count++] = {p.x, p.y, std::clamp(face.plane.at(p), face.keys.low, face.keys.high)};
     const Areas areas = faces_.rule.areas_of(std::span(corners).first(count));
     if (areas.pixels > 0) seen.push_back({face.face, areas});
   }

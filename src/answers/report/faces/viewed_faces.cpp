@@ -26,8 +26,7 @@ EdgeNeighbours mesh_sides(const Mesh& mesh, const Execution& execution) {
   return {triangles, mesh.positions.size(), execution};
 }
 
-/// Distance from the picture, in pixels. Triangles that extend farther are clipped, so that doubles keep positions
-/// exact within the picture.
+/// Triangles that extend farther beyond the picture, in pixels, are clipped, so that doubles are exact within it.
 constexpr double kBeyond = 65536;
 /// Distance from the picture at which such triangles are cut, in pixels.
 constexpr double kRim = 64;
@@ -50,19 +49,7 @@ using EyePoint = glm::dvec3;
 
 class Eye {
  public:
-  explicit Eye(const View& view)
-      : at_(view.eye()),
-        right_(view.right()),
-        up_(view.up()),
-        forward_(view.forward()),
-        scale_x_(view.width / (view.projection.right - view.projection.left)),
-        scale_y_(view.height / (view.projection.top - view.projection.bottom)),
-        left_(view.projection.left * scale_x_),
-        top_(view.projection.top * scale_y_),
-        width_(view.width),
-        height_(view.height),
-        clip_(view.projection.clip),
-        orthographic_(view.projection.orthographic) {}
+  explicit Eye(const View& view) : view_(view) {}
 
   [[nodiscard]] EyePoint see(const glm::vec3& world) const {
     const glm::dvec3 p = glm::dvec3(world) - at_;
@@ -116,10 +103,13 @@ class Eye {
     polygon = std::move(kept);
   }
 
-  glm::dvec3 at_, right_, up_, forward_;
-  double scale_x_, scale_y_, left_, top_, width_, height_;
-  ClipDistances clip_;
-  bool orthographic_;
+  const View& view_;
+  const Projection& sides_ = view_.projection;
+  glm::dvec3 at_ = view_.eye(), right_ = view_.right(), up_ = view_.up(), forward_ = view_.forward();
+  double scale_x_ = view_.width / (sides_.right - sides_.left), scale_y_ = view_.height / (sides_.top - sides_.bottom);
+  double left_ = sides_.left * scale_x_, top_ = sides_.top * scale_y_, width_ = view_.width, height_ = view_.height;
+  ClipDistances clip_ = sides_.clip;
+  bool orthographic_ = sides_.orthographic;
 };
 
 /// The winding of a triangle on the screen: 1 to the right, -1 to the left, 0 if it is too narrow to be seen.
@@ -130,67 +120,44 @@ int facing_of(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c) 
   return turn > kNarrow * longest ? 1 : turn < -kNarrow * longest ? -1 : 0;
 }
 
-/// Consecutive vertices of an instance, and the index of their first point.
-struct VertexRange {
-  static constexpr std::size_t most = 4096;
-
-  std::uint32_t instance;
-  std::size_t begin, end;
-  std::size_t first_point;
-};
-
 /// Screen positions of the vertices of all instances that the view may show.
-class VerticesOfView {
- public:
-  VerticesOfView(const PlacedScene& placed, const Eye& eye, const Execution& execution)
-      : eye_(eye), first_(placed.scene->instances.size(), none) {
-    std::vector<VertexRange> ranges;
-    std::size_t count = 0;
-    for (std::uint32_t i = 0; i < first_.size(); ++i) {
-      if (!may_show(placed.instance_bounds[i])) continue;
-      first_[i] = count;
-      const std::size_t vertices = placed.scene->meshes[placed.scene->instances[i].mesh].positions.size();
-      for (std::size_t begin = 0; begin < vertices; begin += VertexRange::most)
-        ranges.push_back({i, begin, std::min(begin + VertexRange::most, vertices), count + begin});
-      count += vertices;
+struct VerticesOfView {
+  std::vector<std::size_t> first{0};  ///< by instance: index of the point of its vertex 0; then the number of points
+  Buffer<ScreenPoint> points;         ///< undefined if nearer than near, farther than far or not finite
+  Buffer<std::uint8_t> outside;       ///< bits of Outside, by point
+
+  VerticesOfView(const PlacedScene& placed, const Eye& eye, const Execution& execution) {
+    constexpr std::size_t kVerticesAtOnce = 16384;
+    const Scene& scene = *placed.scene;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+      const bool is_shown = may_show(placed.instance_bounds[i], eye);
+      first.push_back(first[i] + (is_shown ? scene.meshes[scene.instances[i].mesh].positions.size() : 0));
     }
-    points = Buffer<ScreenPoint>(count);
-    outside = Buffer<std::uint8_t>(count);
-    parallel_for(execution, ranges.size(), 4, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) see(placed, ranges[i]);
+    points = Buffer<ScreenPoint>(first.back());
+    outside = Buffer<std::uint8_t>(first.back());
+    parallel_for(execution, points.size(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end) {
+      auto i = std::size_t(std::upper_bound(first.begin(), first.end(), begin) - first.begin() - 1);
+      for (std::size_t number = begin; number < end; ++i) {
+        const glm::vec3* const positions = scene.meshes[scene.instances[i].mesh].positions.data();
+        const ToWorld world(scene.instances[i].world_from_mesh);
+        const std::size_t start = first[i], last = std::min(first[i + 1], end);
+        for (; number < last; ++number) {
+          const EyePoint at = eye.see(world(positions[number - start]));
+          points[number] = eye.project(at);
+          outside[number] = eye.outside(at);
+        }
+      }
     });
   }
-  /// Index of the point of an instance's vertex 0; `none` for instances outside the view.
-  static constexpr std::size_t none = std::size_t(-1);
-  [[nodiscard]] std::size_t first(std::uint32_t instance) const { return first_[instance]; }
 
-  Buffer<ScreenPoint> points;    ///< undefined if nearer than near, farther than far or not finite
-  Buffer<std::uint8_t> outside;  ///< bits of Outside, by point
-
- private:
-  [[nodiscard]] bool may_show(const Box& bounds) const {
+  [[nodiscard]] static bool may_show(const Box& bounds, const Eye& eye) {
     if (bounds.is_empty()) return false;
     int all = kLeft | kRight | kAbove | kBelow | kNearer | kFarther;
     for (int k = 0; k < 8; ++k)
-      all &= eye_.outside(eye_.see({(k & 1 ? bounds.high : bounds.low).x, (k & 2 ? bounds.high : bounds.low).y,
-                                    (k & 4 ? bounds.high : bounds.low).z}));
+      all &= eye.outside(eye.see({(k & 1 ? bounds.high : bounds.low).x, (k & 2 ? bounds.high : bounds.low).y,
+                                  (k & 4 ? bounds.high : bounds.low).z}));
     return all == 0;
   }
-
-  void see(const PlacedScene& placed, const VertexRange& range) {
-    const Instance& instance = placed.scene->instances[range.instance];
-    const glm::vec3* const positions = placed.scene->meshes[instance.mesh].positions.data();
-    const ToWorld world(instance.world_from_mesh);
-    for (std::size_t i = range.begin; i < range.end; ++i) {
-      const EyePoint at = eye_.see(world(positions[i]));
-      const std::size_t number = range.first_point + (i - range.begin);
-      points[number] = eye_.project(at);
-      outside[number] = eye_.outside(at);
-    }
-  }
-
-  Eye eye_;
-  std::vector<std::size_t> first_;
 };
 
 /// The faces of some ranges of triangles. Corner numbers that are not below the number of all vertices refer to
@@ -200,64 +167,54 @@ struct FacePart {
   std::vector<ScreenPoint> clipped;
 };
 
-/// Gathers the faces of consecutive triangles.
-class FaceGatherer {
- public:
-  /// `facing` has an entry for each primitive: 0 for triangles that are not seen, or not whole.
-  FaceGatherer(const PlacedScene& placed, const Eye& eye, Culling culling, const VerticesOfView& vertices,
-               std::vector<std::int8_t>& facing)
-      : placed_(placed), eye_(eye), rule_(culling, placed.sides.get()), vertices_(vertices), facing_(facing) {}
+/// Gathers the faces of consecutive triangles. Borrows everything.
+struct FaceGatherer {
+  const PlacedScene& placed;
+  const Eye& eye;
+  const FacingRule& rule;
+  const VerticesOfView& vertices;
+  std::vector<std::int8_t>& facing;  ///< by primitive, 0 for triangles that are not seen, or not whole
+  FacePart& out;
 
-  void gather(const MeshRange& range) {
-    const std::size_t first_point = vertices_.first(range.instance);
-    if (first_point == VerticesOfView::none) return;
-    is_mirrored_ = placed_.mirrored[range.instance] != 0;
-    PrimitiveId id = placed_.first_id(range);
-    for (const glm::uvec3& c : placed_.corners(range)) add(id++, range.instance, first_point, c);
-  }
-  [[nodiscard]] FacePart take() { return std::move(out_); }
-
- private:
-  [[nodiscard]] bool is_culled(PrimitiveId id, int facing) const {
-    return !rule_.keeps(id, (facing < 0) != is_mirrored_);
+  void gather(const MeshRange& range) const {
+    if (vertices.first[range.instance] == vertices.first[range.instance + 1]) return;
+    PrimitiveId id = placed.first_id(range);
+    for (const glm::uvec3& c : placed.corners(range)) add(id++, range.instance, c);
   }
 
-  void add(PrimitiveId id, std::uint32_t instance, std::size_t first_point, const glm::uvec3& c) {
-    const std::size_t x = first_point + c.x, y = first_point + c.y, z = first_point + c.z;
-    const int a = vertices_.outside[x], b = vertices_.outside[y], d = vertices_.outside[z];
+  [[nodiscard]] bool is_culled(PrimitiveId id, std::uint32_t instance, int winding) const {
+    return !rule.keeps(id, (winding < 0) != (placed.mirrored[instance] != 0));
+  }
+
+  void add(PrimitiveId id, std::uint32_t instance, const glm::uvec3& c) const {
+    const std::size_t first = vertices.first[instance], x = first + c.x, y = first + c.y, z = first + c.z;
+    const int a = vertices.outside[x], b = vertices.outside[y], d = vertices.outside[z];
     const int all = a & b & d, any = a | b | d;
     if ((any & kNowhere) != 0 || (all & (kNearer | kFarther)) != 0) return;
     if ((any & (kNearer | kFarther | kFarAway)) != 0) return add_clipped(id, instance, c);
     if ((all & (kLeft | kRight | kAbove | kBelow)) != 0) return;
-    const int facing = facing_of(vertices_.points[x], vertices_.points[y], vertices_.points[z]);
-    if (facing == 0 || is_culled(id, facing)) return;
-    facing_[id] = std::int8_t(facing);
-    out_.faces.push_back({{std::uint32_t(x), std::uint32_t(y), std::uint32_t(z)}, id});
+    const int winding = facing_of(vertices.points[x], vertices.points[y], vertices.points[z]);
+    if (winding == 0 || is_culled(id, instance, winding)) return;
+    facing[id] = std::int8_t(winding);
+    out.faces.push_back({{std::uint32_t(x), std::uint32_t(y), std::uint32_t(z)}, id});
   }
 
-  void add_clipped(PrimitiveId id, std::uint32_t instance, const glm::uvec3& c) {
-    const Instance& placed = placed_.scene->instances[instance];
-    const std::vector<glm::vec3>& positions = placed_.scene->meshes[placed.mesh].positions;
-    const ToWorld world(placed.world_from_mesh);
+  void add_clipped(PrimitiveId id, std::uint32_t instance, const glm::uvec3& c) const {
+    const Instance& it = placed.scene->instances[instance];
+    const std::vector<glm::vec3>& positions = placed.scene->meshes[it.mesh].positions;
+    const ToWorld world(it.world_from_mesh);
     const std::vector<EyePoint> polygon =
-        eye_.clip({eye_.see(world(positions[c.x])), eye_.see(world(positions[c.y])), eye_.see(world(positions[c.z]))});
-    const std::size_t first = out_.clipped.size();
-    for (const EyePoint& p : polygon) out_.clipped.push_back(eye_.project(p));
-    const auto number = std::uint32_t(vertices_.points.size() + first);
+        eye.clip({eye.see(world(positions[c.x])), eye.see(world(positions[c.y])), eye.see(world(positions[c.z]))});
+    const std::size_t first = out.clipped.size();
+    for (const EyePoint& p : polygon) out.clipped.push_back(eye.project(p));
+    const auto number = std::uint32_t(vertices.points.size() + first);
     for (std::uint32_t i = 2; i < polygon.size(); ++i) {
-      const ScreenPoint* const p = out_.clipped.data() + first;
-      const int facing = facing_of(p[0], p[i - 1], p[i]);
-      if (facing != 0 && !is_culled(id, facing)) out_.faces.push_back({{number, number + i - 1, number + i}, id});
+      const ScreenPoint* const p = out.clipped.data() + first;
+      const int winding = facing_of(p[0], p[i - 1], p[i]);
+      if (winding != 0 && !is_culled(id, instance, winding))
+        out.faces.push_back({{number, number + i - 1, number + i}, id});
     }
   }
-
-  const PlacedScene& placed_;
-  const Eye& eye_;
-  FacingRule rule_;
-  const VerticesOfView& vertices_;
-  std::vector<std::int8_t>& facing_;
-  bool is_mirrored_ = false;
-  FacePart out_;
 };
 
 ViewedFaces joined(const std::vector<FacePart>& parts, Buffer<ScreenPoint> vertices) {
@@ -328,13 +285,15 @@ ViewedFaces viewed_faces(const Surfaces& surfaces, const View& view, const std::
   constexpr std::size_t kRangesAtOnce = 16, kFacesAtOnce = 8192;
   const PlacedScene& placed = placed_scene(surfaces);
   const Eye eye(view);
+  const FacingRule rule(view.culling, placed.sides.get());
   VerticesOfView vertices(placed, eye, execution);
   std::vector<std::int8_t> facing(surfaces.primitive_count(), 0);
   std::vector<FacePart> parts((placed.ranges.size() + kRangesAtOnce - 1) / kRangesAtOnce);
   parallel_for(execution, placed.ranges.size(), kRangesAtOnce, [&](std::size_t begin, std::size_t end) {
-    FaceGatherer gatherer(placed, eye, view.culling, vertices, facing);
+    FacePart part;  // of this thread alone while it grows
+    const FaceGatherer gatherer{placed, eye, rule, vertices, facing, part};
     for (std::size_t i = begin; i < end; ++i) gatherer.gather(placed.ranges[i]);
-    parts[begin / kRangesAtOnce] = gatherer.take();
+    parts[begin / kRangesAtOnce] = std::move(part);
   });
   ViewedFaces all = joined(parts, std::move(vertices.points));
   parallel_for(execution, all.faces.size(), kFacesAtOnce,

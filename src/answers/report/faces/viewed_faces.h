@@ -9,6 +9,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -17,8 +18,7 @@
 
 namespace frontmost::faces_detail {
 
-/// Width in pixels, 2^-30. Narrower parts are not told apart from their neighbours. Doubles are exact to about 2^-38
-/// pixel.
+/// Width in pixels, 2^-30, below which parts are not told apart from others. Doubles are exact to about 2^-38 pixel.
 inline constexpr double kNarrow = 1.0 / (1 << 30);
 
 /// A place in the picture, in pixels, and the key of a surface there. Keys are affine over the screen and greater for
@@ -36,6 +36,14 @@ struct Range {
 /// A rectangle of the picture, in pixels.
 struct CellBox {
   double left, top, right, bottom;
+
+  /// Whether a range of x and y reaches into the box, beyond its sides.
+  [[nodiscard]] bool meets(const Range& x, const Range& y) const {
+    return x.high > left && x.low < right && y.high > top && y.low < bottom;
+  }
+  [[nodiscard]] bool holds(const Range& x, const Range& y) const {
+    return x.low >= left && x.high <= right && y.low >= top && y.high <= bottom;
+  }
 };
 
 /// A triangle, or a part of a clipped one.
@@ -48,6 +56,11 @@ struct ViewedFaces {
   Buffer<ScreenPoint> points;   ///< vertices, by instance and number; then the points of clipped triangles
   Buffer<ViewedFace> faces;     ///< by id, ascending; the parts of one triangle are consecutive
   Buffer<std::uint8_t> ending;  ///< by face, bit k: a surface ends at side k, from corner k to the next
+
+  [[nodiscard]] std::array<ScreenPoint, 3> corners(std::size_t face) const {
+    const auto& c = faces[face].corners;
+    return {points[c[0]], points[c[1]], points[c[2]]};
+  }
 };
 
 /// Twice the area, positive if the corners turn to the right as seen (y points down).
@@ -59,8 +72,7 @@ struct ViewedFaces {
 /// one, whatever their numbers. \throws Error limit_exceeded for more than EdgeNeighbours::most_triangles.
 [[nodiscard]] std::vector<EdgeNeighbours> sides_of_meshes(const Scene& scene, const Execution& execution);
 
-/// The faces that lie at least partly within the picture, between near and far, are wider than kNarrow and are not
-/// culled. `sides` has an entry for each mesh.
+/// The faces at least partly in the picture and between near and far, wider than kNarrow, not culled. `sides` by mesh.
 [[nodiscard]] ViewedFaces viewed_faces(const Surfaces& surfaces, const View& view,
                                        const std::vector<EdgeNeighbours>& sides, const Execution& execution);
 

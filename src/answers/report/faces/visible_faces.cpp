@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The visible faces, found cell by cell of the picture: at once in cells where no relevant surface ends, else in
-// smaller cells.
+// Visible faces cell by cell of the picture: at once where no relevant surface ends, else in smaller cells, at last by
+// cutting. (J. Warnock. A Hidden Surface Algorithm for Computer Generated Halftone Pictures. 1969.)
 //
 //   Surfaces --viewed_faces()--> faces on the screen --cells--> parts of them --added up--> VisibleFaces
 //
@@ -31,8 +31,7 @@ namespace {
 constexpr double kSmallestCell = 1.0 / 1024;
 /// A cell with at most this number of faces is not divided. The faces cut each other instead.
 constexpr std::size_t kFewFaces = 128;
-/// A cell with more faces than this is divided even if most of them reach into all of its parts, because the faces hide
-/// each other in the parts.
+/// A cell with more faces is divided even if most of them reach into all of its parts, in which they hide each other.
 constexpr std::size_t kManyFaces = 256;
 /// The largest cells with more faces than this are divided before their faces are examined.
 constexpr std::size_t kManyListed = 500;
@@ -103,7 +102,7 @@ glm::dvec2 place_in(const CellBox& box) {
 class CellSolver {
  public:
   CellSolver(const FacesOfView& faces, FaceMarks& marks, const std::function<void(std::uint64_t)>& tell)
-      : screen_(faces.screen), marks_(marks), cutter_(faces, tell) {}
+      : cutter(faces, tell), screen_(faces.screen), marks_(marks) {}
 
   void solve(const CellLists& lists, std::size_t cell, const View& view) {
     order_.sort(lists[cell]);
@@ -124,10 +123,7 @@ class CellSolver {
     for (std::size_t i = least_looked_at_; i < faces.size(); ++i) marks_.set_partial(face_of(faces[i]));
   }
 
-  void clip(const ToldPart& part, std::vector<SeenPart>& seen) { cutter_.clip(part.box, part.face, seen); }
-  /// Reports the remaining work.
-  void tell_rest() { cutter_.tell_rest(); }
-
+  PieceCutter cutter;
   std::vector<SeenPart> parts;
   std::vector<ToldPart> told;
 
@@ -208,8 +204,7 @@ class CellSolver {
   }
 
   void gather(std::uint32_t face, const CellBox& box) {
-    const auto& c = screen_.faces[face].corners;
-    const ScreenPoint &p = screen_.points[c[0]], &q = screen_.points[c[1]], &r = screen_.points[c[2]];
+    const auto [p, q, r] = screen_.corners(face);
     const Range key = range_of(p.key, q.key, r.key);
     const auto number = std::uint32_t(gathered_.size());
     gathered_.push_back({{p, q, r}, range_of(p.x, q.x, r.x), range_of(p.y, q.y, r.y), face, screen_.ending[face]});
@@ -218,12 +213,10 @@ class CellSolver {
 
   void add(const FaceInBox& face, const CellBox& box) {
     const GatheredFace& gathered = gathered_[face.number];
-    const Range &x = gathered.x, &y = gathered.y;
-    if (x.high <= box.left || x.low >= box.right || y.high <= box.top || y.low >= box.bottom) return;
+    if (!box.meets(gathered.x, gathered.y)) return;
     list_.push_back(face);
-    // A face that lies wholly in this cell lay wholly in all larger cells, too, so gather() has set all of its values.
-    const bool is_inside = x.low >= box.left && x.high <= box.right && y.low >= box.top && y.high <= box.bottom;
-    if (!is_inside && !reaches_into(box, list_.back())) list_.pop_back();
+    // A face that lies wholly in the cell did so in all larger cells, and gather() has set all of its values.
+    if (!box.holds(gathered.x, gathered.y) && !reaches_into(box, list_.back())) list_.pop_back();
   }
 
   /// Sets the values of a face that extends beyond the box. \returns whether it reaches into the box.
@@ -250,7 +243,7 @@ class CellSolver {
           found.is_ending || (std::min(a.x, b.x) <= box.right + kNarrow && std::max(a.x, b.x) >= box.left - kNarrow &&
                               std::min(a.y, b.y) <= box.bottom + kNarrow && std::max(a.y, b.y) >= box.top - kNarrow);
     }
-    const AffineKey plane(p[0], p[1], p[2]);
+    const AffineKey plane(p);
     const double at_middle = plane.at({middle_x, middle_y});
     const double varies = std::abs(plane.along_x) * half_x + std::abs(plane.along_y) * half_y;
     const Range key = range_of(p[0].key, p[1].key, p[2].key);
@@ -259,23 +252,21 @@ class CellSolver {
     return true;
   }
 
-  /// Finishes the cell whose list begins at `first`, and removes the list. No face that was left out of the list is
-  /// nearer than `removed`.
+  /// Finishes the cell whose list begins at `first`, and removes the list. No face left out is nearer than `removed`.
   void divide(const CellBox& box, std::size_t first, double removed) {
-    cutter_.count(kStepsInCell * (list_.size() - first));
+    cutter.count(kStepsInCell * (list_.size() - first));
     const Sorted sorted = sort(box, first, removed);
     drop(first + sorted.kept);
     if (sorted.is_told)
       show_all(box, first);
     else if (sorted.kept <= kFewFaces || !divide_further(box, first, sorted.removed)) {
-      cutter_.cut(box, std::span(list_).subspan(first), gathered_, parts);
+      cutter.cut(box, std::span(list_).subspan(first), gathered_, parts);
       drop(first);
     }
     list_.resize(first);
   }
 
-  /// Divides a cell into four. \returns false if division would not help, because the cell is too small or most of its
-  /// faces reach into all parts.
+  /// Divides a cell into four. \returns false if it is too small, or if most of its faces reach into all parts.
   bool divide_further(const CellBox& box, std::size_t first, double removed) {
     const double size = std::max(box.right - box.left, box.bottom - box.top);
     if (size <= kSmallestCell) return false;
@@ -308,8 +299,7 @@ class CellSolver {
     return true;
   }
 
-  /// Divides a cell into 4 x 4 parts, at first by the boxes of its faces. \returns false if very many of these boxes
-  /// meet all parts.
+  /// Divides a cell into 4 x 4, at first by boxes of faces. \returns false if very many of these meet all parts.
   bool divide_crowd(const CellBox& box, std::size_t first, double removed) {
     constexpr int kAlong = 4;
     const double width = (box.right - box.left) / kAlong, height = (box.bottom - box.top) / kAlong;
@@ -346,13 +336,12 @@ class CellSolver {
     return true;
   }
 
-  /// If very many faces cover the cell, drops the faces that one of them hides. \returns the nearest key of the dropped
-  /// faces.
+  /// Drops faces hidden by one that covers the cell, if very many cover it. \returns the nearest key of dropped faces.
   double drop_covered(const CellBox& box, std::size_t first) {
     const std::span<FaceInBox> list = std::span(list_).subspan(first);
     const auto covers = [](const FaceInBox& face) { return face.is_all; };
     if (std::size_t(std::count_if(list.begin(), list.end(), covers)) <= kManyCovers) return kNever;
-    const std::size_t kept = cutter_.leave_out_covered(box, list, gathered_);
+    const std::size_t kept = cutter.leave_out_covered(box, list, gathered_);
     double nearest = kNever;
     for (const FaceInBox& face : list.subspan(kept)) nearest = std::max(nearest, face.nearest);
     drop(first + kept);
@@ -408,10 +397,8 @@ class CellSolver {
         if (const ScreenPoint& q = corner(i, k); q.x == p.x && q.y == p.y && q.key == p.key) return true;
       return false;
     };
-    std::size_t i = first + 1;
-    while (i < list_.size() && list_[i].nearest != list_[i - 1].nearest) ++i;
-    std::size_t kept = std::min(i, list_.size());
-    for (; i < list_.size(); ++i) {
+    std::size_t kept = std::min(first + 1, list_.size());
+    for (std::size_t i = kept; i < list_.size(); ++i) {
       const bool is_copy = list_[i].nearest == list_[kept - 1].nearest &&
                            list_[i].farthest == list_[kept - 1].farthest && has_corner(i, corner(kept - 1, 0)) &&
                            has_corner(i, corner(kept - 1, 1)) && has_corner(i, corner(kept - 1, 2));
@@ -446,8 +433,7 @@ class CellSolver {
   void show_all(const CellBox& box, std::size_t first) {
     for (std::size_t i = first; i < list_.size(); ++i) {
       const GatheredFace& face = gathered_[list_[i].number];
-      const Range &x = face.x, &y = face.y;
-      if (x.low >= box.left && x.high <= box.right && y.low >= box.top && y.high <= box.bottom) {
+      if (box.holds(face.x, face.y)) {
         marks_.set_whole(face.face);
       } else {
         marks_.set_seen(face.face);
@@ -464,7 +450,6 @@ class CellSolver {
 
   const ViewedFaces& screen_;
   FaceMarks& marks_;
-  PieceCutter cutter_;
   RoughOrder order_;
   std::vector<std::uint16_t> parts_of_faces_;  ///< by face of `order_`: parts of the cell that its box meets, as bits
   std::size_t least_looked_at_ = 0;            ///< from this face of the order on, faces are hidden in some part
@@ -488,41 +473,33 @@ std::string too_many_faces(const CellLists& lists, const FacesOfView& faces, con
          " of object " + std::to_string(surfaces.source(id).instance) + "; leave out faces that lie there many times";
 }
 
-/// The visible parts of the faces of a view.
-struct SeenParts {
-  Buffer<std::uint8_t> is_whole;             ///< by face: all of it is seen; the face then has no parts
-  std::vector<std::vector<SeenPart>> parts;  ///< parts of the other faces; a face may have several
-};
-
-/// Finds all visible parts in the view. The result is the same for any number of threads.
-SeenParts seen_parts(const FacesOfView& faces, const View& view, std::uint64_t most_steps, const Execution& execution) {
+/// Marks the faces of which all is seen, and finds the visible parts of the others, of which a face may have several.
+/// The result is the same for any number of threads.
+std::vector<std::vector<SeenPart>> seen_parts(const FacesOfView& faces, const View& view, std::uint64_t most_steps,
+                                              FaceMarks& marks, const Execution& execution) {
   constexpr std::size_t kCellsAtOnce = 8;
   const CellLists lists(faces.screen, view, execution);
-  FaceMarks marks(faces.screen.faces.size());
   for (const std::uint32_t face : lists.beyond_picture()) marks.set_partial(face);
   WorkLimit work(execution, most_steps + 64 * std::uint64_t(faces.screen.faces.size()), "visible faces");
   const auto tell = [&](std::uint64_t steps) { work.add(steps, [&] { return too_many_faces(lists, faces, view); }); };
   const std::size_t chunks = (lists.size() + kCellsAtOnce - 1) / kCellsAtOnce;
-  SeenParts seen;
-  seen.parts.resize(chunks);
+  std::vector<std::vector<SeenPart>> parts(chunks);
   std::vector<std::vector<ToldPart>> told(chunks);
   Pool<CellSolver> solvers;
   parallel_for(execution, lists.size(), kCellsAtOnce, [&](std::size_t begin, std::size_t end) {
     const auto solver = solvers.borrow([&] { return std::make_unique<CellSolver>(faces, marks, tell); });
     for (std::size_t cell = begin; cell < end; ++cell) solver->solve(lists, cell, view);
-    solver->tell_rest();
-    seen.parts[begin / kCellsAtOnce] = std::exchange(solver->parts, {});
+    solver->cutter.tell_rest();
+    parts[begin / kCellsAtOnce] = std::exchange(solver->parts, {});
     told[begin / kCellsAtOnce] = std::exchange(solver->told, {});
   });
   parallel_for(execution, chunks, 1, [&](std::size_t chunk, std::size_t) {
     const auto solver = solvers.borrow([&] { return std::make_unique<CellSolver>(faces, marks, tell); });
     for (const ToldPart& part : told[chunk])
-      if (marks.is_partial(part.face)) solver->clip(part, seen.parts[chunk]);
-    solver->tell_rest();
+      if (marks.is_partial(part.face)) solver->cutter.clip(part.box, part.face, parts[chunk]);
+    solver->cutter.tell_rest();
   });
-  seen.is_whole = Buffer<std::uint8_t>(faces.screen.faces.size());
-  for (std::uint32_t i = 0; i < seen.is_whole.size(); ++i) seen.is_whole[i] = marks.is_whole(i);
-  return seen;
+  return parts;
 }
 
 }  // namespace
@@ -533,16 +510,14 @@ std::vector<VisibleFace> find_faces(const Surfaces& surfaces, const View& view,
   constexpr std::size_t kFacesAtOnce = 4096;
   const ViewedFaces screen = viewed_faces(surfaces, view, sides, execution);
   const FacesOfView faces{surfaces, screen, AreaRule(view)};
-  const SeenParts found = seen_parts(faces, view, most_steps, execution);
+  FaceMarks marks(screen.faces.size());
+  const std::vector<std::vector<SeenPart>> found = seen_parts(faces, view, most_steps, marks, execution);
   std::vector<Areas> areas(screen.faces.size());
   parallel_for(execution, areas.size(), kFacesAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (found.is_whole[i] == 0) continue;
-      const auto& c = screen.faces[i].corners;
-      areas[i] = faces.rule.areas_of(std::array{screen.points[c[0]], screen.points[c[1]], screen.points[c[2]]});
-    }
+    for (std::size_t i = begin; i < end; ++i)
+      if (marks.is_whole(std::uint32_t(i))) areas[i] = faces.rule.areas_of(screen.corners(i));
   });
-  for (const std::vector<SeenPart>& parts : found.parts)
+  for (const std::vector<SeenPart>& parts : found)
     for (const SeenPart& part : parts) areas[part.face] += part.areas;
   std::vector<VisibleFace> seen;
   for (std::size_t i = 0; i < areas.size(); ++i) {
@@ -558,18 +533,9 @@ std::vector<VisibleFace> find_faces(const Surfaces& surfaces, const View& view,
 }  // namespace frontmost::faces_detail
 
 namespace frontmost {
-namespace {
 
 /// Limit of steps: fifteen times what the most crowded of 237 models takes.
 constexpr std::uint64_t kMostFaceSteps = std::uint64_t(1) << 31;
-
-/// The area of a triangle, in scene units squared.
-double area_of_triangle(const std::array<glm::vec3, 3>& corners) {
-  const glm::dvec3 a(corners[0]);
-  return 0.5 * glm::length(glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a));
-}
-
-}  // namespace
 
 VisibleFaces visible_faces(const Surfaces& surfaces, const View& view, const Execution& execution) {
   const IeeeScope ieee;
@@ -591,7 +557,9 @@ std::vector<SeenFace> faces_ever_seen(const Surfaces& surfaces, std::span<const 
       found.id = face.id;
       ++found.view_count;
       found.largest_pixels = std::max(found.largest_pixels, face.pixels);
-      const double share = std::min(face.area / area_of_triangle(surfaces.corners(face.id)), 1.0);
+      const auto corners = surfaces.corners(face.id);
+      const glm::dvec3 a(corners[0]), across = glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
+      const double share = std::min(face.area / (0.5 * glm::length(across)), 1.0);
       if (share <= found.largest_share) continue;
       found.largest_share = share;
       found.best_view = number;

@@ -89,8 +89,7 @@ struct KeySlopes {
     if (lost > 0.5 * area) return range;
     return std::min(range, (std::abs(x) + std::abs(y)) * moved / (area - lost));
   }
-  /// Greatest effect of rounding on keys between the corners (view/triangle_keys.h): at most sixteen roundings, and
-  /// none if all corners have the same key.
+  /// Greatest effect of roundings between the corners (view/triangle_keys.h): at most sixteen; none if keys are equal.
   [[nodiscard]] double of_rounding(double nearest) const {
     if (range == 0) return 0;
     // No side is longer along x or y than half of the perimeter.
@@ -182,10 +181,9 @@ std::vector<ScreenFace> screen_faces(const Surfaces& surfaces, const View& view,
       const WorldTriangles triangles = world_triangles(placed, placed.ranges[i], execution.isa, *scratch);
       snap_vertices(target, triangles.positions, scratch->vertices);
       for (std::size_t k = 0; k < triangles.corners.size(); ++k) {
-        const ClippedPolygon polygon = polygon_of(target, triangles, scratch->vertices, k);
-        if (polygon.count == 0) continue;
         records.clear();
-        append_polygon(target, polygon, PrimitiveId(triangles.first_id + k), records);
+        append_polygon(target, polygon_of(target, triangles, scratch->vertices, k), PrimitiveId(triangles.first_id + k),
+                       records);
         for (const TriangleRecord& record : records) finish(record, parts[i]);
       }
     }
@@ -210,11 +208,7 @@ AffineOverScreen inside_of_side(const glm::dvec2& from, const glm::dvec2& to) {
   return {-glm::dot(normal, from), normal};
 }
 
-std::array<glm::dvec2, 3> corners_of(const ScreenFace& face) {
-  return {face.corner(0), face.corner(1), face.corner(2)};
-}
-
-/// A function that is not negative where `nearer` is not surely shown: constant + relative * nearer - (nearer - other).
+/// Not negative where `nearer` is not surely shown: constant + relative * nearer - (nearer - other).
 AffineOverScreen is_not_shown(const KeyOverScreen& nearer, const KeyOverScreen& other, const KeyStep& step,
                               double slack) {
   const double share = step.relative - 1;
@@ -250,13 +244,13 @@ double ConvexArea::area() const {
   return 0.5 * doubled;
 }
 
-glm::dvec2 ConvexArea::centre() const {
-  glm::dvec2 sum(0);
-  for (const glm::dvec2& corner : corners_) sum += corner;
-  return sum / double(corners_.size());
+std::pair<double, double> rows_of(std::span<const glm::dvec2> corners) {
+  const auto is_above = [](const glm::dvec2& a, const glm::dvec2& b) { return a.y < b.y; };
+  const auto [top, bottom] = std::minmax_element(corners.begin(), corners.end(), is_above);
+  return {top->y, bottom->y};
 }
 
-RowSpan span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, int width) {
+std::pair<int, int> span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, int width) {
   double low = -1, high = width;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const AffineOverScreen f = inside_of_side(corners[i], corners[i + 1 == corners.size() ? 0 : i + 1]);
@@ -272,11 +266,6 @@ RowSpan span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, i
   return {first, std::max(first, end)};
 }
 
-RiskFinder::RiskFinder(const View& view, const DepthSetup& setup)
-    : size_(view.width, view.height),
-      step_(setup),
-      farthest_key_(setup.orthographic ? 0 : setup.clip.near / setup.clip.far) {}
-
 void RiskFinder::cut_by_frame() {
   for (int axis = 0; axis < 2; ++axis) {
     glm::dvec2 along(0);
@@ -289,7 +278,7 @@ void RiskFinder::cut_by_frame() {
 const ConvexArea& RiskFinder::of_pair(const ScreenFace& a, const ScreenFace& b) {
   const KeyOverScreen first = a.keys(), second = b.keys();
   const double slack = double(a.slack) + double(b.slack);
-  area_.assign(corners_of(a));
+  area_.assign(a);
   area_.cut(is_not_shown(first, second, step_, slack));
   if (!area_.is_empty()) area_.cut(is_not_shown(second, first, step_, slack));
   for (int k = 0; k < 3 && !area_.is_empty(); ++k) area_.cut(inside_of_side(b.corner(k), b.corner(k == 2 ? 0 : k + 1)));
@@ -298,10 +287,8 @@ const ConvexArea& RiskFinder::of_pair(const ScreenFace& a, const ScreenFace& b) 
 }
 
 const ConvexArea& RiskFinder::of_clear_value(const ScreenFace& face) {
-  area_.assign({});
-  if (!may_be_clear_value(face)) return area_;
   const KeyOverScreen keys = face.keys();
-  area_.assign(corners_of(face));
+  area_.assign(face);
   cut_by_frame();
   area_.cut({farthest_key_ + 0.5 * step_.constant + double(face.slack) - keys.k, {-keys.gx, -keys.gy}});
   return area_;
@@ -334,7 +321,9 @@ double VisibleShares::of(const ConvexArea& area, const RiskKeys& keys) {
   if (step > 1) look(step);
   if (seen == 0) look(1);
   if (all > 0) return double(seen) / double(all);
-  const glm::dvec2 centre = area.centre();
+  glm::dvec2 sum(0);
+  for (const glm::dvec2& corner : area.corners()) sum += corner;
+  const glm::dvec2 centre = sum / double(area.corners().size());
   const glm::ivec2 last(view.width - 1, view.height - 1);
   const glm::ivec2 pixel = glm::clamp(glm::ivec2(centre), glm::ivec2(0), last);
   const std::size_t number = std::size_t(pixel.y) * std::size_t(view.width) + std::size_t(pixel.x);

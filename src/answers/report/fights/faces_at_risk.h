@@ -82,44 +82,40 @@ struct AffineOverScreen {
 /// upwards.
 class ConvexArea {
  public:
-  ConvexArea() = default;
-  void assign(std::span<const glm::dvec2> corners) { corners_.assign(corners.begin(), corners.end()); }
+  /// Replaces the area by that of a face.
+  void assign(const ScreenFace& face) { corners_ = {face.corner(0), face.corner(1), face.corner(2)}; }
   /// Keeps the part where `f` is not negative.
   void cut(const AffineOverScreen& f);
   [[nodiscard]] std::span<const glm::dvec2> corners() const { return corners_; }
   [[nodiscard]] bool is_empty() const { return corners_.size() < 3; }
   /// Area in square pixels.
   [[nodiscard]] double area() const;
-  [[nodiscard]] glm::dvec2 centre() const;
 
  private:
   std::vector<glm::dvec2> corners_, before_;
 };
 
-/// Pixels [first, end) of a row.
-struct RowSpan {
-  int first, end;
-};
+/// The least and the greatest y of some corners.
+[[nodiscard]] std::pair<double, double> rows_of(std::span<const glm::dvec2> corners);
 
-/// The pixels of a row whose samples lie in an area, sides included. The samples have the height `sample.y`, and each
-/// lies `sample.x` to the right of the left side of its pixel.
-[[nodiscard]] RowSpan span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, int width);
+/// The pixels [first, end) of a row of samples at `sample.y` that lie in an area, sides included. Samples are
+/// `sample.x` to the right of the left sides of their pixels.
+[[nodiscard]] std::pair<int, int> span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, int width);
 
 /// Calls visit(number, x, y, offset) for the samples of a view in an area, in every `step`-th column and row. Sample
 /// numbers are those of Visible; offsets are relative to the top left corners of pixels.
 template <class Visit>
 void visit_samples(std::span<const glm::dvec2> corners, const View& view, int step, const Visit& visit) {
   const auto from = [&](int first) { return (first + step - 1) / step * step; };
-  const auto [top, bottom] =
-      std::minmax_element(corners.begin(), corners.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
+  const auto [top, bottom] = rows_of(corners);
   const std::span<const glm::ivec2> samples = sample_offsets(view.samples);
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const glm::dvec2 offset = glm::dvec2(samples[s]) / double(kSubPixels);
-    for (int y = from(std::max(int(std::floor(top->y - offset.y)), 0)); y < view.height; y += step) {
-      if (y + offset.y > bottom->y + 1) break;
-      const RowSpan row = span_of(corners, {offset.x, y + offset.y}, view.width);
+    for (int y = from(std::max(int(std::floor(top - offset.y)), 0)); y < view.height; y += step) {
+      if (y + offset.y > bottom + 1) break;
+      const auto [begin, end] = span_of(corners, {offset.x, y + offset.y}, view.width);
       const std::size_t first = (s * std::size_t(view.height) + std::size_t(y)) * std::size_t(view.width);
-      for (int x = from(row.first); x < row.end; x += step) visit(first + std::size_t(x), x, y, offset);
+      for (int x = from(begin); x < end; x += step) visit(first + std::size_t(x), x, y, offset);
     }
   }
 }
@@ -127,7 +123,10 @@ void visit_samples(std::span<const glm::dvec2> corners, const View& view, int st
 /// Finds one area after another and reuses its memory.
 class RiskFinder {
  public:
-  RiskFinder(const View& view, const DepthSetup& setup);
+  RiskFinder(const View& view, const DepthSetup& setup)
+      : size_(view.width, view.height),
+        step_(setup),
+        farthest_key_(setup.orthographic ? 0 : setup.clip.near / setup.clip.far) {}
 
   /// The area that both faces cover and in which neither is surely shown; may be empty. Valid until the next call.
   [[nodiscard]] const ConvexArea& of_pair(const ScreenFace& a, const ScreenFace& b);

@@ -54,13 +54,7 @@ struct CellFace {
   }
 };
 
-/// The faces of one cell, and the indices of the faces near one of them. Reused from cell to cell.
-struct CellScratch {
-  std::vector<CellFace> entries;
-  std::vector<std::uint32_t> near;
-};
-
-/// Whether a side of `a` separates the triangles: all of `b` lies on its outer side, or on the side itself.
+/// Whether all of `b` lies on the outer side of a side of `a`, or on that side.
 bool is_parted_by_side(const TriangleRecord& a, const TriangleRecord& b) {
   for (int k = 0; k < 3; ++k) {
     const int n = k == 2 ? 0 : k + 1;
@@ -92,7 +86,6 @@ class FaceCells {
         for (int x = cells.x0; x <= cells.x1; ++x) add(std::size_t(y) * std::size_t(columns_) + std::size_t(x));
     });
   }
-  [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
 
   /// The text of the error, which names the cell that has the most faces.
@@ -111,36 +104,41 @@ class FaceCells {
            at(x + 1, view_.width) + "," + at(y + 1, view_.height) + "; leave out faces that lie there many times";
   }
 
-  /// Appends the pairs that are found in this cell.
-  void find_pairs(int column, int row, CellScratch& scratch, PairLimits& limits, std::vector<FacePair>& pairs) const {
-    std::vector<CellFace>& entries = scratch.entries;
-    entries.clear();
-    for (const std::uint32_t i : lists_.of(std::size_t(row) * std::size_t(columns_) + std::size_t(column)))
-      entries.emplace_back(faces_[i], i);
-    std::sort(entries.begin(), entries.end(), [](const CellFace& a, const CellFace& b) { return a.x0 < b.x0; });
-    scratch.near.resize(entries.size());
+  /// The pairs that are found in a row of cells.
+  [[nodiscard]] std::vector<FacePair> find_pairs(int row, PairLimits& limits) const {
     constexpr std::size_t kLooksAtOnce = 1 << 12;
-    std::size_t looks = 0, told = pairs.size();
+    std::vector<FacePair> pairs;
+    std::vector<CellFace> entries;    // the faces of one cell
+    std::vector<std::uint32_t> near;  // indices of the faces near one of them
+    std::size_t looks = 0, told = 0;
     const auto tell = [&] {
       limits.looks.add(looks, [&] { return too_many("faces lie over each other"); });
       limits.pairs.add(pairs.size() - told, [&] { return too_many("pairs of faces lie close to each other"); });
       looks = 0;
       told = pairs.size();
     };
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      const CellFace& a = entries[i];
-      const NearFaces found = collect_near(i, entries, scratch.near.data());
-      for (std::size_t n = 0; n < found.count; ++n) {
-        const CellFace& b = entries[scratch.near[n]];
-        if (cell_of(b.x0, columns_) != column || cell_of(std::max(a.y0, b.y0), rows_) != row) continue;
-        const TriangleRecord &p = faces_[a.face].record, &q = faces_[b.face].record;
-        if (p.id == q.id || is_parted_by_side(p, q) || is_parted_by_side(q, p)) continue;
-        pairs.push_back({std::min(a.face, b.face), std::max(a.face, b.face)});
+    for (int column = 0; column < columns_; ++column) {
+      entries.clear();
+      for (const std::uint32_t i : lists_.of(std::size_t(row) * std::size_t(columns_) + std::size_t(column)))
+        entries.emplace_back(faces_[i], i);
+      std::sort(entries.begin(), entries.end(), [](const CellFace& a, const CellFace& b) { return a.x0 < b.x0; });
+      near.resize(entries.size());
+      for (std::size_t i = 0; i < entries.size(); ++i) {
+        const CellFace& a = entries[i];
+        const NearFaces found = collect_near(i, entries, near.data());
+        for (std::size_t n = 0; n < found.count; ++n) {
+          const CellFace& b = entries[near[n]];
+          if (cell_of(b.x0, columns_) != column || cell_of(std::max(a.y0, b.y0), rows_) != row) continue;
+          const TriangleRecord &p = faces_[a.face].record, &q = faces_[b.face].record;
+          if (p.id == q.id || is_parted_by_side(p, q) || is_parted_by_side(q, p)) continue;
+          pairs.push_back({std::min(a.face, b.face), std::max(a.face, b.face)});
+        }
+        looks += found.looks;
+        if (looks > kLooksAtOnce) tell();
       }
-      looks += found.looks;
-      if (looks > kLooksAtOnce) tell();
+      tell();
     }
-    tell();
+    return pairs;
   }
 
  private:
@@ -171,10 +169,8 @@ class FaceCells {
     return std::min(std::max(place, 0) >> shift_, cells - 1);
   }
   [[nodiscard]] PixelRect cells_of(const ScreenFace& face) const {
-    const TriangleRecord& r = face.record;
-    const auto [x0, x1] = std::minmax({r.x[0], r.x[1], r.x[2]});
-    const auto [y0, y1] = std::minmax({r.y[0], r.y[1], r.y[2]});
-    return {cell_of(x0, columns_), cell_of(y0, rows_), cell_of(x1, columns_), cell_of(y1, rows_)};
+    const CellFace f(face, 0);
+    return {cell_of(f.x0, columns_), cell_of(f.y0, rows_), cell_of(f.x1, columns_), cell_of(f.y1, rows_)};
   }
   [[nodiscard]] std::size_t cells_of_all() const {
     std::size_t sum = 0;
@@ -191,34 +187,25 @@ class FaceCells {
   TileLists lists_;
 };
 
-/// Finds all pairs of faces of different primitives that have a common area and overlapping ranges of keys. The pairs
-/// are in order.
+/// The pairs of faces of different primitives that have an area in common and keys in reach of each other, in order.
 std::vector<FacePair> find_face_pairs(const std::vector<ScreenFace>& faces, const View& view,
                                       const Execution& execution) {
   const FaceCells cells(faces, view);
   std::vector<std::vector<FacePair>> by_row(std::size_t(cells.rows()));
   constexpr std::uint64_t kMostLooks = std::uint64_t(1) << 28, kMostPairs = std::uint64_t(1) << 24;
   PairLimits limits{{execution, kMostLooks, kPlace}, {execution, kMostPairs, kPlace}};
-  parallel_for(execution, by_row.size(), 1, [&](std::size_t row, std::size_t) {
-    CellScratch scratch;
-    for (int column = 0; column < cells.columns(); ++column)
-      cells.find_pairs(column, int(row), scratch, limits, by_row[row]);
-  });
+  parallel_for(execution, by_row.size(), 1,
+               [&](std::size_t row, std::size_t) { by_row[row] = cells.find_pairs(int(row), limits); });
   std::vector<FacePair> pairs;
   for (const std::vector<FacePair>& row : by_row) pairs.insert(pairs.end(), row.begin(), row.end());
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
 
-bool share_corner(const std::array<glm::vec3, 3>& a, const std::array<glm::vec3, 3>& b) {
-  return std::any_of(a.begin(), a.end(),
-                     [&](const glm::vec3& corner) { return std::find(b.begin(), b.end(), corner) != b.end(); });
-}
-
 FightKind kind_of(const Surfaces& surfaces, PrimitiveId first, PrimitiveId second) {
   const auto a = surfaces.corners(first), b = surfaces.corners(second);
   if (lie_in_one_plane(a, b)) return FightKind::one_plane;
-  return share_corner(a, b) ? FightKind::fold : FightKind::close;
+  return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end() ? FightKind::fold : FightKind::close;
 }
 
 /// The areas in the order in which they were found.
@@ -261,7 +248,9 @@ struct FightSearch {
   }
 };
 
-FoundAreas find_areas(const FightSearch& search, const std::vector<FacePair>& pairs, const Execution& execution) {
+/// Appends the areas of all pairs.
+void find_areas(const FightSearch& search, const std::vector<FacePair>& pairs, const Execution& execution,
+                FightAreas& all) {
   constexpr std::size_t kGrain = 4096, kMostAreas = std::size_t(1) << 22, kPairsAtOnce = 16;
   constexpr std::uint64_t kMostLooks = std::uint64_t(1) << 30, kMostLooksOfSample = 64;
   WorkLimit work(execution, kMostLooks + kMostLooksOfSample * search.visible.view.sample_count(), kPlace);
@@ -277,7 +266,6 @@ FoundAreas find_areas(const FightSearch& search, const std::vector<FacePair>& pa
         });
     }
   });
-  FoundAreas all;
   for (const FoundAreas& part : parts) {
     const auto shift = std::uint32_t(all.corners.size());
     all.corners.insert(all.corners.end(), part.corners.begin(), part.corners.end());
@@ -288,7 +276,6 @@ FoundAreas find_areas(const FightSearch& search, const std::vector<FacePair>& pa
     if (all.faces.size() > kMostAreas)
       throw Error(ErrorCode::limit_exceeded, kPlace, "more than 4194304 areas are at risk");
   }
-  return all;
 }
 
 /// The part of a horizontal line within an area.
@@ -301,22 +288,11 @@ struct Chord {
   }
 };
 
-struct VerticalReach {
-  double top, bottom;
-
-  explicit VerticalReach(std::span<const glm::dvec2> corners) : top(corners[0].y), bottom(top) {
-    for (const glm::dvec2& corner : corners) {
-      top = std::min(top, corner.y);
-      bottom = std::max(bottom, corner.y);
-    }
-  }
-};
-
-/// Appends the chords that the lines at y = (n + 0.5) * spacing have in common with an area.
+/// Appends the chords of an area with the lines at (n + 0.5) * spacing.
 void append_chords(std::span<const glm::dvec2> corners, double spacing, std::vector<Chord>& chords) {
-  const VerticalReach height(corners);
-  auto line = std::int64_t(std::ceil(height.top / spacing - 0.5));
-  for (; (double(line) + 0.5) * spacing < height.bottom; ++line) {
+  const auto [top, bottom] = rows_of(corners);
+  auto line = std::int64_t(std::ceil(top / spacing - 0.5));
+  for (; (double(line) + 0.5) * spacing < bottom; ++line) {
     const double y = (double(line) + 0.5) * spacing;
     Chord chord{line, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -330,9 +306,8 @@ void append_chords(std::span<const glm::dvec2> corners, double spacing, std::vec
   }
 }
 
-/// The area of the union divided by the sum of the areas: 1 if no areas overlap, and at least 1 divided by their
-/// number. The union is measured along lines 1/16 pixel apart, or farther apart if there would be too many lines. A
-/// part of a line that lies in several areas counts once.
+/// The area of the union divided by the sum of the areas: 1 if none overlap. The union is measured along lines 1/16
+/// pixel apart, or farther apart if there would be too many. Parts of a line in several areas count once.
 ///
 ///     +-------+
 ///     |-------|-----
@@ -345,8 +320,8 @@ double share_of_union(std::span<const std::span<const glm::dvec2>> areas) {
   constexpr double kMostChords = 1 << 16;
   double heights = 0;
   for (const std::span<const glm::dvec2> corners : areas) {
-    const VerticalReach height(corners);
-    heights += height.bottom - height.top;
+    const auto [top, bottom] = rows_of(corners);
+    heights += bottom - top;
   }
   const double spacing = std::max(1.0 / 16, heights / kMostChords);
   std::vector<Chord> chords;
@@ -416,9 +391,7 @@ FightAreas find_fighting_faces(const Surfaces& surfaces, const View& view, Depth
   for (std::uint32_t i = 0; i < faces.size(); ++i)
     if (finder.may_be_clear_value(faces[i])) pairs.push_back({i, i});
   std::inplace_merge(pairs.begin(), pairs.begin() + of_two, pairs.end());
-  FoundAreas found = find_areas({surfaces, visible, fights.setup, faces}, pairs, execution);
-  fights.faces = std::move(found.faces);
-  fights.corners = std::move(found.corners);
+  find_areas({surfaces, visible, fights.setup, faces}, pairs, execution, fights);
   fights.objects = join_by_objects(fights, surfaces);
   return fights;
 }

@@ -12,6 +12,7 @@
 // more, as in the z-buffer, and tested at these samples alone.
 #include <algorithm>
 #include <bit>
+#include <numeric>
 #include <span>
 
 #include "base/parallel.h"
@@ -65,32 +66,6 @@ void choose_marked(const ObjectMask& mask, std::uint32_t object, std::vector<Sam
   });
 }
 
-/// The probes, in squares of pixels.
-class ProbeGrid {
- public:
-  ProbeGrid(const std::vector<SampleProbe>& probes, const View& view)
-      : across_(std::size_t(view.width) / kSide + 1),
-        numbers_(across_ * (std::size_t(view.height) / kSide + 1), probes.size(),
-                 [&](std::size_t i, const auto& add) {
-                   add(std::size_t(probes[i].y) / kSide * across_ + std::size_t(probes[i].x) / kSide, std::uint32_t(i));
-                 },
-                 {.threads = 1}) {}
-
-  /// Calls visit(number) for the probes in all squares that a rectangle touches.
-  template <class Visit>
-  void visit(const PixelRect& rect, const Visit& visit) const {
-    const std::size_t left = std::size_t(rect.x0) / kSide, end = std::size_t(rect.x1) / kSide + 1;
-    for (std::size_t row = std::size_t(rect.y0) / kSide; row <= std::size_t(rect.y1) / kSide; ++row)
-      for (const std::uint32_t number : numbers_.in(row * across_ + left, row * across_ + end)) visit(number);
-  }
-
- private:
-  static constexpr std::size_t kSide = 8;
-
-  std::size_t across_;
-  const Buckets<std::uint32_t> numbers_;
-};
-
 /// A triangle at a probe.
 struct ProbeHit {
   std::uint32_t probe, object;
@@ -102,27 +77,45 @@ struct ProbeHit {
   }
 };
 
-/// The probes of a view, at which triangles are tested.
-struct ProbedView {
-  const PlacedScene& scene;
-  const ObjectCanvas& canvas;
-  const std::vector<SampleProbe>& probes;
-  const ProbeGrid grid;
+/// The probes of a view, at which triangles are tested. Borrows everything.
+class ProbedView {
+ public:
+  ProbedView(const PlacedScene& scene, const ObjectCanvas& canvas, const std::vector<SampleProbe>& probes)
+      : scene_(scene),
+        canvas_(canvas),
+        probes_(probes),
+        across_(std::size_t(canvas.view.width) / kSide + 1),
+        numbers_(across_ * (std::size_t(canvas.view.height) / kSide + 1), probes.size(),
+                 [&](std::size_t i, const auto& add) {
+                   add(std::size_t(probes[i].y) / kSide * across_ + std::size_t(probes[i].x) / kSide, std::uint32_t(i));
+                 },
+                 {.threads = 1}) {}
 
   /// Adds a hit to `hits` for every probe that a triangle of an object covers.
   void add_hits(const TriangleRecord& record, std::uint32_t object, std::vector<ProbeHit>& hits) const {
-    const View& view = canvas.view;
-    grid.visit(pixel_rect(record, view.width, view.height), [&](std::uint32_t number) {
-      const SampleProbe& probe = probes[number];
-      const glm::ivec2 offset = sample_offsets(view.samples)[std::size_t(probe.sample)];
-      visit_covered(record, {probe.x, probe.y, probe.x, probe.y}, offset, [&](int, int) {
-        const int x = probe.x * kSubPixels + offset.x, y = probe.y * kSubPixels + offset.y;
-        const bool may_be_hole = scene.cutouts && scene.cutouts->has(record.id);
-        if (may_be_hole && ScreenCutout((*scene.cutouts)[record.id], canvas.rays).is_hole(x, y)) return;
-        hits.push_back({number, object, TriangleKeys(record).at(x, y), record.id});
-      });
-    });
+    const PixelRect rect = pixel_rect(record, canvas_.view.width, canvas_.view.height);
+    const std::size_t left = std::size_t(rect.x0) / kSide, end = std::size_t(rect.x1) / kSide + 1;
+    for (std::size_t row = std::size_t(rect.y0) / kSide; row <= std::size_t(rect.y1) / kSide; ++row)
+      for (const std::uint32_t number : numbers_.in(row * across_ + left, row * across_ + end)) {
+        const SampleProbe& probe = probes_[number];
+        const glm::ivec2 offset = sample_offsets(canvas_.view.samples)[std::size_t(probe.sample)];
+        visit_covered(record, {probe.x, probe.y, probe.x, probe.y}, offset, [&](int, int) {
+          const int x = probe.x * kSubPixels + offset.x, y = probe.y * kSubPixels + offset.y;
+          const bool may_be_hole = scene_.cutouts && scene_.cutouts->has(record.id);
+          if (may_be_hole && ScreenCutout((*scene_.cutouts)[record.id], canvas_.rays).is_hole(x, y)) return;
+          hits.push_back({number, object, TriangleKeys(record).at(x, y), record.id});
+        });
+      }
   }
+
+ private:
+  static constexpr std::size_t kSide = 8;  ///< of a square of pixels
+
+  const PlacedScene& scene_;
+  const ObjectCanvas& canvas_;
+  const std::vector<SampleProbe>& probes_;
+  std::size_t across_;
+  const Buckets<std::uint32_t> numbers_;  ///< of probes, by squares
 };
 
 /// Chooses a few samples of each object, spread over the part of the picture that it covers. `canvas` has no margin.
@@ -148,7 +141,7 @@ std::vector<std::vector<std::uint32_t>> find_before(const PlacedScene& scene, co
                                                     const std::vector<SampleProbe>& probes,
                                                     const Execution& execution) {
   constexpr std::size_t kRangesAtOnce = 16;
-  const ProbedView probed{scene, canvas, probes, ProbeGrid(probes, canvas.view)};
+  const ProbedView probed(scene, canvas, probes);
   std::vector<std::vector<ProbeHit>> parts((scene.ranges.size() + kRangesAtOnce - 1) / kRangesAtOnce);
   Pool<RecordPlacer> placers;
   parallel_for(execution, scene.ranges.size(), kRangesAtOnce, [&](std::size_t begin, std::size_t end) {
@@ -184,77 +177,65 @@ SightReason reason_of(const TrianglePlaces& triangles) {
   return triangles.behind_eye > 0 ? SightReason::behind_eye : SightReason::empty;
 }
 
-/// Explains some objects of a view.
-class Explainer {
- public:
-  Explainer(const Surfaces& surfaces, const View& view, const Accounting& accounts, const Execution& execution)
-      : surfaces_(surfaces), view_(view), accounts_(accounts), execution_(execution) {}
+/// Explains some objects of a view. Borrows everything.
+struct Explainer {
+  const PlacedScene& scene;
+  const View& view;
+  const Accounting& accounts;
+  const Execution& execution;
 
   /// Explains the objects. Precondition: their numbers ascend.
   [[nodiscard]] std::vector<Explanation> explain(std::span<const std::uint32_t> objects) const {
     constexpr std::size_t kObjectsAtOnce = 16;
     const std::vector<ObjectPlaces> places =
-        find_places(placed_scene(surfaces_), view_, accounts_, objects.size() == 1 ? objects[0] : no_index, execution_);
+        find_places(scene, view, accounts, objects.size() == 1 ? objects[0] : no_index, execution);
     std::vector<Explanation> all(objects.size());
-    parallel_for(execution_, objects.size(), kObjectsAtOnce, [&](std::size_t begin, std::size_t end) {
+    parallel_for(execution, objects.size(), kObjectsAtOnce, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) all[i] = explain_by_view(objects[i], places[objects[i]]);
     });
     find_what_to_take_away(all);
     return all;
   }
 
- private:
   [[nodiscard]] Explanation explain_by_view(std::uint32_t object, const ObjectPlaces& places) const {
-    const ObjectAccount& account = accounts_.objects[object];
+    const ObjectAccount& account = accounts.objects[object];
     Explanation why;
     why.object = object;
     why.triangles = places.counts;
     why.visible_share = account.visible_share();
     why.hidden_share = account.hidden_share();
     why.cut_share = account.cut_share();
-    note_hiders(why, account);
+    const std::vector<HiddenSamples>& hidden = accounts.hidden_by_front;
+    const auto is_before = [](const HiddenSamples& pair, std::uint32_t number) { return pair.object < number; };
+    auto pair = std::lower_bound(hidden.begin(), hidden.end(), object, is_before);
+    for (; pair != hidden.end() && pair->object == object; ++pair)
+      why.hiders.push_back({pair->hider, double(pair->count) / double(account.in_frame.count)});
+    std::stable_sort(why.hiders.begin(), why.hiders.end(),
+                     [](const HiderShare& a, const HiderShare& b) { return a.share > b.share; });
     if (places.clear > 0 && places.clear == places.counts.in_view)
       why.reason = SightReason::transparent;
     else if (account.in_frame.count > 0)
       why.reason = account.visible.count > 0 ? SightReason::seen : SightReason::hidden;
     else
       explain_without_sample(why, places);
-    if (why.remedy.kind == RemedyKind::none) why.remedy = remedy_for(why.reason, places, view_);
+    if (why.remedy.kind == RemedyKind::none) why.remedy = remedy_for(why.reason, places, view);
     return why;
   }
 
   void explain_without_sample(Explanation& why, const ObjectPlaces& places) const {
     why.reason = reason_of(places.counts);
     if (why.reason != SightReason::no_sample) return;
-    const LoneObject lone(surfaces_.scene(), why.object);
-    if (has_holes(why.object) && lone.has_sample(view_, places)) {
+    const LoneObject lone(*scene.scene, why.object);
+    if (scene.has_cutouts(why.object) && lone.has_sample(view, places)) {
       why.reason = SightReason::transparent;
       why.is_all_holes = true;
       return;
     }
-    why.pixels = lone.area(view_, places);
+    why.pixels = lone.area(view, places);
     if (why.pixels == 0 && places.counts.faces_away > 0)
       why.reason = SightReason::faces_away;
     else if (why.pixels > 0)
-      why.remedy = enlargement_for(lone, places, view_);
-  }
-
-  [[nodiscard]] bool has_holes(std::uint32_t object) const {
-    const PlacedScene& scene = placed_scene(surfaces_);
-    if (!scene.cutouts) return false;
-    for (PrimitiveId id = scene.first_primitives[object]; id < scene.first_primitives[object + 1]; ++id)
-      if (scene.cutouts->has(id)) return true;
-    return false;
-  }
-
-  void note_hiders(Explanation& why, const ObjectAccount& account) const {
-    const std::vector<HiddenSamples>& all = accounts_.hidden_by_front;
-    const auto is_before = [](const HiddenSamples& pair, std::uint32_t number) { return pair.object < number; };
-    auto pair = std::lower_bound(all.begin(), all.end(), why.object, is_before);
-    for (; pair != all.end() && pair->object == why.object; ++pair)
-      why.hiders.push_back({pair->hider, double(pair->count) / double(account.in_frame.count)});
-    std::stable_sort(why.hiders.begin(), why.hiders.end(),
-                     [](const HiderShare& a, const HiderShare& b) { return a.share > b.share; });
+      why.remedy = enlargement_for(lone, places, view);
   }
 
   void find_what_to_take_away(std::vector<Explanation>& all) const {
@@ -262,9 +243,9 @@ class Explainer {
     for (const Explanation& why : all)
       if (why.reason == SightReason::hidden) hidden.push_back(why.object);
     if (hidden.empty()) return;
-    const ObjectCanvas canvas(view_, 1);
-    const std::vector<SampleProbe> probes = choose_probes(placed_scene(surfaces_), canvas, hidden, execution_);
-    std::vector<std::vector<std::uint32_t>> before = find_before(placed_scene(surfaces_), canvas, probes, execution_);
+    const ObjectCanvas canvas(view, 1);
+    const std::vector<SampleProbe> probes = choose_probes(scene, canvas, hidden, execution);
+    std::vector<std::vector<std::uint32_t>> before = find_before(scene, canvas, probes, execution);
     auto why = all.begin();
     for (std::size_t i = 0; i < probes.size(); ++i) {
       while (why->object != probes[i].object) ++why;
@@ -274,11 +255,6 @@ class Explainer {
       remedy.objects = std::move(before[i]);
     }
   }
-
-  const Surfaces& surfaces_;
-  const View& view_;
-  const Accounting& accounts_;
-  const Execution& execution_;
 };
 
 }  // namespace
@@ -292,8 +268,8 @@ std::vector<Explanation> explain_all(const Surfaces& surfaces, const Visible& vi
   if (accounts.objects.size() != count)
     throw Error(ErrorCode::bad_argument, "explanations", "the accounts were made for other objects");
   std::vector<std::uint32_t> objects(count);
-  for (std::size_t i = 0; i < count; ++i) objects[i] = std::uint32_t(i);
-  return Explainer(surfaces, visible.view, accounts, execution).explain(objects);
+  std::iota(objects.begin(), objects.end(), 0u);
+  return Explainer{placed_scene(surfaces), visible.view, accounts, execution}.explain(objects);
 }
 
 Explanation explain(const Surfaces& surfaces, const View& view, std::uint32_t object, const Execution& execution) {
@@ -301,7 +277,7 @@ Explanation explain(const Surfaces& surfaces, const View& view, std::uint32_t ob
   if (object >= surfaces.scene().instances.size())
     throw Error(ErrorCode::bad_argument, "explain", "there is no object " + std::to_string(object));
   const Accounting accounts = account(surfaces, zbuffer(surfaces, view, execution), {}, execution);
-  return Explainer(surfaces, view, accounts, execution).explain(std::span(&object, 1))[0];
+  return Explainer{placed_scene(surfaces), view, accounts, execution}.explain({&object, 1})[0];
 }
 
 }  // namespace frontmost

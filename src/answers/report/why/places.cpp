@@ -31,9 +31,6 @@ struct FrustumPolygon {
   std::size_t count = 0;
 
   [[nodiscard]] std::span<const FrustumPoint> all() const { return std::span(corners).first(count); }
-  [[nodiscard]] bool is_outside(Plane plane) const {
-    return std::all_of(all().begin(), all().end(), [&](const FrustumPoint& p) { return p.inside[plane] < 0; });
-  }
   /// Cuts off the part outside a plane.
   void cut(Plane plane) {
     FrustumPolygon kept;
@@ -55,14 +52,7 @@ struct FrustumPolygon {
 /// The viewing volume, in doubles.
 class Frustum {
  public:
-  explicit Frustum(const View& view)
-      : eye_(view.eye()),
-        right_(view.right()),
-        up_(view.up()),
-        forward_(view.forward()),
-        projection_(view.projection),
-        pixels_across_(view.width / (projection_.right - projection_.left)),
-        pixels_down_(view.height / (projection_.top - projection_.bottom)) {}
+  explicit Frustum(const View& view) : view_(view) {}
 
   [[nodiscard]] bool is_orthographic() const { return projection_.orthographic; }
   [[nodiscard]] FrustumPoint see(const glm::vec3& world) const {
@@ -104,17 +94,19 @@ class Frustum {
     return {(p.x / unit - projection_.left) * pixels_across_, (projection_.top - p.y / unit) * pixels_down_};
   }
 
-  /// Winding of a triangle on the screen: positive if its front is seen, 0 if it is edge-on. Parts may lie behind the
-  /// eye.
+  /// Winding of a triangle on the screen, even if parts lie behind the eye: positive if its front is seen, 0 edge-on.
   [[nodiscard]] double facing(const PointAhead& a, const PointAhead& b, const PointAhead& c) const {
     if (projection_.orthographic) return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     return glm::dot(a, glm::cross(b, c));
   }
 
  private:
-  glm::dvec3 eye_, right_, up_, forward_;
-  Projection projection_;
-  double pixels_across_, pixels_down_;  ///< pixels per unit of the projection's rectangle
+  const View& view_;
+  Projection projection_ = view_.projection;
+  glm::dvec3 eye_ = view_.eye(), right_ = view_.right(), up_ = view_.up(), forward_ = view_.forward();
+  // Pixels per unit of the projection's rectangle.
+  double pixels_across_ = view_.width / (projection_.right - projection_.left);
+  double pixels_down_ = view_.height / (projection_.top - projection_.bottom);
 };
 
 /// Number of triangles that have no area or a non-finite corner.
@@ -165,14 +157,7 @@ struct FrustumScratch {
 /// Finds the places of one range of triangles.
 class PlaceFinder {
  public:
-  PlaceFinder(const PlacedScene& scene, const View& view, Isa isa)
-      : scene_(scene),
-        frustum_(view),
-        facing_(view.culling, scene.sides.get()),
-        isa_(isa),
-        clear_(find_clear_materials(*scene.scene)) {
-    is_any_clear_ = std::find(clear_.begin(), clear_.end(), 1) != clear_.end();
-  }
+  PlaceFinder(const PlacedScene& scene, const View& view, Isa isa) : scene_(scene), view_(view), isa_(isa) {}
 
   /// `needs_area`: whether the positions of the triangles on the screen are needed.
   [[nodiscard]] ObjectPlaces find(const MeshRange& range, bool needs_area, FrustumScratch& scratch) const {
@@ -180,21 +165,24 @@ class PlaceFinder {
     const WorldTriangles world = world_triangles(scene_, range, isa_, scratch.world);
     if (scratch.seen.size() < world.positions.size()) scratch.seen.resize(world.positions.size());
     scratch.outside.assign(world.positions.size(), kNotSeen);
+    const bool may_pass_over = !needs_area && facing_.culling() == Culling::none && !is_any_clear_;
     for (std::uint32_t k = 0; k < range.box_count(); ++k) {
       const std::size_t first = std::size_t(k) * MeshRange::triangles_in_box;
       WorldTriangles part = world;
       part.first_id += PrimitiveId(first);
       part.corners = world.corners.subspan(
           first, std::min<std::size_t>(MeshRange::triangles_in_box, world.corners.size() - first));
-      if (!needs_area && is_surely_in_view(scene_.boxes[range.first_box + k])) {
+      if (may_pass_over && frustum_.surely_holds(scene_.boxes[range.first_box + k])) {
         const std::uint64_t empty = count_flat(part);
         places.counts.empty += empty;
         places.counts.in_view += part.corners.size() - empty;
         continue;
       }
       for (std::size_t i = 0; i < part.corners.size(); ++i)
-        if (find_triangle(part, i, needs_area, scratch, places) && is_any_clear_)
-          places.clear += is_clear(range, range.begin + std::uint32_t(first + i));
+        if (find_triangle(part, i, needs_area, scratch, places) && is_any_clear_) {
+          const std::uint32_t material = scene_.mesh(range).material_of(range.begin + std::uint32_t(first + i));
+          places.clear += clear_[std::min<std::size_t>(material, clear_.size() - 1)];
+        }
     }
     return places;
   }
@@ -214,12 +202,7 @@ class PlaceFinder {
     [[nodiscard]] FrustumPolygon polygon() const { return {{*corners[0], *corners[1], *corners[2]}, 3}; }
   };
 
-  /// Whether all non-empty triangles in a box are in view, and none needs to be counted as clear.
-  [[nodiscard]] bool is_surely_in_view(const Box& box) const {
-    return facing_.culling() == Culling::none && !is_any_clear_ && frustum_.surely_holds(box);
-  }
-
-  /// Finds the place of one triangle. \returns whether the triangle is in view.
+  /// \returns whether it is in view.
   [[nodiscard]] bool find_triangle(const WorldTriangles& world, std::size_t i, bool needs_area, FrustumScratch& scratch,
                                    ObjectPlaces& places) const {
     glm::uvec3 c = world.corners[i] - world.first_position;
@@ -228,8 +211,11 @@ class PlaceFinder {
     for (int k = 0; k < 3; ++k) {
       std::uint8_t& outside = scratch.outside[c[k]];
       if (outside == kNotSeen) {
-        scratch.seen[c[k]] = frustum_.see(world.positions[c[k]]);
-        outside = outside_of(scratch.seen[c[k]], world.positions[c[k]]);
+        const FrustumPoint& p = scratch.seen[c[k]] = frustum_.see(world.positions[c[k]]);
+        outside = !frustum_.is_orthographic() && p.at.z <= 0 ? kBehindEye : 0;
+        for (std::size_t plane = 0; plane < kPlaneCount; ++plane)
+          outside = std::uint8_t(outside | (p.inside[plane] < 0) << plane);
+        if (!is_finite(world.positions[c[k]])) outside = kNowhere;
       }
       all &= outside;
       any |= outside;
@@ -246,13 +232,6 @@ class PlaceFinder {
                   all,
                   world.first_id + PrimitiveId(i)},
                  needs_area, places);
-  }
-
-  [[nodiscard]] std::uint8_t outside_of(const FrustumPoint& p, const glm::vec3& world) const {
-    if (!is_finite(world)) return kNowhere;
-    std::uint8_t bits = !frustum_.is_orthographic() && p.at.z <= 0 ? kBehindEye : 0;
-    for (std::size_t k = 0; k < kPlaneCount; ++k) bits = std::uint8_t(bits | (p.inside[k] < 0) << k);
-    return bits;
   }
 
   /// Whether culling leaves out a triangle. An edge-on triangle covers nothing and counts as turned away.
@@ -286,16 +265,22 @@ class PlaceFinder {
   [[nodiscard]] bool place_clipped(const ViewedTriangle& t, bool needs_area, ObjectPlaces& places) const {
     FrustumPolygon polygon = t.polygon();
     if (std::uint64_t* const side = side_of(polygon, t.any_outside, places.counts)) {
-      places.outside.offer({middle_of(polygon), glm::length(t.normal) / 2, is_culled(t)});
+      PointAhead sum(0);
+      for (const FrustumPoint& p : polygon.all()) sum += p.at;
+      places.outside.offer({sum / double(polygon.count), glm::length(t.normal) / 2, is_culled(t)});
       ++*side;
       return false;
     }
-    if (is_culled(t)) {
-      ++places.counts.faces_away;
-      return false;
+    const bool is_in_view = !is_culled(t);
+    ++(is_in_view ? places.counts.in_view : places.counts.faces_away);
+    if (!is_in_view || !needs_area) return is_in_view;
+    std::array<glm::dvec2, 3 + kPlaneCount> pixels;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+      pixels[i] = frustum_.pixel_of(polygon.corners[i].at);
+      places.columns.include(pixels[i].x);
+      places.rows.include(pixels[i].y);
     }
-    ++places.counts.in_view;
-    if (needs_area) note_in_view(polygon, places);
+    places.widest = std::max(places.widest, inner_radius(std::span(pixels).first(polygon.count)));
     return true;
   }
 
@@ -307,8 +292,11 @@ class PlaceFinder {
     for (const Plane plane : {kNear, kFar})
       if (is_crossing(plane)) polygon.cut(plane);
     std::uint64_t* const sides[] = {&counts.left, &counts.right, &counts.above, &counts.below};
-    for (const Plane plane : {kLeft, kRight, kAbove, kBelow})
-      if (is_crossing(plane) && polygon.is_outside(plane)) return sides[plane];
+    const std::span<const FrustumPoint> all = polygon.all();
+    for (const Plane plane : {kLeft, kRight, kAbove, kBelow}) {
+      const auto is_outside = [&](const FrustumPoint& p) { return p.inside[plane] < 0; };
+      if (is_crossing(plane) && std::all_of(all.begin(), all.end(), is_outside)) return sides[plane];
+    }
     FrustumPolygon in_view = polygon;
     for (const Plane plane : {kLeft, kRight, kAbove, kBelow})
       if (is_crossing(plane)) in_view.cut(plane);
@@ -317,34 +305,13 @@ class PlaceFinder {
     return nullptr;
   }
 
-  [[nodiscard]] static PointAhead middle_of(const FrustumPolygon& polygon) {
-    PointAhead sum(0);
-    for (const FrustumPoint& p : polygon.all()) sum += p.at;
-    return sum / double(polygon.count);
-  }
-
-  void note_in_view(const FrustumPolygon& polygon, ObjectPlaces& places) const {
-    std::array<glm::dvec2, 3 + kPlaneCount> pixels;
-    for (std::size_t i = 0; i < polygon.count; ++i) {
-      pixels[i] = frustum_.pixel_of(polygon.corners[i].at);
-      places.columns.include(pixels[i].x);
-      places.rows.include(pixels[i].y);
-    }
-    places.widest = std::max(places.widest, inner_radius(std::span(pixels).first(polygon.count)));
-  }
-
-  [[nodiscard]] bool is_clear(const MeshRange& range, std::uint32_t triangle) const {
-    const Mesh& mesh = scene_.mesh(range);
-    const std::uint32_t material = mesh.material_of(triangle);
-    return clear_[material == no_index ? clear_.size() - 1 : material] != 0;
-  }
-
   const PlacedScene& scene_;
-  Frustum frustum_;
-  FacingRule facing_;
+  const View& view_;
   Isa isa_;
-  std::vector<std::uint8_t> clear_;
-  bool is_any_clear_ = false;
+  Frustum frustum_{view_};
+  FacingRule facing_{view_.culling, scene_.sides.get()};
+  std::vector<std::uint8_t> clear_ = find_clear_materials(*scene_.scene);
+  bool is_any_clear_ = std::find(clear_.begin(), clear_.end(), 1) != clear_.end();
 };
 
 }  // namespace

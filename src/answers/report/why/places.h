@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Positions of the triangles of every object relative to the viewing volume; and remedies, which change a view by round
-// numbers.
+// Where the triangles of every object lie about the viewing volume; and remedies: changes of a view, in round numbers.
 #pragma once
 
 #include <algorithm>
@@ -59,8 +58,7 @@ struct ObjectPlaces {
                                                     const Accounting& accounts, std::uint32_t object,
                                                     const Execution& execution);
 
-/// An object as it would be seen if nothing else were there: a scene of its own, without materials and therefore
-/// without holes.
+/// An object as it would be seen if nothing else were there, in a scene without materials and therefore without holes.
 class LoneObject {
  public:
   LoneObject(const Scene& scene, std::uint32_t object);

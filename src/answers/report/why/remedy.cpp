@@ -9,6 +9,9 @@
 
 namespace frontmost {
 namespace why_detail {
+
+using namespace accounting_detail;
+
 namespace {
 
 constexpr Execution kOneThread{.threads = 1};
@@ -24,36 +27,28 @@ Scene scene_of_one(const Scene& scene, std::uint32_t object) {
   return lone;
 }
 
-/// The pixels within the picture that a range of positions touches; at least one.
-struct PixelStretch {
-  int first, count;
-
-  PixelStretch(const ValueRange& extent, int size)
-      : first(std::clamp(int(std::floor(extent.low)), 0, size - 1)),
-        count(std::clamp(int(std::ceil(extent.high)) - first, 1, size - first)) {}
-};
-
-/// The pixels where the object may appear in a picture with `factor` times the width and height, with room for the
-/// snapping of corners.
-accounting_detail::PixelRect touched_pixels(const View& enlarged, const ObjectPlaces& places, int factor) {
-  const auto stretch = [factor](const ValueRange& extent, int size) {
-    return PixelStretch({extent.low * factor - 1, extent.high * factor + 1}, size);
+/// The pixels of a view that ranges of positions touch, at least one.
+PixelRect touched_pixels(const View& view, const ValueRange& columns, const ValueRange& rows) {
+  const auto stretch = [](const ValueRange& extent, int size) {
+    const int first = std::clamp(int(std::floor(extent.low)), 0, size - 1);
+    return std::pair(first, std::clamp(int(std::ceil(extent.high)), first + 1, size) - 1);
   };
-  const PixelStretch columns = stretch(places.columns, enlarged.width), rows = stretch(places.rows, enlarged.height);
-  return {columns.first, rows.first, columns.first + columns.count - 1, rows.first + rows.count - 1};
+  const auto [x0, x1] = stretch(columns, view.width);
+  const auto [y0, y1] = stretch(rows, view.height);
+  return {x0, y0, x1, y1};
 }
 
-/// The part of a view that consists of these pixels, at the same scale.
-View cropped(const View& view, const PixelStretch& columns, const PixelStretch& rows) {
+/// The part of a view with these pixels, at the same scale.
+View cropped(const View& view, const PixelRect& pixels) {
   const Projection& whole = view.projection;
   const double across = (whole.right - whole.left) / view.width, down = (whole.top - whole.bottom) / view.height;
   View part = view;
-  part.width = columns.count;
-  part.height = rows.count;
-  part.projection.left = whole.left + across * columns.first;
-  part.projection.right = whole.left + across * (columns.first + columns.count);
-  part.projection.top = whole.top - down * rows.first;
-  part.projection.bottom = whole.top - down * (rows.first + rows.count);
+  part.width = pixels.x1 + 1 - pixels.x0;
+  part.height = pixels.y1 + 1 - pixels.y0;
+  part.projection.left = whole.left + across * pixels.x0;
+  part.projection.right = whole.left + across * (pixels.x1 + 1);
+  part.projection.top = whole.top - down * pixels.y0;
+  part.projection.bottom = whole.top - down * (pixels.y1 + 1);
   return part;
 }
 
@@ -102,11 +97,7 @@ double near_for(const ValueRange& nearer, const Projection& projection) {
 /// Turns or moves the camera so that a point comes into the picture, near its middle.
 class CameraAim {
  public:
-  CameraAim(const View& view, const PointAhead& target)
-      : projection_(view.projection),
-        target_(target),
-        middle_((projection_.left + projection_.right) / 2, (projection_.bottom + projection_.top) / 2),
-        size_(projection_.right - projection_.left, projection_.top - projection_.bottom) {}
+  CameraAim(const View& view, const PointAhead& target) : sides_(view.projection), target_(target) {}
 
   /// A move along one axis, if that suffices; otherwise a move along both.
   [[nodiscard]] Remedy move() const {
@@ -157,21 +148,14 @@ class CameraAim {
            std::abs(up / ahead - middle_.y) <= kInner * size_.y;
   }
 
-  const Projection& projection_;
+  const Projection& sides_;
   PointAhead target_;
-  glm::dvec2 middle_, size_;
+  glm::dvec2 middle_{(sides_.left + sides_.right) / 2, (sides_.bottom + sides_.top) / 2};
+  glm::dvec2 size_{sides_.right - sides_.left, sides_.top - sides_.bottom};
 };
 
 /// Radius in pixels. A circle of this radius contains a sample wherever it lies, even if corners are snapped.
 constexpr double kSampledRadius = 0.72;
-
-/// Whether the part of the enlarged picture that the object may touch has few enough samples to be examined.
-bool is_small_enough(const ObjectPlaces& places, const View& view, int factor) {
-  constexpr double kMostSamples = 1 << 22;
-  const double across = (places.columns.high - places.columns.low) * factor + 3;
-  const double down = (places.rows.high - places.rows.low) * factor + 3;
-  return across * down * view.samples <= kMostSamples;
-}
 
 }  // namespace
 
@@ -183,18 +167,20 @@ bool LoneObject::has_sample(const View& view, const ObjectPlaces& places, int fa
   View enlarged = view;
   enlarged.width *= factor;
   enlarged.height *= factor;
-  const accounting_detail::ObjectCanvas canvas(enlarged, touched_pixels(enlarged, places, factor));
-  accounting_detail::ObjectMask mask(placed_scene(surfaces_), canvas, Isa::best);
+  // Snapping moves corners by less than a pixel.
+  const auto reach = [&](const ValueRange& r) { return ValueRange{r.low * factor - 1, r.high * factor + 1}; };
+  const ObjectCanvas canvas(enlarged, touched_pixels(enlarged, reach(places.columns), reach(places.rows)));
+  ObjectMask mask(placed_scene(surfaces_), canvas, Isa::best);
   mask.draw(0);
-  const auto is_marked = [&](const accounting_detail::MaskPlane& plane) {
-    return accounting_detail::count_marked(plane, mask.touched(), Isa::best).count > 0;
+  const auto is_marked = [&](const MaskPlane& plane) {
+    return mask_kernels(Isa::best).count_marked(plane, mask.touched()).count > 0;
   };
   return !mask.touched().is_empty() && std::any_of(mask.planes().begin(), mask.planes().end(), is_marked);
 }
 
 double LoneObject::area(const View& view, const ObjectPlaces& places) const {
   if (places.columns.is_empty()) return 0;
-  const View part = cropped(view, PixelStretch(places.columns, view.width), PixelStretch(places.rows, view.height));
+  const View part = cropped(view, touched_pixels(view, places.columns, places.rows));
   double pixels = 0;
   for (const VisibleFace& face : visible_faces(surfaces_, part, kOneThread).faces) pixels += face.pixels;
   return pixels;
@@ -221,13 +207,19 @@ Remedy remedy_for(SightReason reason, const ObjectPlaces& places, const View& vi
 
 Remedy enlargement_for(const LoneObject& lone, const ObjectPlaces& places, const View& view) {
   constexpr int kMostPixels = 16384;
+  constexpr double kMostSamples = 1 << 22;  // of the part of the picture that is examined
   const int largest = kMostPixels / std::max(view.width, view.height);
   const auto is_possible = [&](double factor) {
     return factor <= largest && double(view.sample_count()) * factor * factor <= double(most_samples);
   };
+  const auto is_small_enough = [&](int factor) {
+    const double across = (places.columns.high - places.columns.low) * factor + 3;
+    const double down = (places.rows.high - places.rows.low) * factor + 3;
+    return across * down * view.samples <= kMostSamples;
+  };
   const double sufficient = std::max(2.0, std::ceil(kSampledRadius / places.widest));
   for (int factor = 2; factor < sufficient && is_possible(factor); factor += (factor + 1) / 2)
-    if (is_small_enough(places, view, factor) && lone.has_sample(view, places, factor))
+    if (is_small_enough(factor) && lone.has_sample(view, places, factor))
       return {RemedyKind::enlarge, double(factor), 0, 0, {}};
   if (!is_possible(sufficient)) return {};
   return {RemedyKind::enlarge, sufficient, 0, 0, {}};

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Explanations in words. Rounding keeps numbers true: 100 % is written only if the share is the whole, and 0 % only if
-// it is empty.
+// Explanations in words. Rounding keeps numbers true: only a whole share is written as 100 %, only an empty one as 0 %.
 
 #include <cmath>
 #include <unordered_map>
