@@ -90,7 +90,7 @@ struct Scenery {
         sight(view),
         seen(see_once(mesh, twins, sight, execution)),
         grid(seen, view, false, execution),
-        occlusion{mesh, sight, view, grid, shadow_kernels(execution.isa), false, false} {}
+        occlusion{sight, view, grid, shadow_kernels(execution.isa), false, false} {}
 
   Scenery(const Scenery&) = delete;  // members refer to each other
   Scenery& operator=(const Scenery&) = delete;
@@ -272,12 +272,9 @@ class Hatcher {
   }
 
   [[nodiscard]] double along(const SightedEdge& edge, double t, const HatchPiece& piece) const {
-    // Interpolated from the nearer end, so that both ends are exact.
-    const glm::dvec3 place =
-        t <= 0.5 ? edge.from + (edge.to - edge.from) * t : edge.to + (edge.from - edge.to) * (1 - t);
     const Sight& sight = scene_.eye.sight;
     // The point is within the view; rounding may put it outside for triangles that are very much larger.
-    glm::dvec3 in_eye = sight.in_eye(place);
+    glm::dvec3 in_eye = sight.in_eye(place_between(edge.from, edge.to, t));
     in_eye.z = std::max(in_eye.z, sight.near());
     const HatchRows& row = rows_[piece.set];
     return row.within_picture(piece.line, row.along(glm::dvec2(sight.to_screen(in_eye))));

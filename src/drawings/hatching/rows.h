@@ -104,7 +104,7 @@ class HatchRows {
       if (triangle.vertices[p] > triangle.vertices[q]) std::swap(p, q);
       const double from_p = std::abs(heights[p]), t = from_p / (from_p + std::abs(heights[q]));
       const glm::dvec3 &from = triangle.places[p], &to = triangle.places[q];
-      places[count] = t <= 0.5 ? from + (to - from) * t : to + (from - to) * (1 - t);
+      places[count] = place_between(from, to, t);
       on[count] = {triangle.vertices[p], triangle.vertices[q]};
       // A place at a vertex lies in all planes of that vertex.
       if (places[count] == from) on[count][1] = on[count][0];
@@ -183,18 +183,13 @@ class CornerNormals {
   /// The unit normals at the vertices of a triangle, on the side from which it is counter-clockwise. Vertices with very
   /// many triangles have the triangle's own normal. O(triangles at its vertices).
   [[nodiscard]] std::array<glm::dvec3, 3> of(std::uint32_t triangle) const {
-    const glm::dvec3 own = unit_normal(triangle);
+    const glm::dvec3 own = unit_of(normals_[triangle]);
     return {at(triangle, 0, own), at(triangle, 1, own), at(triangle, 2, own)};
   }
 
  private:
   /// The tip of a cone with more sides is flat: its normal means nothing.
   static constexpr std::size_t most_at_vertex = 256;
-
-  [[nodiscard]] static glm::dvec3 unit(const glm::dvec3& v, const glm::dvec3& otherwise) {
-    const double length = glm::length(v);
-    return length > 0 && length < std::numeric_limits<double>::infinity() ? v / length : otherwise;
-  }
 
   /// The mean with weights by N. Max (Weights for Computing Vertex Normals from Facet Normals, 1999), exact on spheres
   /// for any tessellation.
@@ -207,7 +202,7 @@ class CornerNormals {
     for (const Corner& one : around) {
       const std::uint32_t other = one.triangle();
       const glm::dvec3& normal = normals_[other];
-      const double cosine = glm::dot(unit(normal, glm::dvec3(0)), own);
+      const double cosine = glm::dot(unit_of(normal), own);
       // Neighbours with the opposite winding are reversed.
       if (other != triangle && (std::abs(cosine) < cosine_ || surfaces_.source(mesh_.ids[other]).instance != instance))
         continue;
@@ -216,10 +211,8 @@ class CornerNormals {
       const double weight = glm::dot(next - place, next - place) * glm::dot(last - place, last - place);
       if (weight > 0) sum += normal * (std::copysign(1.0, cosine) / weight);
     }
-    return unit(sum, own);
+    return unit_of(sum, own);
   }
-
-  [[nodiscard]] glm::dvec3 unit_normal(std::uint32_t triangle) const { return unit(normals_[triangle], glm::dvec3(0)); }
 
   const WeldedMesh& mesh_;
   Buffer<glm::dvec3> normals_;

@@ -59,13 +59,8 @@ class Candidates {
   [[nodiscard]] SightedEdge sighted(std::size_t i) const {
     if (i < features_.size()) {
       const FeatureEdge& f = features_[i];
-      return {mesh_.positions[f.from],
-              mesh_.positions[f.to],
-              {f.from, f.from},
-              {f.to, f.to},
-              {f.left, f.right},
-              0,
-              f.outer};
+      const glm::dvec3 from = mesh_.positions[f.from], to = mesh_.positions[f.to];
+      return {from, to, {f.from, f.from}, {f.to, f.to}, {f.left, f.right}, 0, f.outer};
     }
     const Crossing& c = crossings_[i - features_.size()];
     return {c.from.place, c.to.place, c.from.on, c.to.on, {c.left, c.right}, slack_of(c.from.place, c.to.place)};
@@ -168,8 +163,7 @@ Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions
     const Candidates candidates(mesh, std::move(features.edges), std::move(crossings));
     report_progress(execution, "lines", kCutFrom);
     const ShadowKernels kernels = shadow_kernels(execution.isa);
-    cut_all(candidates, {mesh, sight, view, grid, kernels, options.counts_hidden, options.outlines}, execution,
-            drawing);
+    cut_all(candidates, {sight, view, grid, kernels, options.counts_hidden, options.outlines}, execution, drawing);
   } catch (const Error& error) {
     throw with_place(error, grid, mesh, surfaces);
   }

@@ -8,7 +8,6 @@
 // share a cross, and a stepped bore has one axis. Axes are joined before they are lengthened.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <tuple>
 
 #include "frontmost/lines.h"

@@ -16,7 +16,7 @@
 #include <tuple>
 
 #include "base/parallel.h"
-#include "lines/lists.h"
+#include "lines/strokes/parts.h"
 #include "rounds/found_rounds.h"
 
 namespace frontmost::lines_detail {
@@ -26,7 +26,7 @@ constexpr double kShortestArc = 40 * std::numbers::pi / 180;
 constexpr double kWhole = 2 * std::numbers::pi;
 constexpr double kSmallestRadius = 50;  // in units of noise: smaller circles cannot be told from polygons
 constexpr double kSameCircle = 64;      // in units of noise: the uncertainty of the centres of short arcs
-constexpr std::size_t kLongestTry = std::size_t(1) << 20;
+constexpr std::size_t kLargestStep = std::size_t(1) << 20;
 
 class RunFinder {
  public:
@@ -43,7 +43,8 @@ class RunFinder {
     // A closed chain is a run from its first vertex, which may lie in the middle of an arc. Such an arc comes in two
     // parts, which are united later.
     for (std::size_t at = 0; at + kFewestSides <= sides_;) {
-      const std::size_t end = longest_run(at);
+      const std::size_t end = longest_run(
+          at, kFewestSides, sides_, [&](std::size_t last) { return fit(at, last).has_value(); }, kLargestStep);
       if (end == at) {
         ++at;
         continue;
@@ -88,19 +89,6 @@ class RunFinder {
     if (!circle) return std::nullopt;
     const auto turn = turn_along(*circle, 0, sides_);
     return turn && std::abs(std::abs(*turn) - kWhole) < 1e-6 ? circle : std::nullopt;
-  }
-
-  [[nodiscard]] std::size_t longest_run(std::size_t first) const {
-    std::size_t fits = first + kFewestSides;
-    if (fits > sides_ || !fit(first, fits)) return first;
-    std::size_t step = kFewestSides;
-    while (fits < sides_ && step < kLongestTry && fit(first, std::min(sides_, fits + step))) {
-      fits = std::min(sides_, fits + step);
-      step *= 2;
-    }
-    for (; step > 0; step /= 2)
-      if (fits + step <= sides_ && fit(first, fits + step)) fits += step;
-    return fits;
   }
 
   [[nodiscard]] std::vector<std::uint32_t> triangles_of(std::size_t first, std::size_t last) const {

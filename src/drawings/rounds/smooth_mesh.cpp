@@ -23,11 +23,7 @@ constexpr double kSixDigits = 2e-6;  // of the largest coordinate
 Buffer<glm::dvec3> normals_of(const WeldedMesh& mesh, const Execution& execution) {
   Buffer<glm::dvec3> normals(mesh.triangles.size());
   parallel_for(execution, normals.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const glm::dvec3 normal = normal_of(mesh, std::uint32_t(i));
-      const double length = glm::length(normal);
-      normals[i] = length > 0 && std::isfinite(length) ? normal / length : glm::dvec3(0);
-    }
+    for (std::size_t i = begin; i < end; ++i) normals[i] = unit_of(normal_of(mesh, std::uint32_t(i)));
   });
   return normals;
 }
@@ -98,9 +94,7 @@ class Chainer {
 
   /// The unit direction of the edge, away from this end.
   [[nodiscard]] glm::dvec3 direction(ChainEnd end) const {
-    const glm::dvec3 along = mesh_.mesh.positions[vertex(end ^ 1)] - mesh_.mesh.positions[vertex(end)];
-    const double length = glm::length(along);
-    return length > 0 ? along / length : glm::dvec3(0);
+    return unit_of(mesh_.mesh.positions[vertex(end ^ 1)] - mesh_.mesh.positions[vertex(end)]);
   }
 
   void join_all(const Execution& execution) {
@@ -218,8 +212,7 @@ glm::dvec3 common_perpendicular(std::span<const glm::dvec3> vectors) {
   glm::dvec3 longest = power[0];
   for (const int i : {1, 2})
     if (glm::dot(power[i], power[i]) > glm::dot(longest, longest)) longest = power[i];
-  const double length = glm::length(longest);
-  return length > 0 ? longest / length : glm::dvec3(0, 0, 1);
+  return unit_of(longest, glm::dvec3(0, 0, 1));
 }
 
 SmoothMesh smooth_mesh(const Surfaces& surfaces, const Execution& execution) {

@@ -42,6 +42,7 @@ bool runs(const glm::uvec3& triangle, std::uint32_t a, std::uint32_t b) {
   return (triangle.x == a && triangle.y == b) || (triangle.y == a && triangle.z == b) ||
          (triangle.z == a && triangle.x == b);
 }
+
 /// The triangles around a vertex, for walking around it.
 class Fan {
  public:
@@ -63,15 +64,21 @@ class Fan {
   /// The triangle beyond a side, with its other side at the vertex. Copies of a triangle count once. Returns none where
   /// several different triangles lie beyond.
   [[nodiscard]] Side beyond(const Side& side) const {
-    if (side.entry >= count_) return {{}, no_index, count_};
+    Side found{{}, no_index, count_};
+    if (side.entry >= count_) return found;
     std::uint32_t beside = 0;  // bit i: entry i has the rim
     for (std::size_t i = 0; i < count_; ++i)
       beside |= std::uint32_t(entries_[i].next == side.rim || entries_[i].last == side.rim) << i;
     beside &= ~(1u << side.entry);
-    const bool is_one = (beside & (beside - 1)) == 0 && beside != 0;
-    const Side found = is_one ? to(std::size_t(std::countr_zero(beside)), side) : beyond_copies(side, beside);
     const Entry& own = entries_[side.entry];
-    return found.rim == (own.next == side.rim ? own.last : own.next) ? Side{{}, no_index, count_} : found;
+    const std::uint32_t own_rim = own.next == side.rim ? own.last : own.next;
+    for (; beside != 0; beside &= beside - 1) {
+      const Side other = to(std::size_t(std::countr_zero(beside)), side);
+      if (other.rim == own_rim || other.rim == found.rim) continue;
+      if (found.triangle.is_there()) return {{}, no_index, count_};
+      found = other;
+    }
+    return found;
   }
 
  private:
@@ -89,26 +96,12 @@ class Fan {
     return {{other.triangle, from.triangle.is_turned == is_alike}, rim, entry};
   }
 
-  [[nodiscard]] Side beyond_copies(const Side& side, std::uint32_t beside) const {
-    const Entry& own = entries_[side.entry];
-    const std::uint32_t own_rim = own.next == side.rim ? own.last : own.next;
-    Side found{{}, no_index, count_};
-    for (; beside != 0; beside &= beside - 1) {
-      const Side other = to(std::size_t(std::countr_zero(beside)), side);
-      if (other.rim == own_rim || other.rim == found.rim) continue;
-      if (found.triangle.is_there()) return {{}, no_index, count_};
-      found = other;
-    }
-    return found;
-  }
-
   std::array<Entry, most> entries_;
   std::size_t count_ = 0;
 };
 
 class Neighbours {
  public:
-  /// O(triangles).
   Neighbours(const SeenMesh& seen, const CornerTable& table, const Execution& execution)
       : seen_(seen), table_(table), is_sliver_(seen.mesh.triangles.size()) {
     parallel_for(execution, is_sliver_.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
@@ -139,7 +132,6 @@ class Neighbours {
     return {found, triangle.is_turned == is_alike};
   }
 
-  /// O(triangles at the vertex).
   [[nodiscard]] Fan fan(std::uint32_t vertex) const {
     Fan fan;
     const std::span<const Corner> corners = table_[vertex];
@@ -151,8 +143,8 @@ class Neighbours {
 
   /// The triangle's own normal, of unit length or zero.
   [[nodiscard]] glm::dvec3 normal(const TurnedTriangle& triangle) const {
-    const glm::vec3& kept = seen_.triangles[triangle.number].normal;
-    const glm::dvec3 normal = kept == glm::vec3(0) ? rounded_normal(triangle.number) : glm::dvec3(kept);
+    glm::dvec3 normal(seen_.triangles[triangle.number].normal);
+    if (normal == glm::dvec3(0)) normal = unit_of(normal_of(seen_.mesh, triangle.number));
     return triangle.is_turned ? -normal : normal;
   }
   /// Whether the corners lie almost on a line, one between the others. On a curved surface such a triangle may have any
@@ -204,12 +196,6 @@ class Neighbours {
       if (dot > 0) return dot * dot > kWidestCorner * kWidestCorner * glm::dot(u, u) * glm::dot(v, v);
     }
     return false;
-  }
-
-  [[nodiscard]] glm::dvec3 rounded_normal(std::uint32_t triangle) const {
-    const glm::dvec3 normal = normal_of(seen_.mesh, triangle);
-    const double length = glm::length(normal);
-    return length > 0 ? normal / length : glm::dvec3(0);
   }
 
   const SeenMesh& seen_;
@@ -265,18 +251,15 @@ double angle_between(const glm::dvec3& n, const glm::dvec3& m) {
 
 /// The plane across an edge. A surface normal in that plane is a complex number. Its argument is the angle from the
 /// left side's normal, around the edge.
-class CrossSection {
- public:
-  CrossSection(const glm::dvec3& along, const glm::dvec3& left)
-      : along_(along), up_(left - along * glm::dot(left, along)), side_(glm::cross(along, up_)) {}
+struct CrossSection {
+  CrossSection(const glm::dvec3& edge, const glm::dvec3& left)
+      : along(edge), up(left - along * glm::dot(left, along)), side(glm::cross(along, up)) {}
 
   [[nodiscard]] glm::dvec2 direction(const glm::dvec3& normal) const {
-    return {glm::dot(normal, up_), glm::dot(normal, side_)};
+    return {glm::dot(normal, up), glm::dot(normal, side)};
   }
-  [[nodiscard]] const glm::dvec3& along() const { return along_; }
 
- private:
-  glm::dvec3 along_, up_, side_;
+  glm::dvec3 along, up, side;
 };
 
 /// half_tangent() of the angle from one direction to another.
@@ -334,7 +317,7 @@ struct FoldSide {
   double width;
 };
 
-/// `sense` is 1 where larger angles turn in the sense of the fold, and -1 else. Only surface ahead of the tip counts.
+/// `sense` is 1 where larger angles turn in the sense of the fold, else -1. Only surface ahead of the tip counts.
 Turn turn_beyond(const Neighbours& near, const FoldSide& side, const CrossSection& section, double sense) {
   const auto is_ahead = [&](std::uint32_t rim) {
     const glm::dvec3 step = near.place(rim) - near.place(side.tip);
@@ -392,7 +375,7 @@ JudgedFold judge_fold(const Neighbours& near, const FeatureEdge& edge) {
   for (int i = 0; i < 2; ++i) {
     const std::uint32_t tip = third_of(near.corners(triangles[i].number), edge.from, edge.to);
     const glm::dvec3 to_tip = near.place(tip) - begin;
-    const glm::dvec3 across = to_tip - section.along() * glm::dot(to_tip, section.along());
+    const glm::dvec3 across = to_tip - section.along * glm::dot(to_tip, section.along);
     const double width = glm::length(across);
     sides[i] = {triangles[i], tip, normals[i], across / width, section.direction(normals[i]), width};
   }
@@ -451,7 +434,7 @@ class CreaseGraph {
       const std::uint32_t edge = open.back();
       open.pop_back();
       for (const std::uint32_t vertex : {edges_[edge].from, edges_[edge].to})
-        for (const std::uint32_t next : at(vertex)) {
+        for (const std::uint32_t next : edges_at_[vertex]) {
           if (folds_[next].grade != FoldGrade::weak || bend(edge, next, vertex) < kGoesOn) continue;
           folds_[next].grade = FoldGrade::strong;
           open.push_back(next);
@@ -512,7 +495,6 @@ class CreaseGraph {
   [[nodiscard]] bool is_drawn(std::size_t edge) const { return folds_[edge].grade >= FoldGrade::strong; }
 
  private:
-  [[nodiscard]] std::span<const std::uint32_t> at(std::uint32_t vertex) const { return edges_at_[vertex]; }
   [[nodiscard]] std::uint32_t other_end(std::uint32_t edge, std::uint32_t vertex) const {
     return edges_[edge].from == vertex ? edges_[edge].to : edges_[edge].from;
   }
@@ -525,7 +507,7 @@ class CreaseGraph {
     return -glm::dot(direction_from(edge, vertex), direction_from(next, vertex));
   }
   [[nodiscard]] std::size_t drawn_at(std::uint32_t vertex) const {
-    const std::span<const std::uint32_t> here = at(vertex);
+    const std::span<const std::uint32_t> here = edges_at_[vertex];
     return std::size_t(std::count_if(here.begin(), here.end(), [&](std::uint32_t e) { return is_drawn(e); }));
   }
 
@@ -534,7 +516,7 @@ class CreaseGraph {
     std::vector<std::uint32_t> line;
     for (std::uint32_t vertex = tip; line.size() < kFewestEdges;) {
       std::uint32_t next = no_index;
-      for (const std::uint32_t edge : at(vertex))
+      for (const std::uint32_t edge : edges_at_[vertex])
         if (is_drawn(edge) && (line.empty() || edge != line.back())) next = edge;
       if (next == no_index || !is_fold(edges_[next])) break;
       if (!line.empty() && bend(line.back(), next, vertex) < kBend) break;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of triangles that may cross are found by a tree of boxes: triangles are sorted once by (class of size, place on
-// D. Hilbert's curve), in groups of sixteen, groups of sixteen groups, and so on. A group is compared with itself and
-// with all later groups whose boxes touch its own, so every pair meets once.
+// Pairs of triangles that may cross are found by a tree of boxes: triangles are sorted by (class of size, place on D.
+// Hilbert's curve), in groups of sixteen, groups of sixteen groups, and so on. A group is compared with itself and with
+// all later groups whose boxes touch its own, so every pair meets once.
 //
 // Two triangles that straddle each other's planes meet the planes' common line in an interval each. The common part of
 // the intervals ends at those of their four ends that lie within the other triangle. Signs of tetrahedra decide that
@@ -14,12 +14,12 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/work_limit.h"
 #include "lines/crossings/space_lanes.h"
@@ -52,9 +52,7 @@ Box box_of(const WeldedMesh& mesh, std::size_t triangle) {
 /// The exponent that std::frexp() gives for the box's longest side, but many times faster. That side is not 0.
 int exponent_of(const Box& box) {
   const glm::dvec3 size = glm::dvec3(box.high) - glm::dvec3(box.low);
-  const double longest = std::max({size.x, size.y, size.z});
-  std::uint64_t bits;
-  std::memcpy(&bits, &longest, sizeof bits);
+  const auto bits = bits_as<std::uint64_t>(std::max({size.x, size.y, size.z}));
   return std::clamp(int(bits >> 52) - 1022, -kExponents, kExponents - 1);
 }
 
@@ -270,8 +268,12 @@ class CrossedFace {
   }
 };
 
+/// The heights of a face's corners over the plane of another; 0 for corners that both share.
 struct Heights {
-  Signed of[3];
+  Heights(const WeldedMesh& mesh, const CrossedFace& face, const CrossedFace& over) {
+    for (int k = 0; k < 3; ++k)
+      if (!over.has(face.vertices[k])) of[k] = over.plane.height(mesh.positions[face.vertices[k]]);
+  }
 
   [[nodiscard]] bool straddle() const {
     const auto any = [&](int sign) { return of[0].sign == sign || of[1].sign == sign || of[2].sign == sign; };
@@ -287,14 +289,9 @@ struct Heights {
     }
     return corner;
   }
-};
 
-Heights heights(const WeldedMesh& mesh, const CrossedFace& face, const CrossedFace& over) {
-  Heights heights;
-  for (int k = 0; k < 3; ++k)
-    if (!over.has(face.vertices[k])) heights.of[k] = over.plane.height(mesh.positions[face.vertices[k]]);
-  return heights;
-}
+  Signed of[3];
+};
 
 /// The point in which a face's outline meets the plane of another: one end of its interval.
 struct EdgeMeeting {
@@ -316,10 +313,7 @@ std::array<EdgeMeeting, 2> meetings(const WeldedMesh& mesh, const CrossedFace& f
     const Signed &a = heights.of[sides[k][0]], &b = heights.of[sides[k][1]];
     if (a.sign * b.sign >= 0) continue;
     const std::uint32_t p = face.vertices[sides[k][0]], q = face.vertices[sides[k][1]];
-    const double from_p = std::abs(a.value), sum = from_p + std::abs(b.value);
-    const double t = sum > 0 ? from_p / sum : 0.5;
-    const glm::dvec3 from = mesh.positions[p], to = mesh.positions[q];
-    found[count++] = {{t <= 0.5 ? from + (to - from) * t : to + (from - to) * (1 - t), {p, q}}, p, q};
+    found[count++] = {{place_between(mesh.positions[p], mesh.positions[q], root_between(a, b)), {p, q}}, p, q};
   }
   return found;
 }
@@ -375,10 +369,10 @@ struct Found {
 
 /// The segment of two triangles that share at most one vertex.
 std::optional<Crossing> crossing(const WeldedMesh& mesh, const std::array<const CrossedFace*, 2>& faces, Found& found) {
-  const Heights first = heights(mesh, *faces[0], *faces[1]);
+  const Heights first(mesh, *faces[0], *faces[1]);
   const int first_beside = first.beside();
   if (!first.straddle() && first_beside < 0) return std::nullopt;
-  const Heights second = heights(mesh, *faces[1], *faces[0]);
+  const Heights second(mesh, *faces[1], *faces[0]);
   const int second_beside = second.beside();
   if (!second.straddle() && second_beside < 0) return std::nullopt;
   found.add_contact(*faces[0], first_beside, faces[1]->triangle);
@@ -406,15 +400,11 @@ auto order(const Crossing& c) {
   return std::make_tuple(a.x, a.y, a.z, b.x, b.y, b.z, c.left, c.right);
 }
 
-bool is_same_line(const Crossing& a, const Crossing& b) {
-  return a.from.place == b.from.place && a.to.place == b.to.place;
-}
-
 /// Puts the lesser end first, and drops segments whose ends were rounded to one place.
 void order_ends(std::vector<Crossing>& crossings) {
   for (Crossing& c : crossings) {
     const glm::dvec3 &p = c.from.place, &q = c.to.place;
-    if (std::make_tuple(q.x, q.y, q.z) < std::make_tuple(p.x, p.y, p.z)) std::swap(c.from, c.to);
+    if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(c.from, c.to);
   }
   std::erase_if(crossings, [](const Crossing& c) { return c.from.place == c.to.place; });
 }
@@ -462,6 +452,9 @@ std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& fea
   order_ends(all);
   sort_in_parts(
       all, [](const Crossing& a, const Crossing& b) { return order(a) < order(b); }, execution);
+  const auto is_same_line = [](const Crossing& a, const Crossing& b) {
+    return a.from.place == b.from.place && a.to.place == b.to.place;
+  };
   all.erase(std::unique(all.begin(), all.end(), is_same_line), all.end());
   return all;
 }

@@ -38,6 +38,7 @@ struct Crossing {
 /// An edge, the lower vertex first, that lies in the plane of a triangle whose edge it is not.
 struct EdgeContact {
   std::uint32_t from, to, triangle;
+  friend auto operator<=>(const EdgeContact&, const EdgeContact&) = default;
 };
 
 /// Appends the segments of contacts whose edge reaches the triangle and has its own two triangles on different sides of

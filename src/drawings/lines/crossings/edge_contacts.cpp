@@ -95,16 +95,11 @@ class Contacts {
     const auto any = [&](int sign) { return sides[0] == sign || sides[1] == sign || sides[2] == sign; };
     if (any(1) && any(-1)) return above * below < 0 ? within(edge, wedge, contact.triangle, sides) : std::nullopt;
     for (int k = 0; k < 3; ++k)
-      if (sides[k] == 0 && sides[(k + 1) % 3] == 0) return along({edge, wedge}, t[k], t[(k + 1) % 3]);
+      if (sides[k] == 0 && sides[(k + 1) % 3] == 0) return along(edge, t[k], t[(k + 1) % 3]);
     return std::nullopt;
   }
 
  private:
-  struct EdgeOfTwo {
-    Edge edge;
-    const Wedge& wedge;
-  };
-
   [[nodiscard]] bool is_drawn(const Edge& edge) const {
     const auto it = std::lower_bound(features_.edges.begin(), features_.edges.end(), edge,
                                      [](const FeatureEdge& feature, const Edge& wanted) {
@@ -146,37 +141,34 @@ class Contacts {
       }
       const std::uint32_t p = std::min(t[k], t[(k + 1) % 3]), q = std::max(t[k], t[(k + 1) % 3]);
       const Signed from = height(p, q, apex, edge.from), to = height(p, q, apex, edge.to);
-      if (sides[k] * sides[(k + 1) % 3] < 0 && from.sign * to.sign < 0) ends.push_back(cut(edge, from, to));
+      if (sides[k] * sides[(k + 1) % 3] < 0 && from.sign * to.sign < 0)
+        ends.push_back({place_between(mesh_.positions[edge.from], mesh_.positions[edge.to], root_between(from, to)),
+                        {edge.from, edge.to}});
     }
     if (ends.size() != 2) return std::nullopt;
     return Crossing{ends[0], ends[1], wedge.triangles[0], triangle};
   }
 
-  [[nodiscard]] CrossingEnd cut(const Edge& edge, const Signed& from, const Signed& to) const {
-    const glm::dvec3 a = mesh_.positions[edge.from], b = mesh_.positions[edge.to];
-    const double sum = std::abs(from.value) + std::abs(to.value), t = sum > 0 ? std::abs(from.value) / sum : 0.5;
-    return {t <= 0.5 ? a + (b - a) * t : b + (a - b) * (1 - t), {edge.from, edge.to}};
-  }
-
   /// The common part of two edges of one line, if their triangles alternate around it.
-  [[nodiscard]] std::optional<Crossing> along(const EdgeOfTwo& one, std::uint32_t p, std::uint32_t q) const {
+  [[nodiscard]] std::optional<Crossing> along(const Edge& one, std::uint32_t p, std::uint32_t q) const {
     const Edge other{std::min(p, q), std::max(p, q)};
-    const Wedge& wedge = wedges_.of(other);
+    const Wedge &own = wedges_.of(one), &wedge = wedges_.of(other);
     if (wedge.count != 2 || is_drawn(other)) return std::nullopt;
     if (place_in(one, wedge, 0) * place_in(one, wedge, 1) >= 0) return std::nullopt;
     const auto ordered = [&](Edge e) { return is_before(e.from, e.to) ? e : Edge{e.to, e.from}; };
-    const Edge a = ordered(one.edge), b = ordered(other);
+    const Edge a = ordered(one), b = ordered(other);
     const std::uint32_t from = is_before(a.from, b.from) ? b.from : a.from, to = is_before(a.to, b.to) ? a.to : b.to;
     if (!is_before(from, to)) return std::nullopt;
-    return Crossing{end_at(from), end_at(to), std::min(one.wedge.triangles[0], wedge.triangles[0]),
-                    std::max(one.wedge.triangles[0], wedge.triangles[0])};
+    const auto [left, right] = std::minmax(own.triangles[0], wedge.triangles[0]);
+    return Crossing{end_at(from), end_at(to), left, right};
   }
 
-  /// Where a triangle of `other` lies around edge `e`: 1 between its two triangles in one sense of rotation, -1 between
+  /// Where a triangle of `other` lies around an edge: 1 between its two triangles in one sense of rotation, -1 between
   /// them in the other sense, 0 on one of them.
-  [[nodiscard]] int place_in(const EdgeOfTwo& e, const Wedge& other, int which) const {
-    const std::uint32_t first = e.wedge.apexes[0], second = e.wedge.apexes[1], x = other.apexes[which];
-    const auto around = [&](std::uint32_t a, std::uint32_t b) { return turn(e.edge.from, e.edge.to, a, b); };
+  [[nodiscard]] int place_in(const Edge& edge, const Wedge& other, int which) const {
+    const Wedge& own = wedges_.of(edge);
+    const std::uint32_t first = own.apexes[0], second = own.apexes[1], x = other.apexes[which];
+    const auto around = [&](std::uint32_t a, std::uint32_t b) { return turn(edge.from, edge.to, a, b); };
     // A point beside the first triangle's plane distinguishes that triangle's half plane from the opposite one.
     std::uint32_t beside = no_index;
     for (const std::uint32_t apex : {second, other.apexes[0], other.apexes[1]})
@@ -204,12 +196,8 @@ class Contacts {
 void add_contacts(const WeldedMesh& mesh, const Features& features, std::vector<EdgeContact> contacts,
                   std::vector<Crossing>& crossings) {
   if (contacts.empty()) return;
-  const auto key = [](const EdgeContact& c) { return std::tie(c.from, c.to, c.triangle); };
-  std::sort(contacts.begin(), contacts.end(),
-            [&](const EdgeContact& a, const EdgeContact& b) { return key(a) < key(b); });
-  contacts.erase(std::unique(contacts.begin(), contacts.end(),
-                             [&](const EdgeContact& a, const EdgeContact& b) { return key(a) == key(b); }),
-                 contacts.end());
+  std::sort(contacts.begin(), contacts.end());
+  contacts.erase(std::unique(contacts.begin(), contacts.end()), contacts.end());
   const Contacts all(mesh, features, contacts);
   for (const EdgeContact& contact : contacts)
     if (const std::optional<Crossing> found = all.crossing(contact)) crossings.push_back(*found);

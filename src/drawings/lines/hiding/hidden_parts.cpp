@@ -24,11 +24,10 @@ Signed times(const Signed& value, int sign) { return {value.value * sign, value.
 Interval beyond_near(const Occluder& occluder, const SightedEdge& edge, const Sight& sight, const glm::dvec3& n) {
   const glm::dvec3 a(occluder.corners[0]);
   const auto beyond = [&](const glm::dvec3& x, double distance) {
-    if (sight.is_parallel())
-      return with_sign_of_value(-occluder.turn *
-                                ((distance - sight.near()) * glm::dot(n, sight.forward()) - glm::dot(n, x - a)));
-    return with_sign_of_value(-occluder.turn *
-                              (distance * glm::dot(n, a - sight.eye()) - sight.near() * glm::dot(n, x - sight.eye())));
+    const double value = sight.is_parallel()
+                             ? (distance - sight.near()) * glm::dot(n, sight.forward()) - glm::dot(n, x - a)
+                             : distance * glm::dot(n, a - sight.eye()) - sight.near() * glm::dot(n, x - sight.eye());
+    return with_sign_of_value(-occluder.turn * value);
   };
   return where_positive(beyond(edge.from, edge.from_distance), beyond(edge.to, edge.to_distance), false);
 }
@@ -44,8 +43,8 @@ struct OccluderCorners {
   }
 };
 
-/// The part of `hidden` within the planes through the eye. `along(third)` says whether an edge counts that lies within
-/// one of these planes from end to end, with the corner `third` opposite.
+/// The part of `hidden` within the planes through the eye. `along(third)`: whether an edge counts that lies in one of
+/// these planes from end to end, with the corner `third` opposite.
 template <class Along>
 Interval in_shadow(const Occluder& occluder, const SightedEdge& edge, const Sight& sight, Interval hidden,
                    const Along& along) {
@@ -72,45 +71,6 @@ Interval in_shadow(const Occluder& occluder, const SightedEdge& edge, const Sigh
 bool is_own(const Occluder& occluder, const SightedEdge& edge) {
   return occluder.triangle == edge.own[0] || occluder.triangle == edge.own[1];
 }
-
-}  // namespace
-
-Interval where_positive(const Signed& at_0, const Signed& at_1, bool is_strict) {
-  if (at_0.sign >= 0 && at_1.sign >= 0) {
-    if (is_strict && at_0.sign == 0 && at_1.sign == 0) return {1, 0};
-    return {0, 1};
-  }
-  if (at_0.sign <= 0 && at_1.sign <= 0) return {1, 0};
-  // The values may be wrong by rounding; their signs are not.
-  const double a = std::abs(at_0.value), b = std::abs(at_1.value);
-  const double root = a + b > 0 ? a / (a + b) : 0.5;
-  if (at_0.sign < 0) return {root, 1};
-  return {0, root};
-}
-
-Interval hidden_by(const Occluder& occluder, const SightedEdge& edge, const Sight& sight) {
-  if (is_own(occluder, edge)) return {};
-  const OccluderCorners corners(occluder);
-  const FacePlane plane(corners.at[0], corners.at[1], corners.at[2]);
-  const auto is_corner = [&](std::uint32_t vertex) {
-    return corners.has(vertex, 0, 1) || vertex == occluder.vertices[2];
-  };
-  const auto depth = [&](const EndOn& on, const glm::dvec3& place) {
-    if (is_corner(on[0]) && is_corner(on[1])) return Signed{};
-    return times(plane.height(place, edge.slack), -occluder.turn);
-  };
-  const Interval beyond = where_positive(depth(edge.from_on, edge.from), depth(edge.to_on, edge.to), true);
-  return in_shadow(occluder, edge, sight, beyond, [](const glm::dvec3&) { return true; });
-}
-
-Interval covered_by(const Occluder& occluder, const SightedEdge& edge, const Sight& sight) {
-  if (is_own(occluder, edge)) return {};
-  return in_shadow(occluder, edge, sight, {0, 1}, [&](const glm::dvec3& third) {
-    return sight.plane_through(edge.from, edge.to).turn(third).sign == edge.outer;
-  });
-}
-
-namespace {
 
 constexpr std::size_t kMostAtOnce = 64, kBlock = 16;
 /// In cells: less than the tolerance of sides, and more than the rounding error of a place.
@@ -150,10 +110,8 @@ Interval within_view(const EdgeInEye& edge, const Projection& p) {
 
 /// The point at t in pixels. Precondition: t is within the view.
 glm::dvec2 on_screen(const EdgeInEye& edge, double t, const EdgeOccluders& o) {
-  // Interpolated from the nearer end, so that both ends are exact.
-  glm::dvec3 p = t <= 0.5 ? edge.from + (edge.to - edge.from) * t : edge.to + (edge.from - edge.to) * (1 - t);
-  // The point is within the view; rounding may put it outside, if the edge is very much longer than its part in the
-  // view.
+  glm::dvec3 p = place_between(edge.from, edge.to, t);
+  // Rounding may put the point outside of the view, if the edge is very much longer than its part in the view.
   p.z = std::max(p.z, o.sight.near());
   return glm::clamp(glm::dvec2(o.sight.to_screen(p)), glm::dvec2(0), glm::dvec2(o.view.width, o.view.height));
 }
@@ -363,6 +321,35 @@ void append_outline(DrawnPart part, const EdgeQuestion& question, HiddenInterval
 }
 
 }  // namespace
+
+Interval where_positive(const Signed& at_0, const Signed& at_1, bool is_strict) {
+  if (at_0.sign <= 0 && at_1.sign <= 0 && (is_strict || at_0.sign + at_1.sign < 0)) return {1, 0};
+  if (at_0.sign >= 0 && at_1.sign >= 0) return {0, 1};
+  const double root = root_between(at_0, at_1);
+  return at_0.sign < 0 ? Interval{root, 1} : Interval{0, root};
+}
+
+Interval hidden_by(const Occluder& occluder, const SightedEdge& edge, const Sight& sight) {
+  if (is_own(occluder, edge)) return {};
+  const OccluderCorners corners(occluder);
+  const FacePlane plane(corners.at[0], corners.at[1], corners.at[2]);
+  const auto is_corner = [&](std::uint32_t vertex) {
+    return corners.has(vertex, 0, 1) || vertex == occluder.vertices[2];
+  };
+  const auto depth = [&](const EndOn& on, const glm::dvec3& place) {
+    if (is_corner(on[0]) && is_corner(on[1])) return Signed{};
+    return times(plane.height(place, edge.slack), -occluder.turn);
+  };
+  const Interval beyond = where_positive(depth(edge.from_on, edge.from), depth(edge.to_on, edge.to), true);
+  return in_shadow(occluder, edge, sight, beyond, [](const glm::dvec3&) { return true; });
+}
+
+Interval covered_by(const Occluder& occluder, const SightedEdge& edge, const Sight& sight) {
+  if (is_own(occluder, edge)) return {};
+  return in_shadow(occluder, edge, sight, {0, 1}, [&](const glm::dvec3& third) {
+    return sight.plane_through(edge.from, edge.to).turn(third).sign == edge.outer;
+  });
+}
 
 void EdgeCutter::cut(const SightedEdge& sighted, std::uint32_t number, std::vector<DrawnPart>& parts) {
   const EdgeInEye edge(sighted, o_.sight);

@@ -18,7 +18,6 @@ namespace frontmost::lines_detail {
 
 /// The scene with which edges are compared.
 struct EdgeOccluders {
-  const WeldedMesh& mesh;
   const Sight& sight;
   const View& view;
   const OccluderGrid& grid;

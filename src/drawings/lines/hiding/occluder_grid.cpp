@@ -14,7 +14,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numeric>
 #include <vector>
@@ -103,11 +102,12 @@ class CellDepth {
     return value > 0 ? std::clamp(1 / value, low_, high_) : high_;
   }
 
+  /// Cells of a row; none if first > last.
   struct Columns {
-    int first, last;  ///< none if first > last
+    int first, last;
   };
 
-  /// The cells of row y, from `all.first` to `all.last`, that the triangle covers whole.
+  /// The cells of row y, among `all`, that the triangle covers whole.
   [[nodiscard]] Columns covered(int y, Columns all) const {
     if (!has_sides_) return {1, 0};
     for (const Linear& side : sides_) {
@@ -126,20 +126,21 @@ class CellDepth {
 
   /// The function a * x + b * y + c, in cells from a square's corner: negative values are certainly outside of a side.
   struct Side {
-    float a = 0, b = 0, c = 1;
+    float a, b, c;
   };
+  static constexpr Side nowhere_outside{0, 0, std::numeric_limits<float>::infinity()};
 
   [[nodiscard]] Side side(int k, const glm::dvec2& corner) const {
     const Linear& side = sides_[k];
     const double size = std::abs(side.by_x) + std::abs(side.by_y);
-    if (!has_sides_ || !(size > 0)) return {};
+    if (!has_sides_ || !(size > 0)) return nowhere_outside;
     return {float(side.by_x / size), float(side.by_y / size),
             float((side.at_0 + side.by_x * corner.x + side.by_y * corner.y) / size + 2 * kSideSlack)};
   }
 
   /// A lower bound, in the same form, of the plane's nearness() in a square no larger than a cell.
   [[nodiscard]] Side plane(const glm::dvec2& corner) const {
-    if (!has_plane_) return {0, 0, std::numeric_limits<float>::infinity()};
+    if (!has_plane_) return nowhere_outside;
     const double sign = is_parallel_ ? -1 : 1;
     const double size = std::max(std::abs(nearness(low_, is_parallel_)), std::abs(nearness(high_, is_parallel_)));
     const double at = sign * (linear_.at_0 + linear_.by_x * corner.x + linear_.by_y * corner.y) + linear_.slack;
@@ -426,17 +427,11 @@ constexpr std::size_t kPadding = 64;
 
 /// An integer that sorts like the float.
 std::uint32_t ordered(float value) {
-  std::uint32_t bits;
-  std::memcpy(&bits, &value, sizeof bits);
+  const auto bits = bits_as<std::uint32_t>(value);
   return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 
-float from_ordered(std::uint32_t order) {
-  const std::uint32_t bits = order & 0x80000000u ? order & 0x7FFFFFFFu : ~order;
-  float value;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
-}
+float from_ordered(std::uint32_t order) { return bits_as<float>(order & 0x80000000u ? order & 0x7FFFFFFFu : ~order); }
 
 /// Sets `least` to the minimum of itself and `value`.
 void lower(std::atomic<float>& least, float value) {
@@ -538,18 +533,14 @@ void OccluderGrid::fill_sides(const GridPlan& plan) {
   parallel_for(plan.execution, cells, kCellsPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell) {
       if (!has_sides(cell)) continue;
-      const Square square = cells_.square(cell);
+      const glm::dvec2 corner(cells_.square(cell).x, cells_.square(cell).y);
       for (std::size_t i = 0; i < first_[cell + 1] - first_[cell]; ++i) {
         const Footprint& footprint = plan.footprints[numbers_[first_[cell] + i]];
-        const std::size_t entry = first_side_[cell] + i;
-        if (plan.is_near(footprint)) {
-          for (int k = 0; k < ScreenSides::count; ++k)
-            set_side(entry, k, {0, 0, std::numeric_limits<float>::infinity()});
-          continue;
-        }
         const CellDepth depth = plan.depth_of(footprint.triangle);
-        for (int k = 0; k < 3; ++k) set_side(entry, k, depth.side(k, {square.x, square.y}));
-        set_side(entry, 3, depth.plane({square.x, square.y}));
+        for (int k = 0; k < ScreenSides::count; ++k) {
+          const CellDepth::Side side = k < 3 ? depth.side(k, corner) : depth.plane(corner);
+          set_side(first_side_[cell] + i, k, plan.is_near(footprint) ? CellDepth::nowhere_outside : side);
+        }
       }
     }
   });

@@ -11,7 +11,6 @@
 #include "lines/mesh/feature_edges.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -55,9 +54,7 @@ class Classifier {
     return std::max(float(cosine_), 0.0f) + kNormalRounding;
   }
 
-  [[nodiscard]] std::optional<EdgeKind> open_kind() const {
-    return options_.boundaries ? std::optional(EdgeKind::boundary) : std::nullopt;
-  }
+  [[nodiscard]] bool draws_boundaries() const { return options_.boundaries; }
   [[nodiscard]] std::optional<EdgeKind> kind_of(const SidePair& pair) const {
     const int a = side_of(pair.first), b = side_of(pair.second);
     if (options_.silhouettes && (a * b > 0 || (a == 0) != (b == 0))) return EdgeKind::silhouette;
@@ -69,10 +66,6 @@ class Classifier {
   [[nodiscard]] SurfaceOf surface_of(std::uint32_t triangle) const {
     const PrimitiveSource source = surfaces_.source(mesh_.ids[triangle]);
     return {source.instance, surfaces_.scene().meshes[source.mesh].material_of(source.triangle)};
-  }
-
-  [[nodiscard]] SurfaceOfTriangle surface_of_triangle() const {
-    return [this](std::uint32_t triangle) { return surface_of(triangle); };
   }
 
   /// The side of the edge on which no triangle lies, as seen; 0 where triangles are on both sides.
@@ -123,9 +116,9 @@ struct OpenSide {
   /// `from` is a point, the others unit vectors; `ahead` points into the triangle.
   glm::dvec3 from, along, normal, ahead;
   double length;
-  std::uint32_t edge, triangle;
-  std::array<std::uint32_t, 2> ends;
-  Box box;
+  std::uint32_t number;  ///< of the edge, in the list of all edges
+  FeatureEdge edge;
+  Box box{};
 };
 
 OpenSide open_side(const WeldedMesh& mesh, const FeatureEdge& edge, std::uint32_t number) {
@@ -134,15 +127,7 @@ OpenSide open_side(const WeldedMesh& mesh, const FeatureEdge& edge, std::uint32_
   const double length = glm::distance(from, to);
   const glm::dvec3 along = (to - from) / length, normal = normal_of(mesh, edge.left);
   const glm::dvec3 to_tip = mesh.positions[tip] - from, across = to_tip - along * glm::dot(to_tip, along);
-  OpenSide side{from,
-                along,
-                normal / glm::length(normal),
-                across / glm::length(across),
-                length,
-                number,
-                edge.left,
-                {edge.from, edge.to},
-                {}};
+  OpenSide side{from, along, normal / glm::length(normal), across / glm::length(across), length, number, edge};
   side.box.include(mesh.positions.places()[edge.from]);
   side.box.include(mesh.positions.places()[edge.to]);
   return side;
@@ -173,7 +158,7 @@ class SideTree {
     const std::size_t middle = begin + (end - begin) / 2;
     std::nth_element(sides_.begin() + std::ptrdiff_t(begin), sides_.begin() + std::ptrdiff_t(middle),
                      sides_.begin() + std::ptrdiff_t(end), [&](const OpenSide& a, const OpenSide& b) {
-                       return std::pair(place(a), a.edge) < std::pair(place(b), b.edge);
+                       return std::pair(place(a), a.number) < std::pair(place(b), b.number);
                      });
     build(2 * node + 1, begin, middle);
     build(2 * node + 2, middle, end);
@@ -228,12 +213,13 @@ class Gaps {
     const std::size_t first = continued.size();
     std::size_t count = 0;
     tree_.visit_near(box, [&](const OpenSide& other) {
-      if (other.edge == side.edge) return true;
+      if (other.number == side.number) return true;
       const auto stretch = stretch_beside(side, other, widest);
       if (stretch.first < stretch.second && goes_on(side, other)) {
         stretches.push_back(stretch);
-        for (const std::uint32_t own : side.ends)
-          for (const std::uint32_t its : other.ends) continued.emplace_back(std::minmax({own, its}));
+        for (const std::uint32_t own : {side.edge.from, side.edge.to})
+          for (const std::uint32_t its : {other.edge.from, other.edge.to})
+            continued.emplace_back(std::minmax({own, its}));
       }
       return ++count <= kMostBeside;
     });
@@ -260,10 +246,10 @@ class Gaps {
 
   [[nodiscard]] bool goes_on(const OpenSide& side, const OpenSide& other) const {
     const double cosine = glm::dot(side.normal, other.normal);
-    const int facing = seen_.facing[side.triangle];
-    return glm::dot(side.ahead, other.ahead) < -kAcross && std::abs(cosine) > classifier_.cosine() && facing != 0 &&
-           facing == seen_.facing[other.triangle] * (cosine < 0 ? -1 : 1) &&
-           classifier_.surface_of(side.triangle) == classifier_.surface_of(other.triangle);
+    const std::uint32_t own = side.edge.left, its = other.edge.left;  // triangles
+    return glm::dot(side.ahead, other.ahead) < -kAcross && std::abs(cosine) > classifier_.cosine() &&
+           seen_.facing[own] != 0 && seen_.facing[own] == seen_.facing[its] * (cosine < 0 ? -1 : 1) &&
+           classifier_.surface_of(own) == classifier_.surface_of(its);
   }
 
   const SeenMesh& seen_;
@@ -288,7 +274,7 @@ VertexPairs leave_out_gaps(const SeenMesh& seen, const Classifier& classifier, d
   const Gaps gaps(seen, classifier, widest, std::move(sides));
   VertexPairs continued;
   std::vector<bool> is_gap(edges.size(), false);
-  for (const OpenSide& side : gaps.sides()) is_gap[side.edge] = gaps.is_one(side, continued);
+  for (const OpenSide& side : gaps.sides()) is_gap[side.number] = gaps.is_one(side, continued);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < edges.size(); ++i)
     if (!is_gap[i]) edges[kept++] = edges[i];
@@ -298,26 +284,22 @@ VertexPairs leave_out_gaps(const SeenMesh& seen, const Classifier& classifier, d
   return continued;
 }
 
-/// Appends the edge to Corner::last() of corner j of a paired star, if it is a feature.
-void add_feature(std::uint32_t vertex, std::span<const Corner> corners, std::size_t j, const Classifier& classifier,
-                 std::vector<FeatureEdge>& features) {
-  const WeldedMesh& mesh = classifier.mesh();
-  const std::uint32_t upper = corners[j].last(mesh);
-  std::size_t i = 0;
-  while (corners[i].next(mesh) != upper) ++i;
-  Side sides[2] = {{upper, corners[i].triangle(), corners[i].last(mesh), true},
-                   {upper, corners[j].triangle(), corners[j].next(mesh), false}};
-  if (sides[1].opposite < sides[0].opposite) std::swap(sides[0], sides[1]);
-  if (const std::optional<EdgeKind> kind = classifier.kind_of({sides[0], sides[1]}))
-    features.push_back({vertex, upper, sides[0].triangle, sides[1].triangle, *kind, classifier.outer_side(sides)});
-}
-
-/// Appends the features among the `asked` edges of a paired star.
+/// Appends the features among the edges to Corner::last() of the `asked` corners of a paired star.
 void add_features(std::uint32_t vertex, std::span<const Corner> corners, std::uint32_t asked,
                   const Classifier& classifier, std::vector<FeatureEdge>& features) {
+  const WeldedMesh& mesh = classifier.mesh();
   const std::size_t begin = features.size();
-  for (; asked != 0; asked &= asked - 1)
-    add_feature(vertex, corners, std::size_t(std::countr_zero(asked)), classifier, features);
+  for (; asked != 0; asked &= asked - 1) {
+    const Corner& before = corners[std::size_t(std::countr_zero(asked))];
+    const std::uint32_t upper = before.last(mesh);
+    std::size_t i = 0;
+    while (corners[i].next(mesh) != upper) ++i;
+    Side sides[2] = {{upper, corners[i].triangle(), corners[i].last(mesh), true},
+                     {upper, before.triangle(), before.next(mesh), false}};
+    if (sides[1].opposite < sides[0].opposite) std::swap(sides[0], sides[1]);
+    if (const std::optional<EdgeKind> kind = classifier.kind_of({sides[0], sides[1]}))
+      features.push_back({vertex, upper, sides[0].triangle, sides[1].triangle, *kind, classifier.outer_side(sides)});
+  }
   std::sort(features.begin() + std::ptrdiff_t(begin), features.end(),
             [](const FeatureEdge& a, const FeatureEdge& b) { return a.to < b.to; });
 }
@@ -398,11 +380,12 @@ std::optional<Drawn> drawn_of(std::span<const Side> sides, std::span<const Side>
     const SidePair pair(distinct[0], distinct[1]);
     return first_of({&pair, 1}, classifier);
   }
-  if (distinct.size() > 2)
-    if (const auto pairs = paired_sides(sides, classifier.surface_of_triangle())) return first_of(*pairs, classifier);
-  const std::optional<EdgeKind> kind = classifier.open_kind();
-  if (!kind) return std::nullopt;
-  return Drawn{*kind, distinct[0].triangle, distinct.size() > 1 ? distinct[1].triangle : no_index};
+  if (distinct.size() > 2) {
+    const auto surface_of = [&](std::uint32_t triangle) { return classifier.surface_of(triangle); };
+    if (const auto pairs = paired_sides(sides, surface_of)) return first_of(*pairs, classifier);
+  }
+  if (!classifier.draws_boundaries()) return std::nullopt;
+  return Drawn{EdgeKind::boundary, distinct[0].triangle, distinct.size() > 1 ? distinct[1].triangle : no_index};
 }
 
 /// `sides` come from find_sides().

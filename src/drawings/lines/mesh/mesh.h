@@ -8,6 +8,8 @@
 //       A--M--B      ->    A--M--B         neighbour again, and surfaces continue across it.
 #pragma once
 
+#include <limits>
+
 #include "frontmost/scene.h"
 #include "geometry/buckets.h"
 #include "view/sight.h"
@@ -80,6 +82,23 @@ struct SeenMesh {
   const glm::uvec3& t = mesh.triangles[triangle];
   const glm::dvec3 at = mesh.positions[t.x];
   return glm::cross(mesh.positions[t.y] - at, mesh.positions[t.z] - at);
+}
+
+/// The vector at unit length; `otherwise` if it has no direction.
+[[nodiscard]] inline glm::dvec3 unit_of(const glm::dvec3& v, const glm::dvec3& otherwise = glm::dvec3(0)) {
+  const double length = glm::length(v);
+  return length > 0 && length < std::numeric_limits<double>::infinity() ? v / length : otherwise;
+}
+
+/// Where a linear function from 0 to 1 is 0 that has these values at its ends, with opposite signs. The values may be
+/// wrong by rounding; their signs are not.
+[[nodiscard]] inline double root_between(const Signed& at_0, const Signed& at_1) {
+  const double a = std::abs(at_0.value), b = std::abs(at_1.value);
+  return a + b > 0 ? a / (a + b) : 0.5;
+}
+/// The place at t from 0 to 1 between two others, computed from the nearer one, so that both ends are exact.
+[[nodiscard]] inline glm::dvec3 place_between(const glm::dvec3& from, const glm::dvec3& to, double t) {
+  return t <= 0.5 ? from + (to - from) * t : to + (from - to) * (1 - t);
 }
 
 /// The triangle's corner that is neither a nor b.

@@ -134,41 +134,6 @@ double turn_between(const Circle& circle, const glm::dvec2& a, const glm::dvec2&
   return std::atan2(cross(u, v), glm::dot(u, v));
 }
 
-/// A run of corners, open or closed to a ring.
-class ChordRun {
- public:
-  ChordRun(const std::vector<glm::dvec2>& points, std::size_t first, std::size_t chords)
-      : points_(points), first_(first), chords_(chords) {}
-
-  /// Whether every chord lies within `tolerance` of the arc or is evenly stepped. The circle runs through all corners
-  /// within the tolerance.
-  [[nodiscard]] bool is_like(const Circle& circle, double tolerance) const {
-    for (std::size_t i = 0; i < chords_; ++i) {
-      const double to_middle = glm::distance((corner(i) + corner(i + 1)) / 2.0, circle.centre);
-      if (circle.radius - to_middle > tolerance && !is_evenly_stepped(i)) return false;
-    }
-    return true;
-  }
-
- private:
-  [[nodiscard]] const glm::dvec2& corner(std::size_t i) const { return points_[(first_ + i) % points_.size()]; }
-  [[nodiscard]] double length(std::size_t chord) const { return glm::distance(corner(chord), corner(chord + 1)); }
-  [[nodiscard]] bool is_ring() const { return chords_ == points_.size(); }
-
-  [[nodiscard]] bool is_evenly_stepped(std::size_t chord) const {
-    const double least = alike * length(chord);
-    int found = 0;
-    for (std::size_t k = 1; k <= reach; ++k) {
-      if (is_ring() || chord >= k) found += length((chord + chords_ - k) % chords_) >= least;
-      if (is_ring() || chord + k < chords_) found += length((chord + k) % chords_) >= least;
-    }
-    return found >= fewest_alike;
-  }
-
-  const std::vector<glm::dvec2>& points_;
-  const std::size_t first_, chords_;
-};
-
 class ArcFinder {
  public:
   ArcFinder(Chain& chain, double tolerance) : chain_(chain), points_(chain.points), tolerance_(tolerance) {}
@@ -179,7 +144,8 @@ class ArcFinder {
     std::vector<glm::dvec2> kept;
     std::size_t at = 0;
     while (at + 1 < points_.size()) {
-      const std::size_t end = longest_run(at);
+      const std::size_t end = longest_run(at, fewest_joins, points_.size() - 1,
+                                          [&](std::size_t last) { return fit(at, last).has_value(); });
       kept.push_back(points_[at]);
       bulges_.push_back(0);
       if (end > at) {
@@ -209,7 +175,7 @@ class ArcFinder {
     if (!circle) return std::nullopt;
     const std::optional<double> turn = turn_along(*circle, first, last);
     if (!turn || std::abs(*turn) < least_turn || std::abs(*turn) > 6.2) return std::nullopt;
-    if (!ChordRun(points_, first, last - first).is_like(*circle, tolerance_)) return std::nullopt;
+    if (!follow(*circle, first, last - first)) return std::nullopt;
     return Fit{*circle, *turn};
   }
 
@@ -225,18 +191,24 @@ class ArcFinder {
     return turn;
   }
 
-  [[nodiscard]] std::size_t longest_run(std::size_t first) const {
-    const std::size_t most = points_.size() - 1;
-    std::size_t fits = first + fewest_joins;
-    if (fits > most || !fit(first, fits)) return first;
-    std::size_t step = fewest_joins;
-    while (fits < most && fit(first, std::min(most, fits + step))) {
-      fits = std::min(most, fits + step);
-      step *= 2;
+  /// Whether each of the chords from corner `first` on lies within the tolerance of the arc, or has a length like its
+  /// neighbours. The circle runs through all corners within the tolerance. All chords of the chain are a ring.
+  [[nodiscard]] bool follow(const Circle& circle, std::size_t first, std::size_t chords) const {
+    const bool is_ring = chords == points_.size();
+    const auto corner = [&](std::size_t i) { return points_[(first + i) % points_.size()]; };
+    const auto length = [&](std::size_t chord) { return glm::distance(corner(chord), corner(chord + 1)); };
+    for (std::size_t i = 0; i < chords; ++i) {
+      const double to_middle = glm::distance((corner(i) + corner(i + 1)) / 2.0, circle.centre);
+      if (!(circle.radius - to_middle > tolerance_)) continue;
+      const double least = alike * length(i);
+      int found = 0;
+      for (std::size_t k = 1; k <= reach; ++k) {
+        if (is_ring || i >= k) found += length((i + chords - k) % chords) >= least;
+        if (is_ring || i + k < chords) found += length((i + k) % chords) >= least;
+      }
+      if (found < fewest_alike) return false;
     }
-    for (; step > 0; step /= 2)
-      if (fits + step <= most && fit(first, fits + step)) fits += step;
-    return fits;
+    return true;
   }
 
   /// An arc beyond a half circle is split in two: formats differ in how they take longer ones.
@@ -260,7 +232,7 @@ class ArcFinder {
     if (!circle) return false;
     const std::optional<double> turn = turn_along(*circle, 0, n);
     if (!turn || std::abs(std::abs(*turn) - 2 * std::numbers::pi) > 1e-6) return false;
-    if (!ChordRun(points_, 0, n).is_like(*circle, tolerance_)) return false;
+    if (!follow(*circle, 0, n)) return false;
     const double bulge = *turn > 0 ? 1 : -1;
     points_ = {points_[0], 2.0 * circle->centre - points_[0]};
     chain_.bulges = {bulge, bulge};

@@ -149,8 +149,6 @@ class LongLines {
   LongLines(const glm::dvec2& low, const glm::dvec2& high, const Nearness& near)
       : low_(low), extent_(std::max(high.x - low.x, high.y - low.y)), bucket_(extent_ / 512), near_(near) {}
 
-  [[nodiscard]] bool is_empty() const { return flat_.empty() && steep_.empty(); }
-
   void add(std::uint32_t number, const Line& segment) {
     const BriefLine brief(segment, number);
     const glm::dvec2 d = glm::abs(segment.to - segment.from);
@@ -163,12 +161,12 @@ class LongLines {
   /// that Nearness allows at its length, and pass near its middle. \returns how many were tested.
   template <class Visit>
   std::size_t for_each(const Line& segment, const SoughtLine& sought, const Visit& visit) const {
-    const double slope = near_.slope_within(segment.length), off = near_.apart();
     const glm::dvec2 d = glm::abs(segment.to - segment.from);
     const int axis = d.y <= d.x ? 0 : 1;
     const Table& table = axis == 0 ? flat_ : steep_;
+    if (table.empty()) return 0;
     std::size_t looked_at = 0;
-    if (table.empty()) return looked_at;
+    const double slope = near_.slope_within(segment.length), off = near_.apart();
     // A line that turns about the middle moves by up to `spread` at the farther side, and by a share of it at the
     // nearer one.
     const glm::dvec2 at = heights(segment, axis);
@@ -213,7 +211,7 @@ class LongLines {
 class LaidLines {
  public:
   /// For pieces of `lines`. Precondition: not empty.
-  LaidLines(const std::vector<Line>& lines, const Nearness& nearness) : LaidLines(Extent(lines), nearness) {}
+  LaidLines(const std::vector<Line>& lines, const Nearness& nearness);
 
   void add(std::uint32_t number, const Line& line) {
     if (line.is_long()) return long_.add(number, line);
@@ -239,23 +237,24 @@ class LaidLines {
       visit_likely(lines_[passed.cell], sought, visit);
       return true;
     });
-    return long_.is_empty() ? looked_at : looked_at + long_.for_each(line, sought, visit);
+    return looked_at + long_.for_each(line, sought, visit);
   }
 
  private:
   /// The bounding box of the lines, and the number and total length of the short ones.
   struct Extent {
     explicit Extent(const std::vector<Line>& lines);
+    [[nodiscard]] SquareGrid grid(double near) const;
     glm::dvec2 low{1e300}, high{-1e300};
     double short_length = 0, short_count = 0;
   };
-  LaidLines(const Extent& extent, const Nearness& nearness);
 
   /// Lines that count as lying on `line` are nearer than this distance, which includes a margin.
   [[nodiscard]] double reach_of(const Line& line) const { return near_.reach_of(line.length + Nearness::shortest); }
 
   const Nearness near_;
-  SquareGrid cells_;
+  const Extent extent_;
+  const SquareGrid cells_;
   std::vector<std::vector<BriefLine>> lines_;  ///< the short lines by cell
   LongLines long_;
 };

@@ -17,15 +17,6 @@
 namespace frontmost::lines_detail {
 namespace {
 
-/// A grid for `count` short lines of that mean length, about one to a cell. The least cell size matters for a drawing
-/// of one point, which would have ten million cells a side.
-SquareGrid grid_over(const glm::dvec2& low, const glm::dvec2& high, double count, double length, double near) {
-  const double side = std::max({high.x - low.x, high.y - low.y, 1e-6});
-  const double cell = std::max({length, side / std::sqrt(count), side / 4096, 8 * near});
-  const glm::ivec2 cells = glm::ivec2((high - low + 2 * near) / cell) + 1;
-  return {low - near, cell, cells.x, cells.y};
-}
-
 class OverlapRemover {
  public:
   /// For pieces of `lines`. Precondition: not empty.
@@ -96,12 +87,21 @@ LaidLines::Extent::Extent(const std::vector<Line>& lines) {
   }
 }
 
-LaidLines::LaidLines(const Extent& extent, const Nearness& nearness)
-    : near_(nearness), long_(extent.low, extent.high, nearness) {
-  const double count = std::max(extent.short_count, 1.0);
-  cells_ = grid_over(extent.low, extent.high, count, extent.short_length / count, near_.apart());
-  lines_.resize(cells_.count());
+/// A grid with about one short line to a cell. The least cell size matters for a drawing of one point, which would have
+/// ten million cells a side.
+SquareGrid LaidLines::Extent::grid(double near) const {
+  const double count = std::max(short_count, 1.0), side = std::max({high.x - low.x, high.y - low.y, 1e-6});
+  const double cell = std::max({short_length / count, side / std::sqrt(count), side / 4096, 8 * near});
+  const glm::ivec2 cells = glm::ivec2((high - low + 2 * near) / cell) + 1;
+  return {low - near, cell, cells.x, cells.y};
 }
+
+LaidLines::LaidLines(const std::vector<Line>& lines, const Nearness& nearness)
+    : near_(nearness),
+      extent_(lines),
+      cells_(extent_.grid(near_.apart())),
+      lines_(cells_.count()),
+      long_(extent_.low, extent_.high, nearness) {}
 
 std::vector<LineSegment> draw_once(const std::vector<LineSegment>& segments, double apart, const Execution& execution) {
   std::vector<std::uint32_t> order(segments.size());

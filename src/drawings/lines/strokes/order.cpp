@@ -7,7 +7,6 @@
 //    [3 7 9]   [4 5]                  lowest numbers are updated on the way up. So crowds of ends cost no more than
 //    others.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <tuple>
 

@@ -8,8 +8,9 @@
 // edges that it came from.
 #pragma once
 
+#include <algorithm>
 #include <glm/glm.hpp>
-#include <span>
+#include <limits>
 #include <vector>
 
 #include "frontmost/base.h"
@@ -44,6 +45,22 @@ inline constexpr double places_per_pixel = 1000;
 
 /// Joins segments of one rank wherever exactly two ends meet. Chains are sorted by rank, then by their first segment.
 [[nodiscard]] std::vector<Chain> chained(const std::vector<LineSegment>& segments);
+
+/// The end of the longest run from `first` up to `most` for which fits(end) holds; `first` if the run of `least` steps
+/// does not fit. The run is lengthened by doubled steps while it fits, up to `largest_step`, and then by halved steps.
+template <class Fits>
+[[nodiscard]] std::size_t longest_run(std::size_t first, std::size_t least, std::size_t most, const Fits& fits,
+                                      std::size_t largest_step = std::numeric_limits<std::size_t>::max()) {
+  std::size_t end = first + least, step = least;
+  if (end > most || !fits(end)) return first;
+  while (end < most && step < largest_step && fits(std::min(most, end + step))) {
+    end = std::min(most, end + step);
+    step *= 2;
+  }
+  for (; step > 0; step /= 2)
+    if (end + step <= most && fits(end + step)) end += step;
+  return end;
+}
 
 /// Removes corners that lie within `tolerance` of the line between the remaining ones.
 void straighten(Chain& chain, double tolerance);

@@ -8,7 +8,6 @@
 //             c     /________ e        short chains show, once for all, which ends touch something.
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numbers>
 #include <tuple>
@@ -25,9 +24,10 @@ namespace {
 using namespace lines_detail;
 
 struct ShortChainRule {
-  double shortest;  ///< pixels: chains below this length are short
-  double touching;  ///< pixels: nearer ends and lines touch
-  std::function<bool(std::uint32_t rank)> is_hidden;
+  double shortest;                     ///< pixels: chains below this length are short
+  double touching;                     ///< pixels: nearer ends and lines touch
+  const std::vector<Stroke>& strokes;  ///< by rank: what the chains become
+  [[nodiscard]] bool is_hidden(const Chain& chain) const { return strokes[chain.rank].is_hidden; }
 };
 
 double length_of(const Chain& chain) {
@@ -65,6 +65,9 @@ struct Touch {
   }
 };
 
+/// Leaves out short chains with an end that touches nothing, and short chains between lines that continue without them,
+/// unless they are contours. Short chains that hold others together stay. Hidden chains hold no visible ones.
+/// Near-linear, unless most short chains lie within a thousandth of the drawing. Precondition: no arcs.
 class ShortChains {
  public:
   ShortChains(std::vector<Chain>& chains, const ShortChainRule& rule, const Execution& execution)
@@ -72,7 +75,6 @@ class ShortChains {
     for (std::size_t i = 0; i < chains.size(); ++i) is_short_[i] = length_of(chains[i]) < rule.shortest;
   }
 
-  /// Leaves out short chains. \returns the others.
   std::vector<Chain> kept() {
     find_touches();
     std::vector<std::size_t> asked;
@@ -139,7 +141,7 @@ class ShortChains {
 
   void add_touch(std::size_t end, std::size_t chain) {
     // Hidden chains hold no visible ones.
-    if (end / 2 == chain || (rule_.is_hidden(chains_[chain].rank) && !rule_.is_hidden(chains_[end / 2].rank))) return;
+    if (end / 2 == chain || (rule_.is_hidden(chains_[chain]) && !rule_.is_hidden(chains_[end / 2]))) return;
     const auto is_near = [&](std::size_t other) { return glm::distance(place(end), place(other)) <= rule_.touching; };
     touches_.push_back({end, chain, !chains_[chain].is_closed && (is_near(2 * chain) || is_near(2 * chain + 1))});
   }
@@ -170,14 +172,6 @@ class ShortChains {
   std::vector<Touch> touches_;                        ///< ascending
   std::vector<std::vector<std::size_t>> touched_by_;  ///< by chain: the short chains that end on it
 };
-
-/// Leaves out short chains with an end that touches nothing, and short chains between lines that continue without them,
-/// unless they are contours. Short chains that hold others together stay. Hidden chains hold no visible ones.
-/// Near-linear, unless most short chains lie within a thousandth of the drawing. Precondition: no arcs.
-std::vector<Chain> without_short_ones(std::vector<Chain> chains, const ShortChainRule& rule,
-                                      const Execution& execution) {
-  return ShortChains(chains, rule, execution).kept();
-}
 
 /// The parts of a drawing, as the options of strokes see them.
 class PartReader {
@@ -231,47 +225,43 @@ class PartReader {
 };
 
 void check(const StrokeOptions& options) {
-  if (!(options.apart >= 0.002 && options.apart <= 1))
-    throw Error(ErrorCode::bad_argument, "strokes",
-                "the greatest distance of lines that count as one must be from 0.002 to 1 pixel");
-  if (!(options.tolerance >= 1e-4 && options.tolerance <= 1))
-    throw Error(ErrorCode::bad_argument, "strokes", "the tolerance must be from 0.0001 to 1 pixel");
-  if (!(options.arc_tolerance >= 0 && options.arc_tolerance <= 100))
-    throw Error(ErrorCode::bad_argument, "strokes", "the tolerance of arcs must be from 0 to 100 pixels");
-  if (!(options.shortest >= 0 && options.shortest <= 1e4))
-    throw Error(ErrorCode::bad_argument, "strokes", "the shortest stroke must be from 0 to 10000 pixels");
-  if (!(options.grazing_angle >= 0 && options.grazing_angle <= std::numbers::pi / 2))
-    throw Error(ErrorCode::bad_argument, "strokes", "the grazing angle must be from 0 to pi/2");
+  const auto check_range = [](double value, double least, double most, const char* reason) {
+    if (!(value >= least && value <= most)) throw Error(ErrorCode::bad_argument, "strokes", reason);
+  };
+  check_range(options.apart, 0.002, 1,
+              "the greatest distance of lines that count as one must be from 0.002 to 1 pixel");
+  check_range(options.tolerance, 1e-4, 1, "the tolerance must be from 0.0001 to 1 pixel");
+  check_range(options.arc_tolerance, 0, 100, "the tolerance of arcs must be from 0 to 100 pixels");
+  check_range(options.shortest, 0, 1e4, "the shortest stroke must be from 0 to 10000 pixels");
+  check_range(options.grazing_angle, 0, std::numbers::pi / 2, "the grazing angle must be from 0 to pi/2");
 }
 
 /// The segments of all parts with their ranks, and for each rank a stroke without points.
 struct Ranked {
+  Ranked(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options) {
+    const PartReader reader(surfaces, drawing, options);
+    std::map<std::uint64_t, std::pair<std::uint32_t, Stroke>> known;
+    std::vector<std::uint64_t> keys;
+    for (const DrawnPart& part : drawing.parts) {
+      keys.push_back(reader.key(part));
+      known.try_emplace(keys.back(), 0, reader.stroke(part));
+    }
+    for (auto& [key, entry] : known) {
+      entry.first = std::uint32_t(strokes.size());
+      strokes.push_back(entry.second);
+    }
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      const DrawnPart& part = drawing.parts[i];
+      if (!reader.is_drawn(part)) continue;
+      const EdgeKind kind = drawing.edges[part.edge].kind;
+      segments.push_back({part.from, part.to, known.find(keys[i])->second.first,
+                          kind == EdgeKind::silhouette || kind == EdgeKind::boundary});
+    }
+  }
+
   std::vector<LineSegment> segments;
   std::vector<Stroke> strokes;
 };
-
-Ranked ranked(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options) {
-  const PartReader reader(surfaces, drawing, options);
-  std::map<std::uint64_t, std::pair<std::uint32_t, Stroke>> known;
-  std::vector<std::uint64_t> keys(drawing.parts.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    keys[i] = reader.key(drawing.parts[i]);
-    known.try_emplace(keys[i], 0, reader.stroke(drawing.parts[i]));
-  }
-  Ranked result;
-  for (auto& [key, entry] : known) {
-    entry.first = std::uint32_t(result.strokes.size());
-    result.strokes.push_back(entry.second);
-  }
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const DrawnPart& part = drawing.parts[i];
-    if (!reader.is_drawn(part)) continue;
-    const EdgeKind kind = drawing.edges[part.edge].kind;
-    result.segments.push_back({part.from, part.to, known.find(keys[i])->second.first,
-                               kind == EdgeKind::silhouette || kind == EdgeKind::boundary});
-  }
-  return result;
-}
 
 void append(const Chain& chain, const Stroke& like, bool with_arcs, Strokes& all) {
   Stroke stroke = like;
@@ -292,7 +282,7 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
   check(options);
   const IeeeScope ieee;
   report_progress(execution, "strokes", 0);
-  const Ranked parts = ranked(surfaces, drawing, options);
+  const Ranked parts(surfaces, drawing, options);
   std::vector<Chain> chains = chained(draw_once(parts.segments, options.apart, execution));
   // A chain that stays close to its beginning is seen as a point. It is left over where two tessellations of one circle
   // pass through each other.
@@ -302,8 +292,8 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
   });
   report_progress(execution, "strokes", 0.6);
   if (options.shortest > 0) {
-    const auto is_hidden = [&](std::uint32_t rank) { return parts.strokes[rank].is_hidden; };
-    chains = without_short_ones(std::move(chains), {options.shortest, 2 * options.apart, is_hidden}, execution);
+    const ShortChainRule rule{options.shortest, 2 * options.apart, parts.strokes};
+    chains = ShortChains(chains, rule, execution).kept();
   }
   parallel_for(execution, chains.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
