@@ -120,12 +120,6 @@ VisibleParts parts_of(const Surfaces& surfaces, const View& view, const FigureOp
   return visible_parts(painter(surfaces, view, {.occluders = occluders}, execution), occluders, execution);
 }
 
-void check_count(std::size_t polygons, const FigureOptions& options) {
-  if (polygons <= options.most_polygons) return;
-  throw Error(ErrorCode::limit_exceeded, "figure",
-              std::to_string(polygons) + " polygons, more than " + std::to_string(options.most_polygons));
-}
-
 /// Draws a figure with the data that earlier pictures prepared.
 Figure figure_of(shading::PreparedScene& scene, const ShadeInput& input, const FigureOptions& options,
                  const Execution& execution) {
@@ -139,7 +133,10 @@ Figure figure_of(shading::PreparedScene& scene, const ShadeInput& input, const F
   if (!(options.tolerance >= 0 && options.tolerance <= 255))
     throw Error(ErrorCode::bad_argument, "figure: tolerance", "must be 0 to 255");
   const VisibleParts parts = parts_of(surfaces, input.first().view, options, execution);
-  check_count(parts.polygons.size(), options);
+  if (parts.polygons.size() > options.most_polygons)
+    throw Error(
+        ErrorCode::limit_exceeded, "figure",
+        std::to_string(parts.polygons.size()) + " polygons, more than " + std::to_string(options.most_polygons));
   ColoredOrder colored = color_order(scene, input, parts, options, execution);
   if (options.merges_neighbours) colored = merge_neighbours(colored, execution);
   colored = gather_blend_groups(std::move(colored), execution);

@@ -168,12 +168,6 @@ PolygonSets joined(const ColoredOrder& colored, const Polygons& polygons, const 
 /// Nodes are shapes that are painted as a whole, numbered in the original order.
 using NodePair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Nodes in painting order, and the blend group of each, ascending. Translucent nodes of a group have the same opacity,
-/// and none is over another; opaque nodes have groups without translucent ones.
-struct BlendOrder {
-  std::vector<std::uint32_t> nodes, groups;
-};
-
 /// Memory of 128 MB. With more pairs, the order stays unchanged.
 constexpr std::size_t kMostPairs = std::size_t(1) << 24;
 /// Limits on overlap tests; with more, the order stays unchanged.
@@ -264,7 +258,9 @@ class BlendSorter {
     std::iota(next_in_patch_.begin(), next_in_patch_.end(), 0u);
   }
 
-  [[nodiscard]] BlendOrder sort() {
+  /// Nodes in painting order, each with its blend group; groups ascend. Translucent nodes of a group have the same
+  /// opacity, and none is over another; opaque nodes have groups without translucent ones.
+  [[nodiscard]] std::vector<NodePair> sort() {
     for (std::uint32_t node = 0; node < below_.size(); ++node)
       if (below_[node] == 0) make_ready(node);
     while (!opaque_.empty() || !by_open_sides_.empty()) {
@@ -336,8 +332,7 @@ class BlendSorter {
 
   void paint(std::uint32_t node) {
     states_[node] = State::painted;
-    order_.nodes.push_back(node);
-    order_.groups.push_back(group_);
+    order_.emplace_back(node, group_);
   }
   void release(std::uint32_t node) {
     for (const std::uint32_t other : over_[node])
@@ -353,7 +348,7 @@ class BlendSorter {
   std::vector<std::size_t> open_sides_;       ///< by patch: pairs of one of its nodes with a waiting one
   std::vector<std::uint32_t> next_in_patch_;  ///< rings of nodes
   std::set<std::pair<std::size_t, std::uint32_t>> by_open_sides_;
-  BlendOrder order_;
+  std::vector<NodePair> order_;
   std::uint32_t group_ = 0;
 };
 
@@ -391,13 +386,12 @@ ColoredOrder gather_blend_groups(ColoredOrder colored, const Execution& executio
   for (const ColoredShape& shape : colored.shapes) opacities.push_back(shape.color.a);
   const std::optional<std::vector<NodePair>> over = find_over(colored, execution);
   if (!over) return colored;
-  const BlendOrder order = BlendSorter(std::move(opacities), *over, find_beside(colored, execution)).sort();
   ColoredOrder made;
   made.view = colored.view;
-  for (std::size_t k = 0; k < order.nodes.size(); ++k) {
-    const ColoredShape& shape = colored.shapes[order.nodes[k]];
+  for (const auto& [node, group] : BlendSorter(std::move(opacities), *over, find_beside(colored, execution)).sort()) {
+    const ColoredShape& shape = colored.shapes[node];
     made.begin_shape(shape.color);
-    made.shapes.back().blend_group = order.groups[k];
+    made.shapes.back().blend_group = group;
     for (const PaintPolygon& polygon : colored.polygons_of(shape))
       made.add_polygon(polygon.id, colored.corners_of(polygon));
   }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The outlines of adjacent polygons, without the sides that two of them share.
 //
-//    A ------------------ B           Corners are rounded to a grid. B's neighbour has a corner C on the side A-B. The
-//    |         C          |           side becomes A-C and C-B, so that each of the three polygons has the same sides
-//    as
-//    +---------+----------+           its neighbours, in opposite directions. Shared sides are found by their numbers.
+//    A ------------------ B      Corners are rounded to a grid. A neighbour has a corner C on the side A-B, which
+//    |         C          |      becomes A-C and C-B. So each of the three polygons has the same sides as its
+//    neighbours,
+//    +---------+----------+      in opposite directions. Shared sides are found by their numbers.
 //
-// Points are sorted by rows of the picture, and by x within a row. Points on a side are found in the rows that it
-// passes. The sides that are not shared form closed rings: as many sides end at a point as begin there.
+// Points are sorted by rows of the picture, and by x within a row. The sides that are not shared form closed rings: as
+// many sides end at a point as begin there.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,7 @@
 
 namespace frontmost::shading {
 
-/// Corners are rounded to 1/4096 pixel, and sides are split at corners of others. So adjacent outlines have the same
-/// sides, in opposite directions. O(n log n) in the number of corners, for sides that are short beside the whole.
+/// O(n log n) in the number of corners, for sides that are short beside the whole.
 class SideNet {
  public:
   using Corner = painter_detail::TrappedCorner;
@@ -73,8 +72,12 @@ class SideNet {
   /// Calls keep(corners) for every closed ring of the sides that are not shared.
   template <class Keep>
   void for_each_ring(const Keep& keep) {
-    begin_rings();
-    while (next_ring()) keep(std::span<const Corner>(ring_));
+    leave_unshared();
+    for (std::size_t first = 0; first < left_.size(); ++first) {
+      if (is_used_[first]) continue;
+      walk_around(first);
+      keep(std::span<const Corner>(ring_));
+    }
   }
 
  private:
@@ -173,9 +176,9 @@ class SideNet {
     std::sort(between_.begin(), between_.end());
   }
 
-  void begin_rings() {
+  /// Drops equal numbers of sides in both directions.
+  void leave_unshared() {
     left_.clear();
-    // Drops equal numbers of sides in both directions.
     for (std::size_t i = 0; i < sides_.size();) {
       const Pairs pairs = pairs_at(i);
       for (std::size_t k = i + pairs.count(); k < pairs.turn; ++k) left_.push_back(sides_[k]);
@@ -186,26 +189,22 @@ class SideNet {
       return std::tie(a.from, a.to, a.outline) < std::tie(b.from, b.to, b.outline);
     });
     is_used_.assign(left_.size(), 0);
-    next_ = 0;
   }
 
   /// Every point has as many ending sides as beginning ones, so every walk returns.
-  bool next_ring() {
-    while (next_ < left_.size() && is_used_[next_]) ++next_;
-    if (next_ == left_.size()) return false;
+  void walk_around(std::size_t first) {
     ring_.clear();
-    std::size_t side = next_;
+    std::size_t side = first;
     while (true) {
       is_used_[side] = 1;
       ring_.push_back({glm::dvec2(points_[left_[side].from]) / kUnits, left_[side].trap});
-      if (left_[side].to == left_[next_].from) break;
+      if (left_[side].to == left_[first].from) break;
       side = std::size_t(std::lower_bound(left_.begin(), left_.end(), left_[side].to,
                                           [](const Side& s, std::uint32_t point) { return s.from < point; }) -
                          left_.begin());
       while (is_used_[side]) ++side;
     }
     straighten();
-    return true;
   }
 
   /// Removes corners at which nothing turns.
@@ -231,7 +230,6 @@ class SideNet {
   std::vector<Side> sides_;  ///< sides between the same points are consecutive
   std::vector<Side> left_;   ///< sorted by first point
   std::vector<std::uint8_t> is_used_;
-  std::size_t next_ = 0;
   std::vector<Corner> ring_;
 };
 

@@ -11,7 +11,7 @@
 // page points down and that of DXF up, so places are flipped and arcs change their direction.
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -25,12 +25,9 @@ namespace {
 std::string table_text(const std::string& name) {
   std::string clean;
   for (const char c : name) {
-    const bool is_lower = c >= 'a' && c <= 'z';
-    const bool is_fine = (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
-    if (is_lower || is_fine)
-      clean += is_lower ? char(c - 'a' + 'A') : c;
-    else if (clean.empty() || clean.back() != '_')
-      clean += '_';
+    const char capital = c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c;
+    const bool is_fine = (capital >= 'A' && capital <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+    if (is_fine || clean.empty() || clean.back() != '_') clean += is_fine ? capital : '_';
   }
   return clean;
 }
@@ -63,19 +60,15 @@ struct Layer {
 
 /// The nearest of the colours with a standard number.
 int color_number(const PageColor& color) {
-  struct Numbered {
-    int number, red, green, blue;
-  };
-  // Colour 7 is black on white paper and white on a black screen.
-  constexpr Numbered all[] = {{7, 0, 0, 0},   {1, 255, 0, 0},   {2, 255, 255, 0},   {3, 0, 255, 0},    {4, 0, 255, 255},
-                              {5, 0, 0, 255}, {6, 255, 0, 255}, {8, 128, 128, 128}, {9, 192, 192, 192}};
-  const auto distance = [&](const Numbered& n) {
-    const int r = n.red - color.red, g = n.green - color.green, b = n.blue - color.blue;
-    return r * r + g * g + b * b;
-  };
-  return std::min_element(std::begin(all), std::end(all),
-                          [&](const Numbered& a, const Numbered& b) { return distance(a) < distance(b); })
-      ->number;
+  // Number, red, green, blue. Colour 7 is black on white paper and white on a black screen.
+  constexpr int all[][4] = {{7, 0, 0, 0},   {1, 255, 0, 0},   {2, 255, 255, 0},   {3, 0, 255, 0},    {4, 0, 255, 255},
+                            {5, 0, 0, 255}, {6, 255, 0, 255}, {8, 128, 128, 128}, {9, 192, 192, 192}};
+  int nearest = 7, least = std::numeric_limits<int>::max();
+  for (const auto& [number, red, green, blue] : all) {
+    const int r = red - color.red, g = green - color.green, b = blue - color.blue;
+    if (const int distance = r * r + g * g + b * b; distance < least) nearest = number, least = distance;
+  }
+  return nearest;
 }
 
 /// The colour of a layer's lines. Black lines get a colour by their class, the digit at which the page layer's name
@@ -99,20 +92,17 @@ struct Layers {
       const std::string of_class = table_text(layer.name);
       of_groups.emplace_back();
       std::optional<std::size_t> common;
-      if (layer.groups.empty()) list.push_back({names.add(of_class), {}, layer_color(layer.name, {})});
+      const auto add = [&](const std::string& name, const Pen& pen) {
+        list.push_back({names.add(name), pen, layer_color(layer.name, pen)});
+        return list.size() - 1;
+      };
+      if (layer.groups.empty()) add(of_class, {});
       for (const PageGroup& group : layer.groups) {
-        if (groups <= most_layers && !group.name.empty()) {
-          of_groups.back().push_back(list.size());
-          // The class is not shortened, so that programs can select all of it.
-          list.push_back({names.add(of_class.substr(0, 11) + "-" + table_text(group.name)), group.pen,
-                          layer_color(layer.name, group.pen)});
-          continue;
-        }
-        if (!common) {
-          common = list.size();
-          list.push_back({names.add(of_class), group.pen, layer_color(layer.name, group.pen)});
-        }
-        of_groups.back().push_back(*common);
+        const bool is_own = groups <= most_layers && !group.name.empty();
+        if (!is_own && !common) common = add(of_class, group.pen);
+        // The class is not shortened, so that programs can select all of it.
+        of_groups.back().push_back(is_own ? add(of_class.substr(0, 11) + "-" + table_text(group.name), group.pen)
+                                          : *common);
       }
     }
   }

@@ -97,16 +97,6 @@ PageText& PageText::operator<<(std::string_view text) {
   return *this;
 }
 
-PageText& PageText::integer(std::int64_t value) {
-  char digits[20];
-  char* first = std::end(digits);
-  std::uint64_t rest = value < 0 ? 0 - std::uint64_t(value) : std::uint64_t(value);
-  do *--first = char('0' + rest % 10);
-  while (rest /= 10);
-  if (value < 0) *this << '-';
-  return *this << std::string_view(first, std::size_t(std::end(digits) - first));
-}
-
 PageText& PageText::fixed(std::int64_t value, int digits) {
   std::uint64_t rest = value < 0 ? 0 - std::uint64_t(value) : std::uint64_t(value);
   while (digits > 0 && rest % 10 == 0) {

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The formats behind save(page), and their common parts: text, arcs and the appearance of paths.
 //
-// Page --validate()--> layers --> groups --> paths --paint_of()--> fill and line colours
-//
-//              . - .          A writer is a class over one page that appends text to a PageText; no writer converts the
-//          .-'   |   '-.      page first. The bulge of a join is the height of its arc by half of the chord: the
-//          tangent
-//        from ---+--- to      of a quarter of the arc's angle. Formats need a radius and flags, a centre and angles, or
-//                             approximating curves instead.
+//              . - .          A writer is a class over one page that appends text to a PageText. The bulge of a join is
+//          .-'   |   '-.      the height of its arc by half of the chord: the tangent of a quarter of its angle.
+//          Formats
+//        from ---+--- to      need a radius and flags, a centre and angles, or approximating curves instead.
 #pragma once
 
 #include <cmath>
@@ -71,8 +68,8 @@ class PageText {
     return *this;
   }
   /// Writes a decimal number without a fraction.
-  PageText& integer(std::int64_t value);
-  /// Writes value / 10^digits without trailing zeros. `digits` is 1 to 9.
+  PageText& integer(std::int64_t value) { return fixed(value, 0); }
+  /// Writes value / 10^digits without trailing zeros. `digits` is 0 to 9.
   PageText& fixed(std::int64_t value, int digits = 3);
   /// Writes a number rounded to `digits`, with the zero before the point, which JSON and DXF need and other formats do
   /// not.

@@ -23,7 +23,6 @@ namespace frontmost::lines_detail {
 namespace {
 
 constexpr double kShortestArc = 40 * std::numbers::pi / 180;
-constexpr double kWhole = 2 * std::numbers::pi;
 constexpr double kSmallestRadius = 50;  // in units of noise: smaller circles cannot be told from polygons
 constexpr double kSameCircle = 64;      // in units of noise: the uncertainty of the centres of short arcs
 constexpr std::size_t kLargestStep = std::size_t(1) << 20;
@@ -234,7 +233,7 @@ class WallGrower {
   explicit WallGrower(const SmoothMesh& mesh) : mesh_(mesh), is_used_(mesh.mesh.triangles.size()) {}
 
   /// None if the seed's surface is no cylinder, or already part of one. Visited triangles are not visited again.
-  [[nodiscard]] std::optional<FoundWall> grow(const Seed& seed) {
+  [[nodiscard]] std::optional<FoundRound> grow(const Seed& seed) {
     const std::uint32_t other = mesh_.across(seed.triangle, seed.side);
     if (is_used_[seed.triangle] || is_used_[other] || !start(seed, other)) return std::nullopt;
     return grown(true);
@@ -242,8 +241,8 @@ class WallGrower {
 
   /// Grows a wall from a side of a circle whose triangle is parallel to the axis. `may_be_cut`: vertices may lie on
   /// chords, inside of the radius, where something else cuts the wall; a circle is precise enough to allow that.
-  [[nodiscard]] std::optional<FoundWall> grow(const Circle3& circle, double step, std::uint32_t triangle,
-                                              bool may_be_cut) {
+  [[nodiscard]] std::optional<FoundRound> grow(const Circle3& circle, double step, std::uint32_t triangle,
+                                               bool may_be_cut) {
     if (is_used_[triangle]) return std::nullopt;
     tube_ = {circle.centre, circle.axis, circle.radius};
     slack_ = std::max(mesh_.noise, sagitta(circle.radius, step) / 4);
@@ -257,7 +256,7 @@ class WallGrower {
 
  private:
   /// Grows the current triangles. The axis of a circle is better than a fit to few triangles, so it is not fitted.
-  std::optional<FoundWall> grown(bool fits) {
+  std::optional<FoundRound> grown(bool fits) {
     std::size_t fitted = std::max(triangles_.size(), kFewestTriangles / 2);
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
       for (int k = 0; k < 3; ++k) {
@@ -332,7 +331,7 @@ class WallGrower {
     return tube.has_value();
   }
 
-  [[nodiscard]] FoundWall measured() {
+  [[nodiscard]] FoundRound measured() {
     const Across across(tube_.axis);
     std::vector<double> angles;
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -347,12 +346,9 @@ class WallGrower {
     double gap = angles.front() + kWhole - angles.back();
     for (std::size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
     std::sort(triangles_.begin(), triangles_.end());
-    return {tube_.point + low * tube_.axis,
-            tube_.point + high * tube_.axis,
-            tube_.axis,
-            tube_.radius,
-            gap <= kWidestStep ? kWhole : kWhole - gap,
-            outside_ < 0,
+    const double turn = gap <= kWidestStep ? kWhole : kWhole - gap;
+    return {{RoundKind::cylinder, tube_.point + low * tube_.axis, tube_.point + high * tube_.axis, tube_.axis,
+             tube_.radius, turn, outside_ < 0},
             triangles_};
   }
 
@@ -397,11 +393,11 @@ std::vector<FoundCircle> find_circles(const SmoothMesh& mesh, const Execution& e
   return circles;
 }
 
-std::vector<FoundWall> find_walls(const SmoothMesh& mesh, const std::vector<FoundCircle>& circles,
-                                  const Execution& execution) {
-  std::vector<FoundWall> walls;
+std::vector<FoundRound> find_walls(const SmoothMesh& mesh, const std::vector<FoundCircle>& circles,
+                                   const Execution& execution) {
+  std::vector<FoundRound> walls;
   WallGrower grower(mesh);
-  const auto keep = [&](std::optional<FoundWall> wall) {
+  const auto keep = [&](std::optional<FoundRound> wall) {
     if (wall) walls.push_back(std::move(*wall));
   };
   const auto grow_from_circles = [&](bool may_be_cut) {

@@ -7,8 +7,8 @@
 //    smooth neighbours ------------------------------> walls: cylinders that begin at circles, then the others
 //    other regions that close around an axis --------> surfaces of revolution
 //
-// A polygon of a mesh counts as a circle if its steps are even, its corners lie on one circle to the precision of the
-// file, and its sides are alike.
+// A polygon of a mesh counts as a circle if its steps are alike and its corners lie on one circle to the precision of
+// the file.
 #pragma once
 
 #include <cmath>
@@ -84,6 +84,7 @@ struct Across {
 /// same limit as for arcs of strokes.
 inline constexpr double kWidestStep = 0.34924038;
 inline constexpr double kWidestCosine = 0.93963;
+inline constexpr double kWhole = 2 * std::numbers::pi;  ///< radians of a whole turn
 
 struct SmoothMesh {
   WeldedMesh mesh;
@@ -149,18 +150,16 @@ struct FoundCircle {
 /// The circles of a mesh; arcs of one circle are united. Near-linear in the number of sharp edges.
 [[nodiscard]] std::vector<FoundCircle> find_circles(const SmoothMesh& mesh, const Execution& execution);
 
-/// A cylinder among the smooth surfaces of a mesh.
-struct FoundWall {
-  glm::dvec3 from, to, axis;  ///< the ends of its axis; unit direction
-  double radius, turn;        ///< `turn`: the covered angle in radians, at most 2 pi
-  bool is_hollow;
-  std::vector<std::uint32_t> triangles;  ///< ascending
+/// A round with its triangles of the mesh, in place of Rounds::triangles.
+struct FoundRound {
+  Round round;
+  std::vector<std::uint32_t> triangles;
 };
 
-/// The cylinders of a mesh: first those that begin at circles, in their order; last those that are cut between their
-/// ends. Each triangle belongs to at most one. O(triangles log triangles).
-[[nodiscard]] std::vector<FoundWall> find_walls(const SmoothMesh& mesh, const std::vector<FoundCircle>& circles,
-                                                const Execution& execution);
+/// The cylinders of a mesh, with ascending triangles: first those that begin at circles, in their order; last those
+/// that are cut between their ends. Each triangle belongs to at most one. O(triangles log triangles).
+[[nodiscard]] std::vector<FoundRound> find_walls(const SmoothMesh& mesh, const std::vector<FoundCircle>& circles,
+                                                 const Execution& execution);
 
 }  // namespace frontmost::lines_detail
 

@@ -22,12 +22,6 @@ namespace {
 
 using namespace lines_detail;
 
-struct FoundRevolved {
-  glm::dvec3 from, to, axis;             ///< its ends along the axis; unit direction
-  double radius;                         ///< the largest radius
-  std::vector<std::uint32_t> triangles;  ///< ascending
-};
-
 constexpr std::size_t kFewestCorners = 19;  // a ring and a tip
 constexpr double kEqualMoments = 1e-5;      // of the largest
 constexpr double kSameRing = 8;             // in units of noise: the greatest distance within a ring
@@ -38,12 +32,10 @@ struct Polar {
   double height, radius, angle;
 };
 
-/// The triangles that are connected with `first` by smooth edges, ascending; empty if `first` is taken. Takes them.
+/// Takes the triangles that are connected with `first` by smooth edges. \returns them, ascending.
 std::vector<std::uint32_t> region_from(std::uint32_t first, const SmoothMesh& mesh, std::vector<bool>& is_taken) {
-  std::vector<std::uint32_t> region;
-  if (is_taken[first]) return region;
+  std::vector<std::uint32_t> region = {first};
   is_taken[first] = true;
-  region.push_back(first);
   for (std::size_t i = 0; i < region.size(); ++i)
     for (int k = 0; k < 3; ++k) {
       if (!mesh.is_smooth(region[i], k)) continue;
@@ -87,7 +79,7 @@ class RevolvedFinder {
   explicit RevolvedFinder(const SmoothMesh& mesh)
       : mesh_(mesh), slack_(kSameRing * mesh.noise), region_of_(mesh.mesh.positions.size(), no_index) {}
 
-  [[nodiscard]] std::optional<FoundRevolved> find(std::vector<std::uint32_t> region) {
+  [[nodiscard]] std::optional<FoundRound> find(std::vector<std::uint32_t> region) {
     const std::vector<glm::dvec3> corners = corners_of(region);
     if (corners.size() < kFewestCorners) return std::nullopt;
     glm::dvec3 middle(0);
@@ -106,7 +98,8 @@ class RevolvedFinder {
     // Discs need no axis, walls are cylinders, and whole spheres are round about any axis.
     if (high - low <= slack_ || radius - thinnest->radius <= slack_ || is_sphere(middle, corners)) return std::nullopt;
     if (radius < kSmallestRevolved * mesh_.noise || !is_in_rings(polar)) return std::nullopt;
-    return FoundRevolved{middle + low * *axis, middle + high * *axis, *axis, radius, std::move(region)};
+    return FoundRound{{RoundKind::revolved, middle + low * *axis, middle + high * *axis, *axis, radius, kWhole},
+                      std::move(region)};
   }
 
  private:
@@ -157,7 +150,7 @@ class RevolvedFinder {
     const auto is_ring = [&](std::span<Polar> ring) {
       if (ring.front().radius <= slack_) return true;
       std::sort(ring.begin(), ring.end(), [](const Polar& a, const Polar& b) { return a.angle < b.angle; });
-      double gap = ring.front().angle + 2 * std::numbers::pi - ring.back().angle;
+      double gap = ring.front().angle + kWhole - ring.back().angle;
       for (std::size_t i = 1; i < ring.size(); ++i) gap = std::max(gap, ring[i].angle - ring[i - 1].angle);
       return gap <= kWidestStep;
     };
@@ -174,15 +167,14 @@ class RevolvedFinder {
   std::vector<std::uint32_t> region_of_;  ///< by vertex: the last region that it was in
 };
 
-std::vector<FoundRevolved> find_revolved(const SmoothMesh& mesh, const Execution& execution) {
-  std::vector<FoundRevolved> found;
+std::vector<FoundRound> find_revolved(const SmoothMesh& mesh, const Execution& execution) {
+  std::vector<FoundRound> found;
   std::vector<bool> is_taken(mesh.mesh.triangles.size());
   RevolvedFinder finder(mesh);
   for (std::uint32_t t = 0; t < mesh.mesh.triangles.size(); ++t) {
     if (t % 4096 == 0) check_cancelled(execution);
-    std::vector<std::uint32_t> region = region_from(t, mesh, is_taken);
-    if (region.empty()) continue;
-    if (auto revolved = finder.find(std::move(region))) found.push_back(std::move(*revolved));
+    if (is_taken[t]) continue;
+    if (auto revolved = finder.find(region_from(t, mesh, is_taken))) found.push_back(std::move(*revolved));
   }
   return found;
 }
@@ -212,7 +204,7 @@ std::optional<Circle3> circle_of(const SmoothMesh& mesh, const SharpChain& chain
     if (!(circle->distance(corner(i)) <= slack && by > 0 && by <= kWidestPrismTurn)) return std::nullopt;
     turn += by;
   }
-  return turn < 2 * std::numbers::pi + 1e-3 ? circle : std::nullopt;
+  return turn < kWhole + 1e-3 ? circle : std::nullopt;
 }
 
 bool are_ends_of_one(const PrismRim& a, const PrismRim& b) {
@@ -245,8 +237,7 @@ std::vector<Round> find_prisms(const SmoothMesh& mesh, const Execution& executio
       if (!are_ends_of_one(rim, rims[k])) continue;
       rim.is_used = rims[k].is_used = true;
       const Circle3& circle = rim.circle;
-      found.push_back({RoundKind::cylinder, circle.centre, rims[k].circle.centre, circle.axis, circle.radius,
-                       2 * std::numbers::pi});
+      found.push_back({RoundKind::cylinder, circle.centre, rims[k].circle.centre, circle.axis, circle.radius, kWhole});
     }
   }
   return found;
@@ -254,16 +245,17 @@ std::vector<Round> find_prisms(const SmoothMesh& mesh, const Execution& executio
 
 constexpr double kLeastTurn = 160 * std::numbers::pi / 180;
 
-/// Appends a round with these triangles of the mesh.
-void append(Round round, const std::vector<std::uint32_t>& triangles, const WeldedMesh& mesh, Rounds& all) {
+/// Appends a round, unless too little of it exists.
+void append(const FoundRound& found, const WeldedMesh& mesh, Rounds& all) {
+  if (found.round.turn < kLeastTurn) return;
   std::vector<PrimitiveId> ids;
-  for (const std::uint32_t t : triangles) ids.push_back(mesh.ids[t]);
+  for (const std::uint32_t t : found.triangles) ids.push_back(mesh.ids[t]);
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  Round& round = all.rounds.emplace_back(found.round);
   round.first = std::uint32_t(all.triangles.size());
   round.count = std::uint32_t(ids.size());
   all.triangles.insert(all.triangles.end(), ids.begin(), ids.end());
-  all.rounds.push_back(round);
 }
 
 }  // namespace
@@ -274,20 +266,13 @@ Rounds find_rounds(const Surfaces& surfaces, const Execution& execution) {
   Rounds all;
   const std::vector<FoundCircle> circles = find_circles(mesh, execution);
   for (const FoundCircle& found : circles) {
-    const double turn = covered(found);
-    if (turn < kLeastTurn) continue;
     const Circle3& circle = found.circle;
-    append({RoundKind::circle, circle.centre, circle.centre, circle.axis, circle.radius, turn}, found.triangles,
+    append({{RoundKind::circle, circle.centre, circle.centre, circle.axis, circle.radius, covered(found)},
+            found.triangles},
            mesh.mesh, all);
   }
-  for (const FoundWall& wall : find_walls(mesh, circles, execution)) {
-    if (wall.turn < kLeastTurn) continue;
-    append({RoundKind::cylinder, wall.from, wall.to, wall.axis, wall.radius, wall.turn, wall.is_hollow}, wall.triangles,
-           mesh.mesh, all);
-  }
-  for (const FoundRevolved& found : find_revolved(mesh, execution))
-    append({RoundKind::revolved, found.from, found.to, found.axis, found.radius, 2 * std::numbers::pi}, found.triangles,
-           mesh.mesh, all);
+  for (const FoundRound& wall : find_walls(mesh, circles, execution)) append(wall, mesh.mesh, all);
+  for (const FoundRound& found : find_revolved(mesh, execution)) append(found, mesh.mesh, all);
   all.prisms = find_prisms(mesh, execution);
   return all;
 }

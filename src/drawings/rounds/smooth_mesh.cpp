@@ -2,9 +2,9 @@
 // Triangles are neighbours where exactly two share an edge and run along it in opposite directions. Every other edge,
 // as of copies or of three triangles, is a border: nothing smooth goes on across it.
 //
-//       |                  Where several sharp edges meet at a vertex (o), pairs of them continue each other, the
-//    ---o---               straightest pair first. Chains are followed from their open ends first; the others are
-//    closed.
+//       |        Where several sharp edges meet at a vertex (o), pairs of them continue each other, the straightest
+//       pair
+//    ---o---     first. Chains are followed from their open ends first; the others are closed.
 #include <algorithm>
 #include <cmath>
 #include <span>

@@ -12,6 +12,8 @@
 // corner.
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <queue>
 
 #include "base/orientation.h"
 #include "base/parallel.h"
@@ -36,6 +38,13 @@ class Rings {
   [[nodiscard]] std::uint32_t next(std::uint32_t i) const { return links_[i].next; }
   [[nodiscard]] std::uint32_t last(std::uint32_t i) const { return links_[i].last; }
   [[nodiscard]] const std::vector<std::uint32_t>& firsts() const { return firsts_; }
+
+  /// Appends the corners of the ring of `first`.
+  void append_ring(std::uint32_t first, std::vector<std::uint32_t>& corners) const {
+    std::uint32_t i = first;
+    do corners.push_back(i);
+    while ((i = next(i)) != first);
+  }
 
   void remove(std::uint32_t i) {
     links_[links_[i].last].next = links_[i].next;
@@ -66,8 +75,10 @@ class Rings {
   [[nodiscard]] bool runs_inside(std::uint32_t i, const glm::vec2& to) const {
     const glm::vec2 &before = at(last(i)), &here = at(i), &behind = at(next(i));
     const bool left_of_next = orientation(here, behind, to) > 0, right_of_last = orientation(here, before, to) < 0;
-    return orientation(before, here, behind) > 0 ? left_of_next && right_of_last : left_of_next || right_of_last;
+    return turn(i) > 0 ? left_of_next && right_of_last : left_of_next || right_of_last;
   }
+  /// The orientation of the corner with its neighbours.
+  [[nodiscard]] int turn(std::uint32_t i) const { return orientation(at(last(i)), at(i), at(next(i))); }
 
  private:
   void add(const SectionOutline& outline) {
@@ -79,10 +90,11 @@ class Rings {
     }
   }
 
-  std::vector<glm::vec2> places_;
   struct Link {
     std::uint32_t last, next;
   };
+
+  std::vector<glm::vec2> places_;
   std::vector<Link> links_;  ///< the neighbours of each remaining corner
   std::vector<std::uint32_t> firsts_;
 };
@@ -98,18 +110,17 @@ class Joiner {
     // From the left, so that each hole sees a part of the outer line or of a joined hole.
     std::sort(leftmost.begin(), leftmost.end(),
               [&](std::uint32_t a, std::uint32_t b) { return is_left_of(rings_.at(a), rings_.at(b)); });
-    add_joined(rings_.firsts()[0]);
+    rings_.append_ring(rings_.firsts()[0], joined_);
     for (const std::uint32_t corner : leftmost) {
       check_cancelled(execution_);
       const std::uint32_t other = nearest_in_sight(corner);
-      add_joined(corner);
+      rings_.append_ring(corner, joined_);
       if (other == no_index) continue;  // the outlines cross; the hole is filled as if it were not there
       if (rings_.at(other) == rings_.at(corner)) {
         rings_.splice(other, corner);
         continue;
       }
-      joined_.push_back(std::uint32_t(rings_.size()));
-      joined_.push_back(std::uint32_t(rings_.size()) + 1);
+      for (const std::size_t copy : {rings_.size(), rings_.size() + 1}) joined_.push_back(std::uint32_t(copy));
       rings_.bridge(other, corner);
     }
   }
@@ -122,30 +133,20 @@ class Joiner {
     return best;
   }
 
-  void add_joined(std::uint32_t first) {
-    std::uint32_t i = first;
-    do joined_.push_back(i);
-    while ((i = rings_.next(i)) != first);
-  }
-
   [[nodiscard]] std::uint32_t nearest_in_sight(std::uint32_t corner) {
     const glm::vec2 from = rings_.at(corner);
     const auto distance = [&](std::uint32_t i) {
       const glm::dvec2 off = glm::dvec2(rings_.at(i)) - glm::dvec2(from);
       return glm::dot(off, off);
     };
-    std::vector<std::pair<double, std::uint32_t>> near;
+    using Near = std::pair<double, std::uint32_t>;
+    std::vector<Near> near;
     for (const std::uint32_t i : joined_)
       if (!is_left_of(from, rings_.at(i))) near.emplace_back(distance(i), i);
     // The first is nearly always in sight.
-    const auto is_farther = [](const auto& a, const auto& b) { return a > b; };
-    std::make_heap(near.begin(), near.end(), is_farther);
-    while (!near.empty()) {
-      std::pop_heap(near.begin(), near.end(), is_farther);
-      const std::uint32_t other = near.back().second;
-      near.pop_back();
-      if (sees(corner, other)) return other;
-    }
+    std::priority_queue<Near, std::vector<Near>, std::greater<>> nearest(std::greater<>(), std::move(near));
+    for (; !nearest.empty(); nearest.pop())
+      if (sees(corner, nearest.top().second)) return nearest.top().second;
     return no_index;
   }
 
@@ -196,7 +197,7 @@ class ReflexGrid {
     }
     std::vector<std::uint32_t> reflex;
     for (const std::uint32_t i : corners)
-      if (orientation(rings.at(rings.last(i)), rings.at(i), rings.at(rings.next(i))) <= 0) reflex.push_back(i);
+      if (rings.turn(i) <= 0) reflex.push_back(i);
     side_ = std::clamp(int(std::sqrt(double(reflex.size()))), 1, most_cells);
     cells_.resize(std::size_t(side_) * std::size_t(side_));
     for (const std::uint32_t i : reflex) {
@@ -262,7 +263,7 @@ class EarCutter {
   enum class Patience : std::uint8_t { ears, flat, crossing, any };
 
   [[nodiscard]] bool may_go(std::uint32_t i, Patience patience) const {
-    const int turn = orientation(rings_.at(rings_.last(i)), rings_.at(i), rings_.at(rings_.next(i)));
+    const int turn = rings_.turn(i);
     if (turn > 0) return patience >= Patience::crossing || is_ear(i);
     return patience == Patience::any || (turn == 0 && patience >= Patience::flat);
   }
@@ -299,8 +300,7 @@ class EarCutter {
 
   [[nodiscard]] bool is_spike(std::uint32_t i) const {
     const glm::vec2 &a = rings_.at(rings_.last(i)), &b = rings_.at(i), &c = rings_.at(rings_.next(i));
-    if (a == b || b == c) return true;
-    return orientation(a, b, c) == 0 && is_left_of(a, b) == is_left_of(c, b);
+    return a == b || b == c || (orientation(a, b, c) == 0 && is_left_of(a, b) == is_left_of(c, b));
   }
 
   void take(std::uint32_t i) {
@@ -324,11 +324,8 @@ void fill(const Region& region, std::vector<FlatTriangle>& triangles, const Exec
   Rings rings(region);
   Joiner(rings, execution).run();
   std::vector<std::uint32_t> corners;
-  const std::uint32_t first = rings.firsts()[0];
-  std::uint32_t i = first;
-  do corners.push_back(i);
-  while ((i = rings.next(i)) != first);
-  EarCutter(rings, corners, triangles).run(first, execution);
+  rings.append_ring(rings.firsts()[0], corners);
+  EarCutter(rings, corners, triangles).run(corners[0], execution);
 }
 
 }  // namespace frontmost::lines_detail

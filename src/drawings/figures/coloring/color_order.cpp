@@ -18,6 +18,7 @@
 #include "base/srgb.h"
 #include "figures/colored_order.h"
 #include "figures/coloring/pieces.h"
+#include "painter/seen/screen_polygons.h"
 #include "shade/colorists.h"
 #include "shade/fragment_shader.h"
 #include "shade/prepared_scene.h"
@@ -49,14 +50,6 @@ Lighting lighting_of(PreparedScene& scene, const ShadeInput& input, const ShadeO
                       scene.environment(options.light, execution));
 }
 
-Lit lit_at_points(PreparedScene& scene, const ShadeInput& input, const ShadeOptions& options, const Lighting& lighting,
-                  const Execution& execution) {
-  Lit lit = lit_by(lighting, {input, options, kAtPoint}, scene, execution);
-  lit.occlusion = scene.find_occlusion(input, options, execution);
-  scene.shadows.ask_at_points();
-  return lit;
-}
-
 /// The triangles of a figure.
 struct FigureTriangles {
   BitSet seen;   ///< all triangles of the figure
@@ -75,12 +68,16 @@ class PointShader {
     check_opacity(options);
     check_ambient_occlusion(options);
     scene.make_materials_ready(triangles.seen, execution);
-    if (options.shading == Shading::lit)
-      colorist_ = lit_at_points(scene, input, options, lighting_, execution);
-    else if (options.shading == Shading::depth)
+    if (options.shading == Shading::lit) {
+      Lit lit = lit_by(lighting_, {input, options, kAtPoint}, scene, execution);
+      lit.occlusion = scene.find_occlusion(input, options, execution);
+      scene.shadows.ask_at_points();
+      colorist_ = std::move(lit);
+    } else if (options.shading == Shading::depth) {
       colorist_ = depth_colorist(depth_range(input.first(), execution), glm::vec3(input.first().view.forward()));
-    else
+    } else {
       colorist_ = unlit_colorist(options.shading, scene.materials, execution.isa);
+    }
   }
 
   [[nodiscard]] const TriangleSource& source() const { return source_; }
@@ -326,9 +323,7 @@ class PolygonColors {
       side->node = node + (side == &above);
       side->cut = number;
     }
-    CutOutline corners = cut_outline(piece.corners, line);
-    below.corners = std::move(corners.below);
-    above.corners = std::move(corners.above);
+    cut_outline(piece.corners, line, below.corners, above.corners);
     for (const ColorSample& sample : piece.samples) {
       const double distance = line.distance(sample.at);
       if (std::abs(distance) >= kBesideCut) (distance > 0 ? above : below).samples.push_back(sample);
@@ -455,18 +450,6 @@ void append(const ColoredOrder& part, ColoredOrder& into) {
   into.corners.insert(into.corners.end(), part.corners.begin(), part.corners.end());
 }
 
-void reserve(const std::vector<ColoredOrder>& parts, ColoredOrder& into) {
-  std::size_t shapes = 0, polygons = 0, corners = 0;
-  for (const ColoredOrder& part : parts) {
-    shapes += part.shapes.size();
-    polygons += part.polygons.size();
-    corners += part.corners.size();
-  }
-  into.shapes.reserve(shapes);
-  into.polygons.reserve(polygons);
-  into.corners.reserve(corners);
-}
-
 }  // namespace
 
 ColoredOrder color_order(PreparedScene& scene, const ShadeInput& input, const VisibleParts& parts,
@@ -489,7 +472,9 @@ ColoredOrder color_order(PreparedScene& scene, const ShadeInput& input, const Vi
   });
   ColoredOrder colored;
   colored.view = parts.view;
-  reserve(lists, colored);
+  painter_detail::reserve_sum(colored.shapes, lists, &ColoredOrder::shapes);
+  painter_detail::reserve_sum(colored.polygons, lists, &ColoredOrder::polygons);
+  painter_detail::reserve_sum(colored.corners, lists, &ColoredOrder::corners);
   for (ColoredOrder& list : lists) {
     append(list, colored);
     list = {};

@@ -153,11 +153,9 @@ void for_each_place(std::span<const glm::dvec2> corners, double area, double cou
   }
 }
 
-/// The parts of an outline below and above a line.
-struct CutOutline {
-  std::vector<glm::dvec2> below, above;
-};
-[[nodiscard]] CutOutline cut_outline(std::span<const glm::dvec2> corners, const ScreenLine& line);
+/// Appends the parts of an outline below and above a line.
+void cut_outline(std::span<const glm::dvec2> corners, const ScreenLine& line, std::vector<glm::dvec2>& below,
+                 std::vector<glm::dvec2>& above);
 
 /// The greatest difference of any channel.
 [[nodiscard]] float difference(const glm::vec4& a, const glm::vec4& b);
