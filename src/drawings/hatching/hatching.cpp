@@ -276,11 +276,7 @@ glm::dvec3 light_of(const ToneOptions& tone, const View& view) {
 }
 
 View view_from_light(const Surfaces& surfaces, const glm::dvec3& to_light) {
-  FrameOptions options;
-  options.orthographic = true;
-  options.forward = -to_light;
-  options.objects = FramedObjects::all;
-  return frame(surfaces, 1024, 1024, options);
+  return frame(surfaces, 1024, 1024, {.orthographic = true, .forward = -to_light, .objects = FramedObjects::all});
 }
 
 /// Coincident triangles hide no more and have no other lines than one of them, so only the first is kept.
@@ -293,8 +289,7 @@ SeenMesh see_once(const WeldedMesh& mesh, const std::vector<std::uint32_t>& twin
 
 std::vector<std::uint32_t> twins_of(const WeldedMesh& mesh, const View& view, const Surfaces& surfaces,
                                     const Execution& execution) {
-  LineOptions none;
-  none.boundaries = none.silhouettes = none.borders = none.creases = false;
+  const LineOptions none{.boundaries = false, .silhouettes = false, .borders = false, .creases = false};
   return find_features(see(mesh, Sight(view), execution), surfaces, none, execution).twins;
 }
 

@@ -247,12 +247,8 @@ std::vector<HatchSet> section_hatch_sets(const Section& section, std::span<const
 }
 
 ToneOptions section_tone(const CuttingPlane& plane) {
-  ToneOptions tone;
-  tone.to_light =
-      plane.towards == Axis::x || plane.towards == Axis::minus_x ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
-  tone.casts_shadows = false;
-  tone.crease_angle = 0;
-  return tone;
+  const bool is_across_x = plane.towards == Axis::x || plane.towards == Axis::minus_x;
+  return {is_across_x ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0), false, 0};
 }
 
 }  // namespace frontmost

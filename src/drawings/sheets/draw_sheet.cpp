@@ -163,15 +163,14 @@ bool shows_hidden(const SheetOptions& options, NamedView direction) {
          options.hidden_views->end();
 }
 
-PlannedView draw_planned(std::shared_ptr<const Surfaces> surfaces, const View& view, const SheetOptions& options,
-                         const Execution& execution) {
-  PlannedView result;
-  result.surfaces = std::move(surfaces);
-  LineOptions wanted;
-  wanted.crease_angle = options.crease_angle;
-  wanted.outlines = options.style == DrawingStyle::figure;
-  result.drawing = draw_lines(*result.surfaces, view, wanted, execution);
-  return result;
+/// Draws the lines of a view whose surfaces are known, of a model in this scene.
+void draw_lines_of(PlannedView& planned, const View& view, const Scene& scene, const SheetOptions& options,
+                   const Execution& execution) {
+  const LineOptions wanted{.crease_angle = options.crease_angle, .outlines = options.style == DrawingStyle::figure};
+  planned.drawing = draw_lines(*planned.surfaces, view, wanted, execution);
+  const Projection& p = view.projection;
+  if (p.orthographic)
+    planned.millimetres_per_pixel = (p.right - p.left) / view.width * millimetres_per_unit(options, scene);
 }
 
 /// The near and far planes of the options in place of those that enclose the model.
@@ -184,24 +183,17 @@ ClipDistances planes_of(const ClipDistances& fitted, NamedView direction, const 
   return planes;
 }
 
-double millimetres_per_pixel(const View& view, const SheetOptions& options, const Scene& scene) {
-  const Projection& p = view.projection;
-  return p.orthographic ? (p.right - p.left) / view.width * millimetres_per_unit(options, scene) : 1;
-}
-
 PlannedView draw_named(const Surfaces& surfaces, NamedView direction, const SectionView* section,
                        const SheetOptions& options, const Execution& execution) {
   View view = frame(surfaces, fine_grid.x, fine_grid.y,
                     {.direction = direction, .orthographic = true, .objects = FramedObjects::all});
   view.projection.clip = planes_of(view.projection.clip, direction, options);
-  std::shared_ptr<const Surfaces> shown = surfaces_for(surfaces, view, options, execution);
-  const CutScene cut = section ? cut_for(*section, *shown, view, execution) : CutScene{shown, nullptr, {}};
-  PlannedView result = draw_planned(cut.surfaces, view, options, execution);
+  PlannedView result;
   result.direction = direction;
-  result.section = cut.section;
-  result.plane = cut.plane;
   result.shows_hidden = !section && shows_hidden(options, direction);
-  result.millimetres_per_pixel = millimetres_per_pixel(view, options, surfaces.scene());
+  result.surfaces = surfaces_for(surfaces, view, options, execution);
+  if (section) cut_surfaces(result, *section, view, execution);
+  draw_lines_of(result, view, surfaces.scene(), options, execution);
   return result;
 }
 
@@ -220,14 +212,6 @@ std::vector<PlannedView> draw_named_views(const Surfaces& surfaces, const SheetO
     view.name = view.placed.name = view.letter + "-" + view.letter;
   }
   return views;
-}
-
-PlannedView draw_given_view(const Surfaces& surfaces, const View& view, const SheetOptions& options,
-                            const Execution& execution) {
-  PlannedView result = draw_planned(surfaces_for(surfaces, view, options, execution), view, options, execution);
-  result.shows_hidden = options.hidden != HiddenLines::none;
-  result.millimetres_per_pixel = millimetres_per_pixel(view, options, surfaces.scene());
-  return result;
 }
 
 /// Finds the rounds of the views that need them, once for views of the same surfaces.
@@ -323,13 +307,8 @@ StippleOptions stipple_options(const SheetOptions& options, const View& view, do
 
 HatchOptions hatch_options(const SheetOptions& options, const View& view, double millimetres) {
   check_spacing("hatch", *options.hatch, millimetres);
-  HatchOptions hatching;
-  hatching.sets = hatch_sets(*options.hatch / millimetres, options.hatch_angle);
-  hatching.tone = tone_options(options, view);
-  hatching.shortest = std::min(shortest_hatch / millimetres, 1000.0);
-  hatching.by_instance = !options.plot;
-  hatching.nearest_first = options.plot;
-  return hatching;
+  return {hatch_sets(*options.hatch / millimetres, options.hatch_angle), tone_options(options, view),
+          std::min(shortest_hatch / millimetres, 1000.0), !options.plot, options.plot};
 }
 
 /// Adds hatching and dots if requested. \throws Error limit_exceeded if the view has too few pixels for them.
@@ -344,23 +323,18 @@ void place_tones(PlannedView& view, const SheetOptions& options, const Execution
 
 void place_centre_lines(PlannedView& view, const SheetOptions& options) {
   if (!view.rounds || !wants_centre_lines(options)) return;
-  CentreLineOptions centre;
-  centre.with_hidden = view.shows_hidden;
-  centre.overshoot = std::min(centre_overshoot / view.placed.millimetres_per_pixel, 1e6);
-  view.placed.centre_lines = centre_lines_of(*view.rounds, view.drawing, view.placed.strokes, centre);
+  const double overshoot = std::min(centre_overshoot / view.placed.millimetres_per_pixel, 1e6);
+  view.placed.centre_lines =
+      centre_lines_of(*view.rounds, view.drawing, view.placed.strokes, {view.shows_hidden, overshoot});
 }
 
 std::vector<DimensionedView> dimensioned_views(const std::vector<PlannedView>& views) {
   std::vector<DimensionedView> all;
   for (const PlannedView& planned : views) {
-    DimensionedView& view = all.emplace_back();
-    view.sheet = &planned.placed;
-    view.drawing = &planned.drawing;
-    view.rounds = planned.rounds.get();
-    view.with_hidden = planned.shows_hidden;
     // A section does not show the size of the whole model.
-    view.is_dimensioned = !is_at_an_angle(*planned.direction) && !planned.section;
-    view.taken = planned.taken;
+    const bool is_dimensioned = !is_at_an_angle(*planned.direction) && !planned.section;
+    all.push_back(
+        {&planned.placed, &planned.drawing, planned.rounds.get(), planned.shows_hidden, is_dimensioned, planned.taken});
   }
   return all;
 }
@@ -489,8 +463,10 @@ Sheet draw_view(const Surfaces& surfaces, const View& view, const SheetOptions& 
   validate(options);
   validate_for_view(options, view.projection);
   report_progress(execution, "views", 0);
-  std::vector<PlannedView> views;
-  views.push_back(draw_given_view(surfaces, view, options, execution));
+  std::vector<PlannedView> views(1);
+  views[0].surfaces = surfaces_for(surfaces, view, options, execution);
+  views[0].shows_hidden = options.hidden != HiddenLines::none;
+  draw_lines_of(views[0], view, surfaces.scene(), options, execution);
   return finish(std::move(views), surfaces, options, execution);
 }
 

@@ -48,15 +48,12 @@ Paper named_paper(std::string_view name) {
   const bool landscape = take_ending(rest, "-landscape"), portrait = take_ending(rest, "-portrait");
   for (const PaperKind& kind : paper_kinds) {
     if (kind.name != rest) continue;
-    Paper paper;
-    paper.size = landscape ? glm::dvec2(kind.height, kind.width) : glm::dvec2(kind.width, kind.height);
-    paper.may_turn = !landscape && !portrait;
-    return paper;
+    return {landscape ? glm::dvec2(kind.height, kind.width) : glm::dvec2(kind.width, kind.height),
+            !landscape && !portrait};
   }
-  throw Error(ErrorCode::bad_argument,
-              "'" + std::string(name) +
-                  "' is no paper size: a0 to a6, letter, legal or tabloid, perhaps with -portrait "
-                  "or -landscape");
+  throw Error(ErrorCode::bad_argument, "'" + std::string(name) +
+                                           "' is no paper size: a0 to a6, letter, legal or tabloid, perhaps with "
+                                           "-portrait or -landscape");
 }
 
 std::string paper_name(const glm::dvec2& size) {

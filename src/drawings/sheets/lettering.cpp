@@ -19,10 +19,10 @@
 namespace frontmost {
 namespace {
 
-/// Strokes of a letter, in tenths of the height of its lettering: the path of the pen's centre, x to the right from the
-/// letter's left, y up from the baseline. Capitals end at 9 and small letters at 6. Points "x,y" are joined in order;
-/// ";" separates strokes. Before a point, each ( turns the way to it by an eighth of a circle to the left, and each )
-/// to the right: "5,6 ((((0,6" is the upper half of a circle.
+/// Strokes are the path of the pen's centre in tenths of the lettering's height, x to the right from the letter's left,
+/// y up from the baseline. Points "x,y" are joined in order; ";" separates strokes. Before a point, each ( turns the
+/// way to it by an eighth of a circle to the left, and each ) to the right: "5,6 ((((0,6" is the upper half of a
+/// circle.
 struct Glyph {
   char32_t code;
   double width;  ///< width of the glyph; its strokes stay within [0, width]
@@ -209,7 +209,7 @@ constexpr Glyph glyphs[] = {
 constexpr Glyph missing{0, 5, "0,0 0,9 5,9 5,0 0,0"};
 
 struct Mark {
-  const char* strokes;
+  const char* strokes;  ///< about x = 0, above a small letter or below the baseline
   bool is_below;
   std::u32string_view letters;  ///< base and composite, one after the other
 };
@@ -232,26 +232,11 @@ constexpr Mark marks[] = {
     {"0.3,-0.9 0.3,-1.3 -0.3,-2.6", true, U"SȘsșTȚtțGĢKĶkķLĻlļNŅnņRŖrŗ"},
 };
 
-/// A letter composed of another letter and a mark.
-struct Composite {
-  char32_t base;     ///< without its own mark: the dotless i for i
-  const char* mark;  ///< strokes about x = 0, above a small letter or below the baseline
-  bool is_below;
-};
-
-/// The letter, or null if there is none.
+/// The letter; a box if there is none.
 const Glyph* find_glyph(char32_t code) {
   const Glyph* const found = std::lower_bound(std::begin(glyphs), std::end(glyphs), code,
                                               [](const Glyph& glyph, char32_t c) { return glyph.code < c; });
-  return found != std::end(glyphs) && found->code == code ? found : nullptr;
-}
-
-/// The composition of `code`; its mark is null if there is none.
-Composite find_composite(char32_t code) {
-  for (const Mark& mark : marks)
-    for (std::size_t i = 1; i < mark.letters.size(); i += 2)
-      if (mark.letters[i] == code) return {mark.letters[i - 1], mark.strokes, mark.is_below};
-  return {0, nullptr, false};
+  return found != std::end(glyphs) && found->code == code ? found : &missing;
 }
 
 constexpr double gap = 3;       // between the middles of strokes: ISO 3098-1 has two pen widths between letters
@@ -289,27 +274,26 @@ void for_each_point(const char* strokes, const Visit& visit) {
 
 /// A character to be drawn: a letter, possibly with a mark.
 struct Character {
-  const Glyph* glyph = nullptr;
-  const char* mark = nullptr;
-  glm::dvec2 mark_at{0};
-  double indent = 0, width = 0;  ///< `indent`: the letter's offset within the common width
+  const Glyph* glyph;
+  const char* mark;  ///< null if there is none
+  glm::dvec2 mark_at;
+  double indent, width;  ///< `indent`: the letter's offset within the common width
 };
 
 Character character_of(char32_t code) {
-  Character character;
-  const Composite composite = find_composite(code);
-  character.glyph = find_glyph(composite.mark ? composite.base : code);
-  if (!character.glyph) character.glyph = &missing;
-  character.width = character.glyph->width;
-  if (!composite.mark) return character;
-  character.mark = composite.mark;
-  double half = 0, top = composite.base < U'a' ? capital : 0;
-  for_each_point(composite.mark, [&](const glm::dvec2& p, double, bool) { half = std::max(half, std::abs(p.x)); });
-  for_each_point(character.glyph->strokes, [&](const glm::dvec2& p, double, bool) { top = std::max(top, p.y); });
-  character.width = std::max(character.width, 2 * half);
-  character.indent = (character.width - character.glyph->width) / 2;
-  character.mark_at = {character.width / 2, !composite.is_below && top > tall ? rise : 0};
-  return character;
+  const Mark* mark = nullptr;
+  char32_t base = code;
+  for (const Mark& each : marks)
+    for (std::size_t i = 1; i < each.letters.size() && !mark; i += 2)
+      if (each.letters[i] == code) mark = &each, base = each.letters[i - 1];
+  const Glyph* const glyph = find_glyph(base);
+  if (!mark) return {glyph, nullptr, {}, 0, glyph->width};
+  double half = 0, top = base < U'a' ? capital : 0;
+  for_each_point(mark->strokes, [&](const glm::dvec2& p, double, bool) { half = std::max(half, std::abs(p.x)); });
+  for_each_point(glyph->strokes, [&](const glm::dvec2& p, double, bool) { top = std::max(top, p.y); });
+  const double width = std::max(glyph->width, 2 * half);
+  const glm::dvec2 mark_at(width / 2, !mark->is_below && top > tall ? rise : 0);
+  return {glyph, mark->strokes, mark_at, (width - glyph->width) / 2, width};
 }
 
 /// Calls visit(character, its left) for every character. \returns the end of the last one; negative if there is none.

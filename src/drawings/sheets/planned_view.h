@@ -32,15 +32,9 @@ inline constexpr std::string_view section_letters = "ABCDEFGHJKLMNPQRSTUVWXYZ"; 
 [[nodiscard]] std::shared_ptr<const Surfaces> surfaces_of(std::shared_ptr<const Scene> scene,
                                                           const Execution& execution);
 
-/// The part of a scene behind a plane.
-struct CutScene {
-  std::shared_ptr<const Surfaces> surfaces;
-  std::shared_ptr<const Section> section;
-  CuttingPlane plane;
-};
-/// Cuts `surfaces` for a view of them. \throws Error bad_argument if the plane misses them.
-[[nodiscard]] CutScene cut_for(const SectionView& wanted, const Surfaces& surfaces, const View& camera,
-                               const Execution& execution);
+/// Cuts the surfaces of a view: sets its section and plane, and its surfaces to those behind the plane.
+/// \throws Error bad_argument if the plane misses them.
+void cut_surfaces(PlannedView& view, const SectionView& wanted, const View& camera, const Execution& execution);
 
 /// Sets the cells of sections: those of the views with the same direction if free, else a column of their own.
 void place_sections(std::vector<ViewCell>& cells, const std::vector<PlannedView>& views);
