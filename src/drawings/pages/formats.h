@@ -132,7 +132,6 @@ class WritingProgress {
 /// The appearance of a path with its group's pen: the colours of its fill and its line.
 struct PathPaint {
   std::optional<PageColor> fill, line;
-  friend bool operator==(const PathPaint&, const PathPaint&) = default;
   [[nodiscard]] bool is_seen() const { return fill || line; }
 };
 [[nodiscard]] PathPaint paint_of(const PageGroup& group, std::size_t path);

@@ -49,8 +49,6 @@ void check_group(const PageGroup& group, const std::string& where) {
 /// The size of a pixel in style sheets, so that a figure is as large on a page as the picture in a browser.
 constexpr double kMillimetres = 25.4 / 96;
 
-PageColor page_color(const glm::u8vec4& color) { return {color.r, color.g, color.b, color.a}; }
-
 PageGroup backdrop(const glm::vec3& color, const Page& page) {
   PageGroup group{"background", Pen{}};
   group.pen.width = 0;
@@ -94,8 +92,8 @@ PageGroup group_of(const Figure& figure, std::span<const FigureShape> shapes) {
       for (std::size_t k = 0; k < ring.corner_count; ++k)
         outline.push_back(figure.corners[ring.first_corner + k] * kMillimetres);
       group.add(outline, true, i > 0);
-      group.fills.push_back(page_color(shape.color));
-      if (is_blended) group.fills.back().opacity = 255;
+      const glm::u8vec4& color = shape.color;
+      group.fills.push_back({color.r, color.g, color.b, is_blended ? std::uint8_t(255) : color.a});
     }
   return group;
 }

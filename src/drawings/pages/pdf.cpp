@@ -77,7 +77,7 @@ class PdfContent {
   PdfContent(const Page& page, PageText& out, double scale, WritingProgress& progress)
       : page_(page), out_(out), scale_(scale), progress_(progress) {}
 
-  void write() {
+  void write_page() {
     std::size_t form = 0;
     // Millimetres with y down, like the page; round ends and joins.
     out_.fixed(std::llround(scale_ * 1e9), 9) << " 0 0 ";
@@ -89,16 +89,19 @@ class PdfContent {
       for (const PageGroup& group : page_.layers[i].groups) {
         if (group.opacity == 255) {
           write_group(group);
-        } else {
-          write_form(group, form++);
+          continue;
         }
+        states_.fills[group.opacity] = true;
+        out_ << "q /F";
+        out_.integer(group.opacity) << " gs /G";
+        out_.integer(std::int64_t(form++)) << " Do Q\n";
       }
       out_ << "EMC\n";
     }
   }
 
   /// Writes the operators of a form, which begins with the page's default colours.
-  void write_alone(const PageGroup& group) {
+  void write_form(const PageGroup& group) {
     out_ << "0 0 0 rg 0 0 0 RG\n";
     write_group(group);
   }
@@ -111,13 +114,6 @@ class PdfContent {
   [[nodiscard]] const States& states() const { return states_; }
 
  private:
-  void write_form(const PageGroup& group, std::size_t number) {
-    states_.fills[group.opacity] = true;
-    out_ << "q /F";
-    out_.integer(group.opacity) << " gs /G";
-    out_.integer(std::int64_t(number)) << " Do Q\n";
-  }
-
   void write_group(const PageGroup& group) {
     if (group.pen.width > 0) {
       out_.fixed(thousandths(group.pen.width)) << " w [";
@@ -245,7 +241,7 @@ class PdfWriter {
     out_ << (has_unit ? "%PDF-1.6" : "%PDF-1.5") << "\n%\xE2\xE3\xCF\xD3\n";
     for (const PdfPage& page : pages_) {
       begin(page.contents) << "<< ";
-      write_page(page, write_stream(page, page.length, [](PdfContent& content) { content.write(); }));
+      write_page(page, write_stream(page, nullptr, page.length));
       for (const PdfPage::Form& form : page.forms) write_form(page, form);
     }
     for (const Layer& layer : layers_)
@@ -294,16 +290,16 @@ class PdfWriter {
   }
   PageText& reference(std::size_t object) { return out_.integer(std::int64_t(object)) << " 0 R "; }
 
-  /// Writes the end of a stream's dictionary, the stream, and its length as a separate object.
-  template <class Write>
-  States write_stream(const PdfPage& page, std::size_t length_object, const Write& write) {
+  /// Writes the end of a stream's dictionary, the stream of a form or of a whole page, and its length as a separate
+  /// object.
+  States write_stream(const PdfPage& page, const PageGroup* form, std::size_t length_object) {
     out_ << "/Length ";
     out_.integer(std::int64_t(length_object)) << " 0 R " << stream_filter << ">>\nstream\n";
     const std::uint64_t start = out_.size();
     PdfStream stream{out_};
     PageText operators([&stream](std::string_view bytes) { stream.write(bytes); });
     PdfContent content(*page.page, operators, page.scale, progress_);
-    write(content);
+    form ? content.write_form(*form) : content.write_page();
     operators.flush();
     stream.finish();
     const std::uint64_t end = out_.size();
@@ -336,7 +332,7 @@ class PdfWriter {
       out_.fixed(thousandths(side)) << ' ';
     out_ << "] /Group << /S /Transparency /I true >> /Resources << ";
     write_all_states(states) << ">> ";
-    (void)write_stream(page, form.object + 1, [&](PdfContent& content) { content.write_alone(group); });
+    (void)write_stream(page, &group, form.object + 1);
   }
 
   PageText& write_all_states(const States& states) {

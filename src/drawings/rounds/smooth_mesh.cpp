@@ -20,14 +20,6 @@ namespace {
 constexpr std::size_t kTrianglesPerPart = 4096;
 constexpr double kSixDigits = 2e-6;  // of the largest coordinate
 
-Buffer<glm::dvec3> normals_of(const WeldedMesh& mesh, const Execution& execution) {
-  Buffer<glm::dvec3> normals(mesh.triangles.size());
-  parallel_for(execution, normals.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) normals[i] = unit_of(normal_of(mesh, std::uint32_t(i)));
-  });
-  return normals;
-}
-
 /// Fillers of T-junctions have no area and would split smooth surfaces.
 void close_all_seams(WeldedMesh& mesh, const Execution& execution) {
   Buffer<std::int8_t> may_be_flat(mesh.triangles.size());
@@ -40,15 +32,14 @@ void close_all_seams(WeldedMesh& mesh, const Execution& execution) {
   static_cast<void>(close_seams(mesh, may_be_flat, execution));
 }
 
-constexpr std::size_t kSharpPerPart = 4096;
 /// More edges at one vertex belong to no circle, and would take the square of their number.
 constexpr std::size_t kMostAtVertex = 16;
 
 std::vector<SharpEdge> sharp_edges(const SmoothMesh& mesh, const Execution& execution) {
   const std::size_t triangles = mesh.mesh.triangles.size();
-  std::vector<std::vector<SharpEdge>> lists((triangles + kSharpPerPart - 1) / kSharpPerPart);
-  parallel_for(execution, triangles, kSharpPerPart, [&](std::size_t begin, std::size_t end) {
-    std::vector<SharpEdge>& list = lists[begin / kSharpPerPart];
+  std::vector<std::vector<SharpEdge>> lists((triangles + kTrianglesPerPart - 1) / kTrianglesPerPart);
+  parallel_for(execution, triangles, kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
+    std::vector<SharpEdge>& list = lists[begin / kTrianglesPerPart];
     for (auto t = std::uint32_t(begin); t < end; ++t)
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t other = mesh.across(t, k);
@@ -220,7 +211,10 @@ SmoothMesh smooth_mesh(const Surfaces& surfaces, const Execution& execution) {
   result.mesh = weld(surfaces, execution);
   close_all_seams(result.mesh, execution);
   const WeldedMesh& mesh = result.mesh;
-  result.normals = normals_of(mesh, execution);
+  result.normals = Buffer<glm::dvec3>(mesh.triangles.size());
+  parallel_for(execution, mesh.triangles.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) result.normals[i] = unit_of(normal_of(mesh, std::uint32_t(i)));
+  });
   result.neighbours = EdgeNeighbours({mesh.triangles.data(), mesh.triangles.size()}, mesh.positions.size(), execution);
   const Box& box = surfaces.bounds();
   const glm::dvec3 reach = glm::max(glm::abs(glm::dvec3(box.low)), glm::abs(glm::dvec3(box.high)));

@@ -29,6 +29,7 @@ constexpr std::size_t steps_per_poll = 1 << 14;
 /// A segment between two places, by their numbers.
 struct Step {
   std::uint32_t from, to;
+  friend auto operator<=>(const Step&, const Step&) = default;
 };
 
 /// Segments as steps without duplicates. Pairs in opposite directions cancel out.
@@ -42,24 +43,19 @@ std::vector<Step> steps_of(const std::vector<CutSegment>& segments, std::vector<
   const auto number = [&](const glm::vec2& p) {
     return std::uint32_t(std::lower_bound(places.begin(), places.end(), p, is_left_of) - places.begin());
   };
-  struct Way {
-    std::uint32_t low, high;
-    int forwards;
-  };
-  std::vector<Way> ways;
+  std::vector<std::pair<Step, int>> ways;  // from the lower place, and whether forwards or backwards
   for (const CutSegment& segment : segments) {
     const std::uint32_t from = number(segment.from), to = number(segment.to);
-    if (from != to) ways.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
+    if (from != to) ways.push_back({{std::min(from, to), std::max(from, to)}, from < to ? 1 : -1});
   }
-  std::sort(ways.begin(), ways.end(),
-            [](const Way& a, const Way& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
+  std::sort(ways.begin(), ways.end());
   std::vector<Step> steps;
   for (std::size_t i = 0; i < ways.size();) {
-    const Way& way = ways[i];
+    const Step way = ways[i].first;
     int sum = 0;
-    for (; i < ways.size() && ways[i].low == way.low && ways[i].high == way.high; ++i) sum += ways[i].forwards;
-    if (sum > 0) steps.push_back({way.low, way.high});
-    if (sum < 0) steps.push_back({way.high, way.low});
+    for (; i < ways.size() && ways[i].first == way; ++i) sum += ways[i].second;
+    if (sum > 0) steps.push_back(way);
+    if (sum < 0) steps.push_back({way.to, way.from});
   }
   return steps;
 }
@@ -104,17 +100,13 @@ class Walker {
         path_.push_back(to);
         continue;
       }
-      take_loop(at_[to]);
+      const std::size_t begin = at_[to];  // the path closes a loop from there
+      if (path_.size() - begin > 2) closed.push_back(points_from(begin));
+      for (std::size_t i = begin + 1; i < path_.size(); ++i) at_[path_[i]] = no_index;
+      path_.resize(begin + 1);
     }
     if (path_.size() > 1) open.push_back(points_from(0));
     for (const std::uint32_t place : path_) at_[place] = no_index;
-  }
-
-  /// Takes the loop of a path whose end has met its own place number `begin`.
-  void take_loop(std::size_t begin) {
-    if (path_.size() - begin > 2) closed.push_back(points_from(begin));
-    for (std::size_t i = begin + 1; i < path_.size(); ++i) at_[path_[i]] = no_index;
-    path_.resize(begin + 1);
   }
 
   [[nodiscard]] SectionOutline points_from(std::size_t begin) const {

@@ -70,7 +70,6 @@ struct Rest {
     begin = hn::IfThenElse(rises, hn::Max(begin, root), begin);
     end = hn::IfThenElse(falls, hn::Min(end, root), end);
   }
-  HWY_INLINE bool IsAllGone() const { return hn::AllTrue(D(), is_gone); }
 };
 
 struct CornerLanes {
@@ -108,7 +107,7 @@ HWY_INLINE void Ask(const OccluderBatch& batch, const SightedEdge& edge, const S
     }
     // A turn is the negative product with the plane's normal.
     const auto keep_within = [&](const CornerLanes& p, const CornerLanes& q, V sign) HWY_ATTR {
-      if (rest.IsAllGone()) return;
+      if (hn::AllTrue(D(), rest.is_gone)) return;
       const LaneNormals side(sight.is_parallel() ? axis : Minus(p.place, axis), Minus(q.place, p.place));
       rest.Keep<needs_depth ? Rest::Along::kept : Rest::Along::open>(
           Values(side, Minus(from, p.place), sign, hn::Or(p.is_from, q.is_from), edge.slack),

@@ -147,9 +147,7 @@ constexpr double text_distance = 1;        // of a number from its line, and fro
 class DimensionPen {
  public:
   DimensionPen(const DimensionOptions& options, Obstacles& obstacles)
-      : options_(options), obstacles_(obstacles), lines_{"", options.pen}, texts_{"", text_pen(options.text_height)} {
-    texts_.pen.color = options.pen.color;
-  }
+      : options_(options), obstacles_(obstacles), texts_{"", text_pen(options.text_height)} {}
 
   void line(const glm::dvec2& from, const glm::dvec2& to) {
     const glm::dvec2 ends[] = {from, to};
@@ -173,7 +171,7 @@ class DimensionPen {
   }
 
   [[nodiscard]] double width_of(std::string_view text) const { return text_width(text, options_.text_height); }
-  [[nodiscard]] double arrow_length() const { return 12 * options_.pen.width; }
+  [[nodiscard]] double arrow_length() const { return 12 * lines_.pen.width; }
 
   /// The box of a level text above a place, with some room around it.
   [[nodiscard]] PageBox box_of(std::string_view text, const glm::dvec2& at, TextAlign align) const {
@@ -193,7 +191,7 @@ class DimensionPen {
  private:
   const DimensionOptions& options_;
   Obstacles& obstacles_;
-  PageGroup lines_, texts_;
+  PageGroup lines_{"", Pen()}, texts_;
 };
 
 constexpr double least_turn = 190 * std::numbers::pi / 180;  // less is an arc, and has a radius

@@ -27,7 +27,6 @@ struct DimensionedView {
 struct DimensionOptions {
   double numbers_per_unit = 1;  ///< numbers per unit of length of the scene; above 0
   int decimals = 2;             ///< at most, except for small numbers, which have three digits; 0 to 6
-  Pen pen{0.25, {}};            ///< pen of lines and arrows
   double text_height = 3.5;     ///< millimetres, as in TextStyle
 };
 
