@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A grid of square cells over a plane, for the indices of this room: triangles that may hide an edge, lines that may
-// lie on another line, and ends of short chains.
+// lie on another line, and ends of short chains. Callers keep the contents of cells in arrays, by cell number.
 //
-//   +-------+-------+-------+      A segment visits the cells that it passes, each with a box around the part of the
-//   |       |      .|--'    |      segment that may lie in the cell.
-//   |    .--+--' '  |       |
-//   |.--'   |       |       |      The grid knows cells only by their numbers, row by row. Callers keep the contents of
-//   +-------+-------+-------+      cells in arrays, by cell number.
+//   +-------+-------+-------+
+//   |       |      .|--'    |      A segment visits the cells that it passes, each with a box around the part of the
+//   |    .--+--' '  |       |      segment that may lie in the cell.
+//   +-------+-------+-------+
 #pragma once
 
 #include <algorithm>
@@ -28,7 +27,7 @@ struct PassedCell {
   glm::dvec2 low, high;
 };
 
-/// Equal squares side by side, row by row.
+/// Squares are numbered row by row.
 struct SquareGrid {
   glm::dvec2 low{0};
   double size = 1;  ///< side of a square

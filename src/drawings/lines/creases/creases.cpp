@@ -112,8 +112,7 @@ class Neighbours {
   [[nodiscard]] const glm::uvec3& corners(std::uint32_t triangle) const { return seen_.mesh.triangles[triangle]; }
   [[nodiscard]] glm::dvec3 place(std::uint32_t vertex) const { return seen_.mesh.positions[vertex]; }
 
-  /// The triangle beyond the side from vertex a to vertex b. Copies of a triangle count once. Returns none where
-  /// several different triangles lie beyond. O(triangles at a).
+  /// As Fan::beyond(), for the side from vertex a to vertex b. O(triangles at a).
   [[nodiscard]] TurnedTriangle beyond(const TurnedTriangle& triangle, std::uint32_t a, std::uint32_t b) const {
     const WeldedMesh& mesh = seen_.mesh;
     const std::uint32_t own = third_of(corners(triangle.number), a, b);
@@ -152,7 +151,7 @@ class Neighbours {
   [[nodiscard]] bool is_sliver(std::uint32_t triangle) const { return is_sliver_[triangle] != 0; }
 
   /// The normal of the surface that the triangle is cut from. A sliver that is not part of something wider takes the
-  /// normal of one of its neighbours: the one nearest to its own.
+  /// neighbour's normal that is nearest to its own.
   [[nodiscard]] glm::dvec3 surface_normal(const TurnedTriangle& triangle) const {
     const glm::dvec3 own = normal(triangle);
     if (!is_sliver(triangle.number)) return own;
@@ -243,7 +242,7 @@ double angle_of(double half) {
   return 4 * t * sum;
 }
 
-/// The angle between two vectors; pi / 2 for all that are wider.
+/// The angle between two vectors, at most pi / 2.
 double angle_between(const glm::dvec3& n, const glm::dvec3& m) {
   const double cosine = glm::dot(n, m);
   return angle_of(cosine > 0 ? half_tangent(glm::length(glm::cross(n, m)), cosine) : 1);
@@ -354,12 +353,10 @@ Turn turn_beyond(const Neighbours& near, const FoldSide& side, const CrossSectio
   return turn;
 }
 
-/// The jump is the angle between the normals of both sides, less half of the next angle on each side, by which that
-/// side goes on to curve. So a cylinder jumps by 0, however few sides it has; a chamfer or a cone's rim by its whole
-/// angle; the edge between a plane and a fillet by half. Two rules adjust the grade. Where a side turns back, it is
-/// rough, and the fold has to be deeper by as much. Where each side turns one way only, and by at most half as much,
-/// fainter folds count. Triangles that are far in comparison with the width of the other side's triangle count little.
-/// `edge` has two triangles. O(triangles at its corners).
+/// A chamfer or a cone's rim jumps by its whole angle, the edge between a plane and a fillet by half. Two rules adjust
+/// the grade. Where a side turns back, it is rough, and the fold has to be deeper by as much. Where each side turns one
+/// way only, and by at most half as much, fainter folds count. Triangles that are far in comparison with the width of
+/// the other side's triangle count little. `edge` has two triangles. O(triangles at its corners).
 JudgedFold judge_fold(const Neighbours& near, const FeatureEdge& edge) {
   const bool is_alike =
       runs(near.corners(edge.left), edge.from, edge.to) != runs(near.corners(edge.right), edge.from, edge.to);
@@ -411,7 +408,6 @@ std::vector<JudgedFold> judge_folds(const SeenMesh& seen, const CornerTable& tab
   return folds;
 }
 
-/// The edges that may be drawn, by their end vertices.
 class CreaseGraph {
  public:
   CreaseGraph(const WeldedMesh& mesh, const std::vector<FeatureEdge>& edges, std::vector<JudgedFold> folds,

@@ -4,8 +4,7 @@
 // all later groups whose boxes touch its own, so every pair meets once.
 //
 // Two triangles that straddle each other's planes meet the planes' common line in an interval each. The common part of
-// the intervals ends at those of their four ends that lie within the other triangle. Signs of tetrahedra decide that
-// before any point is constructed.
+// the intervals ends at those of their four ends that lie within the other triangle, as signs of tetrahedra tell.
 // O. Devillers, P. Guigue. Faster Triangle-Triangle Intersection Tests. 2002.
 #include "lines/crossings/crossings.h"
 
@@ -127,8 +126,7 @@ class Curve {
 
 class BoxTree {
  public:
-  /// O(triangles). Triangles of similar size are grouped, so that large ones do not widen the boxes of small ones.
-  /// Twins (Features::twins) are left out.
+  /// O(triangles). Twins (Features::twins) are left out.
   BoxTree(const WeldedMesh& mesh, const Features& features, const Execution& execution)
       : kernels_(space_kernels(execution.isa)), triangles_(mesh.triangles.size() - features.twins.size()) {
     const std::vector<std::uint32_t>& left_out = features.twins;
@@ -342,20 +340,17 @@ std::optional<std::uint32_t> shared_vertex(const CrossedFace& a, const CrossedFa
 
 /// For two faces that share a vertex and straddle each other's planes: whether they lie on different sides of that
 /// vertex along the planes' common line, as most neighbours do. The line meets the first face's opposite edge; seen
-/// along that edge, the second face is then turned the wrong way. `heights` are those of the first face over the
-/// second.
+/// along that edge, the second face is then turned the wrong way. `heights`: of the first face over the second.
 bool lie_apart(const WeldedMesh& mesh, const std::array<const CrossedFace*, 2>& faces, const Heights& heights,
                std::uint32_t shared) {
   const glm::uvec3 &a = faces[0]->vertices, &b = faces[1]->vertices;
   const int from = a.x == shared ? 1 : 0, to = a.z == shared ? 1 : 2;
-  // The second face's other corners. The shared corner followed by these has the same order as all three, unless it is
-  // the middle one.
+  // The shared corner followed by the two others has the same order as all three, unless it is the middle one.
   const std::uint32_t next = b.x == shared ? b.y : b.x;
   const int order = b.y == shared ? -1 : 1;
   return turn(mesh, a[from], a[to], shared, next) * heights.of[from].sign * order > 0;
 }
 
-/// The segments found so far, and edges that lie in planes.
 struct Found {
   std::vector<Crossing> crossings;
   std::vector<EdgeContact> contacts;

@@ -27,9 +27,8 @@ struct Crossing {
 };
 
 /// The segments of all pairs of triangles that each have a corner strictly on either side of the other's plane, by
-/// exact signs, and those of add_contacts(). An end is computed from its edge and plane, so segments along a surface
-/// join to the bit. Copies of a triangle give each segment once. Sorted by the segments' ends. O(triangles log
-/// triangles + pairs whose boxes touch).
+/// exact signs, and those of add_contacts(). Copies of a triangle give each segment once. Sorted by the segments' ends.
+/// O(triangles log triangles + pairs whose boxes touch).
 /// \throws Error limit_exceeded for more than 2^20 segments and 16 for each triangle, or more than 2^27 pairs and 32
 /// for each triangle.
 [[nodiscard]] std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features,

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // All decisions are exact. Signs of tetrahedra tell where points lie in a plane, with a vertex beside the plane as
-// their fourth point. The order of coordinates tells which point comes first along a line.
-//
-// find_crossings() finds where a triangle has corners on both sides of another's plane. Where a surface passes through
-// a plane exactly along an edge, neither of the edge's two triangles does, and yet the surfaces cross there:
+// their fourth point. Where a surface passes through a plane exactly along an edge, neither of the edge's two triangles
+// has corners on both sides of the plane, and yet the surfaces cross there:
 //
 //        \     |               The edge (o) lies in the plane of a third triangle, and its own two lie on different
 //    -----o----- plane         sides of it. find_crossings() lists such edges with the triangles in whose planes they

@@ -7,8 +7,8 @@
 //      neighbours lie on one side of the shared vertex along the common line       LiesApart
 //      both meet the planes' common line in overlapping stretches                  MeetsLineApart
 //
-// Each step answers "certainly not" or "perhaps", with a bound on all rounding errors, so no crossing is lost. Pairs
-// that are left are decided exactly, one at a time.
+// Each step answers "certainly not" or "perhaps", with a bound on all rounding errors. Pairs that are left are decided
+// exactly, one at a time.
 
 #include "lines/crossings/space_lanes.h"
 
@@ -30,8 +30,8 @@ using DU = hn::RebindToUnsigned<D>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 
-/// kShare bounds the rounding errors of the normal, the difference and the product, as a share of the sum of the terms'
-/// absolute values. kLeast bounds errors by underflow.
+/// kShare bounds the rounding errors of normal, difference and product, as a share of the sum of the terms' absolute
+/// values. kLeast bounds errors by underflow.
 constexpr float kShare = 32.0f / 16777216.0f, kLeast = 1e-36f;
 /// kLeast for heights, whose products must not underflow in turn; most sizes are about 1.
 constexpr float kLeastHeight = 1e-20f;
@@ -105,8 +105,7 @@ HWY_INLINE Vector3 Choose(M mask, const Vector3& yes, const Vector3& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-/// A triangle that a plane cuts: the corner that is alone on its side, and the other two. Valid where `is_known`: each
-/// corner is certainly on one side.
+/// A triangle that a plane cuts: the corner that is alone on its side, and the other two. Valid where `is_known`.
 struct Cut {
   Vector3 alone, one, other;
   M is_known;
@@ -225,9 +224,8 @@ struct Lanes {
     const M two = hn::Or(hn::Or(hn::And(has[0], has[1]), hn::And(has[1], has[2])), hn::And(has[2], has[0]));
     return hn::AndNot(two, sides.Both());
   }
-  /// Lanes in `asked` that certainly meet the line common to both planes wholly before the probe or wholly behind it.
-  /// Each of the two edges of one triangle that cross the other's plane then has the same orientation to each of the
-  /// other's.
+  /// Lanes in `asked` that certainly meet the line common to both planes wholly before the probe or wholly behind it:
+  /// each edge of one triangle that crosses the other's plane has the same orientation to each of the other's.
   HWY_INLINE std::uint64_t MeetsLineApart(const Probe& probe, std::uint64_t asked) const {
     const Vector3 p[3] = {probe.Corner(0), probe.Corner(1), probe.Corner(2)};
     const Cut own(corner, {p[0], probe.Splat3(probe.all.normal), probe.Splat3(probe.all.size)}), other(p, plane);
@@ -262,9 +260,9 @@ struct Lanes {
   }
 };
 
-/// For each probe: the range of heights over its plane in which rounding leaves the side of a point in a box open.
-/// Heights are relative to the middle of the box. The error of the farthest point is used for all, so that it costs
-/// nothing per point.
+/// For each probe: the range of heights over its plane, relative to the middle of a box, in which rounding leaves the
+/// side of a point in the box open. The error of the farthest point is used for all, so that it costs nothing per
+/// point.
 struct Thresholds {
   HWY_ALIGN float least[kSpaceLanes], most[kSpaceLanes];
 

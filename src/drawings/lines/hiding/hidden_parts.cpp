@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// An edge visits the cells that it passes, and compares with the nearest occluders first, eight at a time. A cell is
-// left as soon as the part of the edge in it is hidden: further occluders could only hide it again.
+// An edge is compared with the nearest occluders of a cell first, eight at a time. The cell is left as soon as the part
+// of the edge in it is hidden.
 //
 //   edge ----> cells that it passes ----> boxes that overlap it ----> triangles that hide it ----> intervals
 //              (OccluderGrid)             (kernels, 16 at once)       (kernels, 8 at once)         (HiddenIntervals)
 //
-// A triangle hides the edge within four planes. Each plane is a linear function along the edge, so its signs at both
-// ends decide. A vertex of the triangle is in the planes through it by its number, not by arithmetic. The value at a
-// root may be rounded; a sign never is.
+// A vertex of the triangle is in the planes through it by its number, not by arithmetic. The value at a root may be
+// rounded; a sign never is.
 #include "lines/hiding/hidden_parts.h"
 
 #include <algorithm>
@@ -202,8 +201,8 @@ bool hold_against_batch(const EdgeQuestion& question, EdgeSearch& search) {
   return (found.hides | found.open) != 0;
 }
 
-/// Adds the entries whose bits are set, counted from `first`, to the batch, and compares each batch that is full.
-/// \returns false when nothing is left to hide in this cell.
+/// Adds the entries whose bits are set, counted from `first`, to the batch, and compares each full batch. \returns
+/// false when nothing is left to hide in this cell.
 bool ask_entries(std::uint64_t bits, std::size_t first, const PassedCell& cell, const EdgeQuestion& question,
                  EdgeSearch& search) {
   for (; bits != 0; bits &= bits - 1) {
@@ -218,8 +217,8 @@ bool ask_entries(std::uint64_t bits, std::size_t first, const PassedCell& cell, 
   return true;
 }
 
-/// For cells of many entries: asks the nearest first, then those just before the edge. In a stack of triangles, those
-/// between hide less and less; they are skipped once nothing in the cell is open.
+/// For cells of many entries: asks the nearest first, then those just before the edge, until nothing in the cell is
+/// open. In a stack of triangles, those between hide less and less.
 void ask_many(const OccluderGrid::Visit& cell, const EdgeQuestion& question, EdgeSearch& search) {
   const OccluderGrid& grid = question.o.grid;
   Interval open = search.hidden.open_part(part_in(cell, question));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where an edge is hidden. Each edge is compared with the occluders in the cells that it passes, and cut where the
-// hidden stretches begin and end. A cutter reuses its memory from edge to edge, so each thread has its own.
+// Each edge is compared with the occluders in the cells that it passes, and cut where hidden stretches begin and end.
 #pragma once
 
 #include <algorithm>
@@ -100,7 +99,6 @@ class HiddenIntervals {
   std::deque<Hidden> hidden_;  ///< a deque: cells may come from either end of the edge
 };
 
-/// The findings about an edge, and the occluders that are to be compared next.
 struct EdgeSearch {
   HiddenIntervals hidden;
   OccluderBatch batch;  ///< occluders that are still to be compared with the edge
@@ -111,7 +109,7 @@ struct EdgeSearch {
   std::uint64_t batches = 0;                    ///< number of batches of occluders that were compared with edges
 };
 
-/// Cuts one edge after another. Not for several threads at once.
+/// Cuts one edge after another, with the same memory. Not for several threads at once.
 class EdgeCutter {
  public:
   explicit EdgeCutter(const EdgeOccluders& occlusion) : o_(occlusion) {}

@@ -5,8 +5,8 @@
 //   eye  .--|    |.....  along each side. Each plane is a linear function along the edge. Its signs at both ends, and
 //        '--|____|.....  its root between them, say where the edge is inside.
 //
-// Kernels test many occluders at once, with bounds on their rounding errors. Cases that they leave open are decided by
-// hidden_by() or covered_by(), which are exact. So a drawing has the same lines with every instruction set.
+// Kernels test many occluders at once. Cases that rounding leaves open are decided by hidden_by() or covered_by(),
+// which are exact. So a drawing has the same lines with every instruction set.
 #pragma once
 
 #include <algorithm>
@@ -36,8 +36,7 @@ struct SightedEdge {
   std::array<std::uint32_t, 2> own{no_index, no_index};  ///< triangles that contain the segment
   /// Bound on the rounding error of constructed ends, for each axis; 0: both ends are vertices.
   double slack = 0;
-  int outer = 0;  ///< the side, as for Sight's turns, on which none of the edge's own triangles are seen; 0: neither
-                  ///< side
+  int outer = 0;  ///< side, as for Sight's turns, on which none of its own triangles are seen; 0: neither side
   double from_distance = 0, to_distance = 0;  ///< planar
 };
 
@@ -57,8 +56,7 @@ inline Interval overlap(const Interval& a, const Interval& b) {
   return {std::max(a.begin, b.begin), std::min(a.end, b.end)};
 }
 
-/// Where a linear function from 0 to 1 with these values at its ends is not negative; `is_strict`: where it is
-/// positive.
+/// Where a linear function from 0 to 1 with these values at its ends is not negative; if `is_strict`, positive.
 [[nodiscard]] Interval where_positive(const Signed& at_0, const Signed& at_1, bool is_strict);
 
 /// Where `occluder` hides the edge: within its three planes through the eye (boundary included), and beyond its own

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grid is first made as fine as the number of triangles suggests. If large triangles take too many cells, it is
-// made coarser until they fit. Cells list their triangles, the nearest first, but none behind one that covers the whole
-// cell.
+// The grid is first made as fine as the number of triangles suggests, and then coarser until large triangles fit.
 //
 //    small: all cells of its box      large: row by row, from its left side to its right
 //    |##|##|  |                       |  |  |##|  |  |
@@ -36,8 +34,8 @@ constexpr double kThinnest = 1e4, kThinnestSide = 1e9;
 /// Relative to the values; far more than the rounding error of a place in the picture.
 constexpr double kDepthSlack = 1e-9, kSideSlack = 1e-5, kFloatSlack = 1e-6;
 
-/// Triangles per cell. Sixteen boxes are tested at once, so many small cells cost more than few large ones. From 4 to
-/// 32, the time for the million-triangle terrain falls from 1.1 to 0.8 s in all; 64 gains nothing more.
+/// Triangles per cell. Sixteen boxes are tested at once: with 4 the million-triangle terrain takes 1.1 s in place of
+/// 0.8.
 constexpr double kTrianglesPerCell = 32;
 constexpr double kMostCells = 1 << 22;
 /// The mean number of cells that a triangle may take, and the most of all; both bound memory.
@@ -47,7 +45,7 @@ constexpr std::size_t kCornersPerPart = 4096, kSeenPerPart = 1024;
 constexpr std::size_t kFetchedAhead = 16;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Moved outwards by the greatest rounding error of a corner, also one far outside of the picture.
+/// Moved outwards by the greatest rounding error of a corner, even far outside of the picture.
 double widened(double value, double direction) { return value + direction * 1e-9 * (1 + std::abs(value)); }
 
 }  // namespace
@@ -185,8 +183,7 @@ struct CellRange {
 
 class GridPlan {
  public:
-  /// Keeps references to its arguments. Takes fewer cells where triangles are large: a thousand large triangles before
-  /// a million cells would give a thousand million entries. O(triangles).
+  /// Keeps references to its arguments. O(triangles).
   GridPlan(const SeenMesh& its_seen, const View& view, bool all, const Execution& its_execution)
       : seen(its_seen), sight(view), keeps_all(all), execution(its_execution), places_(seen.mesh.positions.size()) {
     const auto triangles = double(seen.mesh.triangles.size());
@@ -258,8 +255,8 @@ class GridPlan {
     find_footprints();
   }
 
-  /// Footprints of triangles that are seen, in the order of first cells, so that neighbours on the screen are
-  /// neighbours in memory. Then their ranges, occluders and numbers of entries.
+  /// Sets footprints, ranges, occluders and numbers of entries. In the order of first cells, neighbours on the screen
+  /// are neighbours in memory.
   void find_footprints() {
     const std::size_t count = seen.mesh.triangles.size(), cells = grid.count();
     Buffer<Footprint> all(count);
@@ -440,8 +437,7 @@ void lower(std::atomic<float>& least, float value) {
   }
 }
 
-/// By cell: an upper bound on the distance of the nearest triangle that covers the cell whole and so hides all beyond
-/// it.
+/// By cell: an upper bound on the distance of the nearest triangle that covers the cell whole and hides all beyond it.
 std::vector<std::atomic<float>> backs_of(const GridPlan& plan) {
   std::vector<std::atomic<float>> backs(plan.grid.count());
   for (std::atomic<float>& back : backs) back.store(std::numeric_limits<float>::infinity(), std::memory_order_relaxed);
@@ -473,7 +469,6 @@ OccluderGrid::OccluderGrid(const SeenMesh& seen, const View& view, bool keeps_al
   occluders_ = std::move(plan.occluders);
 }
 
-/// Fills each cell with its entries, the nearest first.
 void OccluderGrid::fill_cells(const GridPlan& plan) {
   const std::vector<std::atomic<float>> backs = backs_of(plan);
   const auto list = [&](std::size_t i, const auto& add) {

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The arithmetic of hidden_by() and of the bounds of exact_vector.h, operation by operation, so that every lane has the
-// same bits as these functions.
-//
 // Boxes and sides are floats in cells, sixteen at a time; they only exclude occluders. The others are compared with the
-// edge in doubles, eight triangles at a time, with bounds on the errors of all four functions. Each hides nothing,
-// hides an interval for certain, or is left open.
+// edge in doubles, eight triangles at a time. Each hides nothing, hides an interval for certain, or is left open. These
+// operations are those of hidden_by() and of the bounds of exact_vector.h, so that every lane has the same bits.
 
 #include "lines/hiding/occluder.h"
 
@@ -27,7 +24,6 @@ using M = hn::Mask<D>;
 using DF = hn::CappedTag<float, 16>;
 
 using Vector3 = Lanes3<V>;
-
 using LaneNormals = BoundedNormals<V>;
 
 /// Values, with masks of their certain signs.
@@ -48,7 +44,7 @@ struct Values {
   }
 };
 
-/// The part of the edge that is left by all functions so far.
+/// The part of the edge that is left so far.
 struct Rest {
   V begin, end;
   M is_gone, is_open;

@@ -258,12 +258,11 @@ class Gaps {
   SideTree tree_;
 };
 
-/// Removes from `edges` the boundaries across which their surface continues. All along such a boundary lie others of
-/// the same object and material, within `widest` and a sixteenth of its length. Their triangles are on the other side,
-/// face the same way and are turned by no more than the angle. (Exporters tessellate each face by itself, so rims share
-/// no vertices.) Where more than a third of all sides are open there is no surface, and all boundaries stay.
-/// \returns pairs of a gap's vertices and those across it, the lower first, ascending. O(boundaries log boundaries); a
-/// boundary with more than 64 others beside it stays.
+/// Removes from `edges` the boundaries across which their surface continues: exporters tessellate each face by itself,
+/// so rims share no vertices. All along such a boundary lie others of the same object and material, within `widest` and
+/// a sixteenth of its length, at most 64. Their triangles are on the other side, face the same way and are turned by no
+/// more than the angle. Where more than a third of all sides are open there is no surface, and all boundaries stay.
+/// \returns pairs of a gap's vertices and those across it, the lower first, ascending. O(boundaries log boundaries).
 VertexPairs leave_out_gaps(const SeenMesh& seen, const Classifier& classifier, double widest, std::size_t triangles,
                            std::vector<FeatureEdge>& edges) {
   std::vector<OpenSide> sides;
@@ -364,7 +363,7 @@ struct Drawn {
   std::uint32_t left, right;
 };
 
-/// An edge with several pairs is drawn once, with the kind that comes first in EdgeKind.
+/// An edge with several pairs is drawn once, by its first kind.
 std::optional<Drawn> first_of(std::span<const SidePair> pairs, const Classifier& classifier) {
   std::optional<Drawn> first;
   for (const SidePair& pair : pairs)
@@ -388,7 +387,6 @@ std::optional<Drawn> drawn_of(std::span<const Side> sides, std::span<const Side>
   return Drawn{EdgeKind::boundary, distinct[0].triangle, distinct.size() > 1 ? distinct[1].triangle : no_index};
 }
 
-/// `sides` come from find_sides().
 void add_features(std::span<const Side> sides, std::uint32_t v, const Classifier& classifier, Features& features) {
   std::vector<Side> distinct;
   for (auto begin = sides.begin(); begin != sides.end();) {

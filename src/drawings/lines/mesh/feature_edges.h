@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The edges of a mesh that are drawn, except gaps: places where patches of one surface end beside each other, and only
-// rounding keeps them apart.
-//
-//    edge  =  (lower vertex, upper vertex)  +  the triangles on its left and right, or none  +  why it is drawn
-//
-// Later steps, which find false creases and gaps, only remove edges from this list.
+// rounding keeps them apart. Later steps, which find false creases and gaps, only remove edges from the list.
 #pragma once
 
 #include <functional>
@@ -61,20 +57,18 @@ struct SurfaceOf {
 };
 using SurfaceOfTriangle = std::function<SurfaceOf(std::uint32_t triangle)>;
 
-/// Pairs the triangles at an edge with more than two opposite vertices to surfaces. Sides of one object, such as a
-/// housing, are paired first. If an object has two sides at the edge, they are a pair. If one of its sides occurs as
-/// often as all its other sides together, it is paired with each of them. The sides that remain are then paired with
-/// each other by the same rules. `sides` are all sides of one edge, copies included, sorted by opposite vertex; their
-/// winding does not matter. O(sides log sides).
-/// \returns none if a side has no partner, or more than one possible partner: different surfaces meet at the edge.
+/// Pairs the triangles at an edge with more than two opposite vertices to surfaces. Sides of one object are paired
+/// first: two are a pair; a side that occurs as often as all others together is paired with each of them. The sides
+/// that remain are then paired with each other by the same rules. `sides` are all sides of one edge, copies included,
+/// sorted by opposite vertex; their winding does not matter. O(sides log sides). \returns none if a side has no
+/// partner, or more than one possible partner: different surfaces meet at the edge.
 [[nodiscard]] std::optional<std::vector<SidePair>> paired_sides(std::span<const Side> sides,
                                                                 const SurfaceOfTriangle& surface_of);
 
 /// Whether two triangles lie on both sides of a gap: such triangles pass through each other only by rounding.
 [[nodiscard]] bool meet_at_gap(const WeldedMesh& mesh, const VertexPairs& continued, std::uint32_t a, std::uint32_t b);
 
-/// The cosine of 15 degrees. A fold is an edge at which a surface turns. Smaller folds are never creases: half the
-/// edges of a scan are folds of some degrees.
+/// The cosine of 15 degrees. Smaller folds are never creases: half the edges of a scan are folds of some degrees.
 inline constexpr double kLeastFoldCosine = 0.96592582628906831;
 
 /// Removes from `edges` the creases that the surfaces on both sides do not confirm, by hysteresis as in J. Canny. A

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vertices of all instances are numbered by their places, and triangles by these numbers. All lists are counted in
-// parts before they are written, so no list grows and no thread waits.
+// Vertices of all instances are numbered by their places. All lists are counted in parts before they are written, so no
+// list grows and no thread waits.
 //
 //    fillers that share sides      A-M-B, A-N-M ...      one line (a seam) each, found by uniting fillers
 //    corners of the seam           A N M B               sorted along any axis on which two of them differ
 //    a triangle with the side A-B  becomes A-N-C, N-M-C, M-B-C
-//
-// Whether a triangle has no area is an exact sign, and the order along a line is the order of one coordinate.
 #include "lines/mesh/mesh.h"
 
 #include <algorithm>
@@ -26,8 +24,8 @@ namespace {
 
 constexpr std::size_t kWeldedPerPart = 8192;
 
-/// Calls visit(instance, first, last) for the pieces of the range from `begin` to `end` within each instance. The range
-/// counts over all instances; `firsts` are the instances' first numbers, followed by the count of all.
+/// Calls visit(instance, first, last) for the pieces of a range over all instances within each instance. `firsts` are
+/// the instances' first numbers, followed by the count of all.
 template <class Visitor>
 void visit_instances(const std::vector<std::size_t>& firsts, std::size_t begin, std::size_t end, const Visitor& visit) {
   auto i = std::size_t(std::upper_bound(firsts.begin(), firsts.end(), begin) - firsts.begin()) - 1;
@@ -124,8 +122,8 @@ Buffer<glm::uvec3> corners_of(const Surfaces& surfaces, const Buffer<std::uint32
 }
 
 constexpr std::size_t kSeamsPerPoll = 1 << 18;
-/// The most triangles that are added: kMostAdded for each, and kAlwaysAdded. Every seam on a plane or a surface stays
-/// far below. But sides that overlap along a line could add as many as the square of their number.
+/// The most triangles that are added: kMostAdded for each, and kAlwaysAdded. Sides that overlap along a line could add
+/// as many as the square of their number.
 constexpr std::size_t kMostAdded = 4, kAlwaysAdded = 1 << 16;
 
 bool is_straight(const Positions& at, const glm::uvec3& t) {
@@ -263,8 +261,7 @@ Seamed seamed(const Seams& seams, const glm::uvec3& t) {
   return {t, {seams.of(t.x, t.y), seams.of(t.y, t.z), seams.of(t.z, t.x)}};
 }
 
-/// Gives up seams for which there is no room.
-/// \returns how many triangles the others add.
+/// Gives up seams for which there is no room. \returns how many triangles the others add.
 std::size_t leave_crowded(Seams& seams, const WeldedMesh& mesh, const Execution& execution) {
   std::vector<std::size_t> added(seams.count(), 0);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {

@@ -2,10 +2,10 @@
 // All triangles of a scene over vertices that are shared wherever they coincide, with closed seams; their properties in
 // a view; and the triangles at each vertex.
 //
-//          C                  C            A filler A-M-B has its corners on one line, and no area: it was put there to
-//         / .                /|.           close the long side A-B against the two short ones. The filler is removed,
-//        /   .              / | .          and the triangle A-B-C beside it is split at M. So every side has one
-//       A--M--B      ->    A--M--B         neighbour again, and surfaces continue across it.
+//          C                  C         A filler A-M-B has its corners on one line, and no area: it was put there to
+//         / .                /|.        close the long side A-B against the two short ones. The filler is removed, and
+//        /   .              / | .       the triangle A-B-C beside it is split at M. So every side has one neighbour
+//       A--M--B      ->    A--M--B      again, and surfaces continue across it.
 #pragma once
 
 #include <limits>
@@ -41,11 +41,9 @@ struct WeldedMesh {
 [[nodiscard]] WeldedMesh weld(const Surfaces& surfaces, const Execution& execution);
 
 /// Removes the triangles whose corners lie exactly on one line (fillers), and splits triangles beside them at the
-/// corners on their sides. A long side A-B, a filler A-M-B and short sides A-M and M-B become two edges of two
-/// triangles each. Pieces come where their triangle was, with its id. A seam that would make more than five times as
-/// many triangles stays open, without its fillers: overlapping sides on one line could make as many as the square of
-/// their number. `facing` is of the mesh, for any view. O(triangles) without fillers, else O(triangles log fillers).
-/// \returns whether there were fillers; else the mesh is unchanged.
+/// corners on their sides. Pieces come where their triangle was, with its id. A seam that would make more than five
+/// times as many triangles stays open, without its fillers. `facing` is of the mesh, for any view. O(triangles) without
+/// fillers, else O(triangles log fillers). \returns whether there were fillers; else the mesh is unchanged.
 [[nodiscard]] bool close_seams(WeldedMesh& mesh, const Buffer<std::int8_t>& facing, const Execution& execution);
 
 /// The properties of a triangle that need no neighbours.

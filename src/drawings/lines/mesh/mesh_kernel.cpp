@@ -3,13 +3,12 @@
 //
 //    bits of a triangle   turns left along x, y, z | turns right along x, y, z | climbs, by corner and axis | facing
 //
-// A triangle's facing is the side of its plane on which the eye is, which follows from the normal. All bits are
-// computed in doubles, without branches, for as many triangles as there are lanes. Facings that rounding leaves open
-// are computed again, exactly, one by one.
+// All bits are computed in doubles, without branches, for as many triangles as there are lanes. Facings that rounding
+// leaves open are computed again, exactly, one by one.
 //
-//    corners of a vertex     next:  b c d a        Corner i runs from `next` to `last` around the vertex. Its partner
-//                            last:  c d a b        is the corner whose `next` is its `last`: the triangle beyond
-//                                                  that edge. In a closed star every corner has one partner.
+//    corners of a vertex     next:  b c d a    Corner i runs from `next` to `last` around the vertex. Its partner is
+//    the
+//                            last:  c d a b    corner whose `next` is its `last`: the triangle beyond that edge.
 
 #include "base/parallel.h"
 #include "lines/mesh/mesh.h"
@@ -49,7 +48,7 @@ HWY_INLINE void Load(const WeldedMesh& mesh, std::size_t begin, std::size_t end,
   for (int k = 0; k < 3; ++k) corners[k] = {load(3 * k), load(3 * k + 1), load(3 * k + 2)};
 }
 
-/// SeenTriangle::bits, appended one by one.
+/// SeenTriangle::bits.
 struct Bits {
   hn::Vec<DU> all;
   int next = 0;
@@ -78,7 +77,6 @@ HWY_INLINE void AppendClimbs(const Vector3 (&p)[3], Bits& bits) {
       bits.Append(hn::Not(hn::Or(is_below[k][axis], is_below[k == 0 ? 2 : k - 1][axis])));
 }
 
-/// All of a SeenTriangle's bits.
 HWY_INLINE hn::Vec<DU> BitsOfTriangles(const Vector3 (&p)[3], const BoundedNormals<V>& normal, const Sight& sight) {
   const D d;
   Bits bits{hn::Zero(DU())};
