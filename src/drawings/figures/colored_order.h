@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps from visible polygons in painting order to a figure. Each step can be tested, or left out, separately. All
-// keep the painting order of the shapes, unless their documentation says otherwise.
+// The steps from visible polygons in painting order to a figure. Each can be tested, or left out, separately.
 //
 //    VisibleParts --color_order()--> one shape for each colour of each polygon
 //                 --merge_neighbours()--> fewer shapes: neighbours of one colour are merged
@@ -63,8 +62,7 @@ struct ColoredOrder {
   }
 };
 
-/// Whether a triangle hides what is behind it. Before the holes of textures are cut out, a triangle with holes does
-/// not.
+/// Whether a triangle hides what is behind it. A triangle with holes does once its holes are cut out.
 [[nodiscard]] inline bool is_opaque(const Surfaces& surfaces, PrimitiveId id, bool holes_are_cut_out = false) {
   const PrimitiveSource source = surfaces.source(id);
   const Scene& scene = surfaces.scene();
@@ -90,11 +88,10 @@ struct ColoredOrder {
 /// a blend group by itself. O(n log n) in the number of polygons of bounded overlap, on one thread.
 [[nodiscard]] ColoredOrder merge_neighbours(const ColoredOrder& colored, const Execution& execution = {});
 
-/// Gathers translucent neighbours of one opacity in blend groups, against hairlines between them. A group is painted as
-/// if it were opaque, with traps, and then composited as a whole. The picture stays the same: shapes change places only
-/// where neither is over the other. Overlapping surfaces are separate groups; a surface that winds over and under
-/// itself has several, with hairlines between these. O(n log n) in polygons and overlapping pairs, on one thread. With
-/// more than 16 million pairs that have translucent shapes between or below them, the figure stays unchanged.
+/// Gathers translucent neighbours of one opacity in blend groups, against hairlines between them. The picture stays the
+/// same: shapes change places only where neither is over the other. A surface that winds over and under itself has
+/// several groups, with hairlines between these. O(n log n) in polygons and overlapping pairs, on one thread. With more
+/// than 16 million pairs that have translucent shapes between or below them, the figure stays unchanged.
 [[nodiscard]] ColoredOrder gather_blend_groups(ColoredOrder colored, const Execution& execution = {});
 
 /// The outlines of all shapes, without sides that their own polygons share, and with traps of `width` pixels under

@@ -3,9 +3,8 @@
 //
 //    surfaces --painter()--> order --visible_parts()--> parts --colours, shapes, outlines (colored_order.h)--> Figure
 //
-// Occluders are determined twice, with different results. Before colouring, a triangle whose texture has holes hides
-// nothing, because its polygon still covers the holes. After colouring, the holes are cut out, and the rest of the
-// triangle hides what is behind.
+// Occluders are determined twice. Before colouring, a triangle whose texture has holes hides nothing, because its
+// polygon still covers the holes. After colouring, the rest of the triangle hides what is behind.
 #include <algorithm>
 
 #include "base/parallel.h"
@@ -90,7 +89,7 @@ TrapList find_traps(const ColoredOrder& colored, double width, const Occluders& 
 }
 
 /// Pixels that a polygon reaches under its neighbours, against hairlines in viewers that blend edges. Lines around
-/// polygons are no alternative: they widen everything, in poppler by much more than their width.
+/// polygons would widen everything, in poppler by much more than their width.
 constexpr double kTrap = 4;
 
 Occluders occluders_of(const Surfaces& surfaces, const FigureOptions& options, bool holes_are_cut_out) {
@@ -120,7 +119,6 @@ VisibleParts parts_of(const Surfaces& surfaces, const View& view, const FigureOp
   return visible_parts(painter(surfaces, view, {.occluders = occluders}, execution), occluders, execution);
 }
 
-/// Draws a figure with the data that earlier pictures prepared.
 Figure figure_of(shading::PreparedScene& scene, const ShadeInput& input, const FigureOptions& options,
                  const Execution& execution) {
   const Surfaces& surfaces = scene.surfaces;

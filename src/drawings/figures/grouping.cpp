@@ -4,8 +4,7 @@
 //    order    1  2  3  4  5        2 and 5 share a side and have one colour. If neither 3 nor 4 covers
 //    colour   a  b  a  c  b        a part of 2, both can be painted together where 5 is.
 //
-// A shape may be painted at the place of its last polygon if nothing between its polygons in the order covers any of
-// them. So merge_neighbours() unites only polygons that no later one covers. Shared sides are found in a SideNet.
+// merge_neighbours() unites only polygons that no later one covers: these may be painted at the place of the last.
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -179,7 +178,7 @@ void sort_out(std::vector<NodePair>& pairs) {
 }
 
 /// The pairs in which one shape is over another, except opaque shapes that are over no translucent one, directly or
-/// indirectly. These go first, in their order. None if there are too many pairs.
+/// indirectly: these go first. None if there are too many pairs.
 std::optional<std::vector<NodePair>> find_over(const ColoredOrder& colored, const Execution& execution) {
   const std::vector<std::uint32_t> shape_of = colored.shapes_of_polygons();
   const Overlaps overlaps(colored);

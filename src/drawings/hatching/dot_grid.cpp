@@ -2,9 +2,8 @@
 // R. Ulichney. The Void-and-Cluster Method for Dither Array Generation. 1993: ranks for the cells of a torus, so that
 // the cells below any rank are spread evenly.
 //
-// A dot is repeatedly put into the largest gap; the order of dots is their rank. So one table serves for every
-// darkness. The table is made once for all threads. It is the same with every C library, because exponentials are
-// rounded to floats before they are added.
+// A dot is repeatedly put into the largest gap; the order of dots is their rank. So one table, made once for all
+// threads, serves for every darkness.
 #include "hatching/dot_grid.h"
 
 #include <array>
@@ -14,8 +13,7 @@ namespace {
 
 constexpr int cells_along = DotGrid::side, cell_count = cells_along * cells_along;
 
-/// How crowded each cell is by taken cells. The loops are written so that compilers vectorize them; otherwise they take
-/// most of the time of a picture with few dots.
+/// How crowded each cell is by taken cells. Compilers vectorize the loops; else they take most time of small pictures.
 class Torus {
  public:
   Torus() {

@@ -6,8 +6,8 @@
 //                          |                 best_cut --> two halves ---> waiting
 //                          +------------------------------------------------+
 //
-// Waiting pieces are taken first, the last one first, so that few wait at a time. Samples of many pieces are shaded
-// together. A tree of cuts keeps the order of the halves, so the order of writing does not depend on that of shading.
+// The piece that was cut last is taken first, so that few wait. Samples of many pieces are shaded together. A tree of
+// cuts keeps the order of the halves, so the order of writing does not depend on that of shading.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -39,7 +39,6 @@ const TriangleStore& smoothed(PreparedScene& scene, const BitSet& large, const E
   return scene.triangles;
 }
 
-/// The lighting of lit figures; empty for others.
 Lighting lighting_of(PreparedScene& scene, const ShadeInput& input, const ShadeOptions& options,
                      const Execution& execution) {
   check_light(options.light);
@@ -56,7 +55,6 @@ struct FigureTriangles {
   BitSet large;  ///< triangles that need a smooth normal if the model has none
 };
 
-/// Safe for several threads at once; each has its own FragmentShader.
 class PointShader {
  public:
   /// Borrows all but the options; prepares whatever the scene lacks. \throws Error as check_opacity() does.
@@ -97,8 +95,7 @@ constexpr double kLeastWidth = 0.25, kBesideCut = 0.35;
 /// The share of the tolerance for differences within a piece, where pieces are grouped; the rest is for differences
 /// between pieces of a group.
 constexpr double kWithin = 2.0 / 3;
-/// The factor of the tolerance for pieces narrower than a pixel: they are hardly visible, and there are many beside
-/// textures.
+/// The factor of the tolerance for pieces narrower than a pixel, which are hardly visible.
 constexpr double kOfSlivers = 8;
 /// Samples that are shaded together: some batches of the shader, and few enough to stay in the cache.
 constexpr std::size_t kSamplesAtOnce = 2048;
@@ -140,7 +137,6 @@ class PolygonColors {
   }
 
  private:
-  /// A piece that is still to be judged.
   struct Piece {
     std::vector<glm::dvec2> corners;
     std::vector<ColorSample> samples;  ///< includes samples of the piece from which it was cut
@@ -218,7 +214,7 @@ class PolygonColors {
   }
 
   /// Whole polygons are also sampled at their corners; corners of other pieces are known or lie beside a cut. Known
-  /// samples count, so a piece gets fewer new ones than its size suggests, often none.
+  /// samples count, so a piece often gets no new ones.
   void place_samples(Piece& piece) {
     const PieceSize size(piece.corners);
     const auto add = [&](const glm::dvec2& at) {
@@ -290,9 +286,9 @@ class PolygonColors {
     return false;
   }
 
-  /// Whether a piece has one colour, and the colour. The majority of the samples decides between surface and hole. The
-  /// colour is the mean of the surface samples, if all are near enough to it: the middle between extremes would tint a
-  /// wide field for the sake of its edge.
+  /// Whether a piece has one colour, and the colour: that of holes by majority, or else the mean of the surface
+  /// samples, if all are near enough to it. The middle between extremes would tint a wide field for the sake of its
+  /// edge.
   [[nodiscard]] std::pair<bool, glm::vec4> judge(const Piece& piece) const {
     std::size_t holes = 0;
     for (const ColorSample& sample : piece.samples) holes += is_hole(sample.color);

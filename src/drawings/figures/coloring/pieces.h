@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pieces of one colour: the sample places of a piece, the line that best separates its colours, and groups of colours.
 //
-//        +---------+         Samples (x dark, o light) are spread over a piece, which one straight line
-//        | x x /o o|         cuts in two. Both sides are sampled again, and cut again if necessary.
-//        | x  / o o|         The line is only a place in the picture: pieces keep their polygon's place
-//        |x  /o o  |         in the painting order, so a cut never changes what hides what.
+//        +---------+      Samples (x dark, o light) are spread over a piece, which one straight line cuts in two.
+//        | x x /o o|      Pieces keep their polygon's place in the painting order, so a cut never changes what hides
+//        |x  /o o  |      what.
 //        +---------+
 #pragma once
 

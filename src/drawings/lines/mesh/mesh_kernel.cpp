@@ -6,9 +6,8 @@
 // All bits are computed in doubles, without branches, for as many triangles as there are lanes. Facings that rounding
 // leaves open are computed again, exactly, one by one.
 //
-//    corners of a vertex     next:  b c d a    Corner i runs from `next` to `last` around the vertex. Its partner is
-//    the
-//                            last:  c d a b    corner whose `next` is its `last`: the triangle beyond that edge.
+//    corners of a vertex     next:  b c d a    Corner i runs from `next` to `last` around the vertex. Its partner, the
+//                            last:  c d a b    triangle beyond that edge, is the corner whose `next` is its `last`.
 
 #include "base/parallel.h"
 #include "lines/mesh/mesh.h"

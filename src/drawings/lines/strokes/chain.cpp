@@ -2,8 +2,7 @@
 // Segments are joined to chains. Then corners are removed from the chains, and runs of chords become arcs.
 //
 // Corners are removed with a cone from the last corner that stayed. The cone holds the directions that pass every point
-// since then at less than the tolerance. An arc runs through its first, its middle and its last corner; the length of a
-// run is doubled while it fits, and then halved.
+// since then at less than the tolerance. An arc runs through the first, the middle and the last corner of a run.
 //
 //            . - '       p4 lies outside of the cone: p3 becomes
 //    p0 <====.  p2  p3   a corner, and a new cone begins there
@@ -56,8 +55,8 @@ std::vector<std::uint32_t> partners(const std::vector<LineSegment>& segments) {
   return partner;
 }
 
-/// Rotates a closed chain so that no arc and no straight line runs across its beginning. It then begins at its sharpest
-/// corner or, where all are blunt, at the end of its longest line.
+/// Rotates a closed chain so that no arc and no straight line runs across its beginning: to its sharpest corner or,
+/// where all are blunt, to the end of its longest line.
 void begin_at_corner(std::vector<glm::dvec2>& points) {
   constexpr double blunt = 0.866;  // the cosine of 30 degrees
   double least = blunt, longest = 0;
@@ -117,6 +116,12 @@ constexpr double alike = 0.5;
 struct Circle {
   glm::dvec2 centre;
   double radius;
+
+  /// The angle from one point to another, in (-pi, pi].
+  [[nodiscard]] double turn_between(const glm::dvec2& a, const glm::dvec2& b) const {
+    const glm::dvec2 u = a - centre, v = b - centre;
+    return std::atan2(cross(u, v), glm::dot(u, v));
+  }
 };
 
 std::optional<Circle> circle_through(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
@@ -126,12 +131,6 @@ std::optional<Circle> circle_through(const glm::dvec2& a, const glm::dvec2& b, c
   const double uu = glm::dot(u, u), vv = glm::dot(v, v);
   const glm::dvec2 to_centre = glm::dvec2(v.y * uu - u.y * vv, u.x * vv - v.x * uu) / area;
   return Circle{a + to_centre, glm::length(to_centre)};
-}
-
-/// The angle from one point of the circle to another, in (-pi, pi].
-double turn_between(const Circle& circle, const glm::dvec2& a, const glm::dvec2& b) {
-  const glm::dvec2 u = a - circle.centre, v = b - circle.centre;
-  return std::atan2(cross(u, v), glm::dot(u, v));
 }
 
 class ArcFinder {
@@ -179,12 +178,12 @@ class ArcFinder {
     return Fit{*circle, *turn};
   }
 
-  /// The angle around the circle from corner to corner. None if a corner is off the circle or far from the next.
+  /// The angle around the circle. None if a corner is off the circle or far from the next.
   [[nodiscard]] std::optional<double> turn_along(const Circle& circle, std::size_t first, std::size_t last) const {
     double turn = 0;
     for (std::size_t i = first; i < last; ++i) {
       if (std::abs(glm::distance(points_[i], circle.centre) - circle.radius) > tolerance_) return std::nullopt;
-      const double by = turn_between(circle, points_[i], points_[i + 1 == points_.size() ? 0 : i + 1]);
+      const double by = circle.turn_between(points_[i], points_[i + 1 == points_.size() ? 0 : i + 1]);
       if (std::abs(by) > widest_join || by * turn < 0) return std::nullopt;
       turn += by;
     }
@@ -252,7 +251,6 @@ std::vector<Chain> chained(const std::vector<LineSegment>& segments) {
   std::vector<bool> is_used(segments.size());
   std::vector<Chain> chains;
   const auto place = [&](std::uint32_t end) { return end % 2 == 0 ? segments[end / 2].from : segments[end / 2].to; };
-  // Appends the chain from this end to the next end without a partner, or once around.
   const auto follow = [&](std::uint32_t end) {
     Chain chain;
     chain.rank = segments[end / 2].rank;

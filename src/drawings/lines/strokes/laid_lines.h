@@ -5,8 +5,7 @@
 //            b -----------------------  nearly one angle, the later one is drawn only where the earlier one is not. The
 //            |<-- overlap -->|          overlap is the stretch of a line on which another lies.
 //
-// Short lines are stored in the cells of a grid that they pass. Long lines would pass too many cells and are stored by
-// the infinite lines on which they lie.
+// Short lines are in the cells of a grid that they pass, long ones in an index of the infinite lines on which they lie.
 #pragma once
 
 #include <algorithm>
@@ -40,11 +39,9 @@ struct Stretch {
 
 class Nearness {
  public:
-  /// In pixels: shorter stretches are neither kept nor removed. Places of one point differ by the rounding of floats,
-  /// 1e-7 of some thousand pixels.
+  /// In pixels: shorter stretches are neither kept nor removed. Places of one point differ by the rounding of floats.
   static constexpr double shortest = 8e-3;
-  /// Greatest slope between a long line and a line on it. Tiny pieces point anywhere, but their lists would be too
-  /// long.
+  /// Greatest slope between a long line and a line on it. Tiny pieces point anywhere, but would be too many.
   static constexpr double most_slope = 1.0 / 128;
   /// Greatest slope between short lines: they part by at most a quarter of their overlap, to either side.
   static constexpr double most_short_slope = 0.5;
@@ -135,9 +132,8 @@ void visit_likely(std::span<const BriefLine> lines, const SoughtLine& sought, co
 
 /// Long segments, indexed by the infinite line on which they lie.
 ///
-/// A long line passes many cells of a grid, and in them many lines that it only crosses. A line on top of it meets two
-/// opposite sides of the drawing, prolonged, at nearly the same heights. These two heights are a point in a dual plane,
-/// in which lines that cross or run in parallel lie apart.
+/// A line on top of another meets two opposite sides of the drawing, prolonged, at nearly the same heights. These two
+/// heights are a point in a dual plane, in which lines that cross or run in parallel lie apart.
 ///
 ///     drawing          dual plane     The plane is a table of buckets. Lines that may lie on a line are near its
 ///    |            _b    |   . b       point. A line that turns about its middle moves there along a straight way.
@@ -157,8 +153,8 @@ class LongLines {
     if (d.x <= 1.05 * d.y) steep_[key(heights(segment, 1))].push_back(brief);
   }
 
-  /// Calls visit(numbers) for segments that may lie on this one: their lines turn from its line by at most the angle
-  /// that Nearness allows at its length, and pass near its middle. \returns how many were tested.
+  /// Calls visit(numbers) for segments whose lines turn from this one's by at most the angle that Nearness allows at
+  /// its length, and pass near its middle. \returns how many were tested.
   template <class Visit>
   std::size_t for_each(const Line& segment, const SoughtLine& sought, const Visit& visit) const {
     const glm::dvec2 d = glm::abs(segment.to - segment.from);
@@ -225,9 +221,8 @@ class LaidLines {
   /// a stretch by Nearness::overlap(), and of long ones those that LongLines::for_each() finds. \returns how many were
   /// tested.
   ///
-  /// Cost: a few tests per line in drawings. Where thousands of lines are in one cell, as the details of a model that
-  /// is seen very small, each is tested against each: 20 thousand take up to 1.4 s, four times as many sixteen times as
-  /// long.
+  /// Cost: a few tests per line in drawings. Thousands of lines in one cell, as of a model that is seen very small, are
+  /// tested each against each: 20 thousand take up to 1.4 s.
   template <class Visit>
   std::size_t for_each(const Line& line, const Visit& visit) const {
     const SoughtLine sought(line, near_);

@@ -5,7 +5,7 @@
 //    the new line    ----------------------------
 //    what is added   ----      ------     ------        its stretches that nothing covers yet
 //
-// Within a rank the first line stays whole. So the result depends only on the order of edges.
+// Within a rank the first line stays whole.
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -22,8 +22,7 @@ class OverlapRemover {
   /// For pieces of `lines`. Precondition: not empty.
   OverlapRemover(const std::vector<Line>& lines, double apart) : near_(apart), index_(lines, near_) {}
 
-  /// Appends the uncovered stretches of `line` to `fresh`.
-  /// \returns how many lines were compared with it.
+  /// Appends the uncovered stretches of `line` to `fresh`. \returns how many lines were compared with it.
   std::size_t lay(const Line& line, std::vector<LineSegment>& fresh) {
     const std::size_t compared = find_covered(line);
     if (covered_.empty()) {

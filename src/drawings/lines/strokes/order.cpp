@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // An order of chains with little pen travel: the next chain begins at the nearest end.
 //
-//    ends left in a box    lowest     The search finds the end nearest to the pen; of equals, the one with the lowest
-//    [ 3 7 9 | 4 5 ]         3        number. A box is entered only if it may hold a nearer end, or one as near with a
-//      /         .                    lower number. Both ends of a chain leave the tree when it is drawn, and the
-//    [3 7 9]   [4 5]                  lowest numbers are updated on the way up. So crowds of ends cost no more than
-//    others.
+//    ends left in a box    lowest    Of equally near ends the lowest number is taken. A box is entered only if it may
+//    [ 3 7 9 | 4 5 ]         3       hold a nearer end, or one as near with a lower number. Both ends of a chain leave
+//      /         .                   the tree when it is drawn, and the lowest numbers are updated on the way up. So
+//    [3 7 9]   [4 5]                 crowds of ends cost no more than others.
 #include <algorithm>
 #include <limits>
 #include <tuple>

@@ -4,8 +4,7 @@
 //    parts of a drawing --> segments --draw_once--> --chained--> chains --without_short_ones-->
 //        --straighten--> --find_arcs--> --nearest_first--> Strokes
 //
-// Each step takes the result of the step before and nothing else: a chain knows its rank and its points, but not the
-// edges that it came from.
+// A chain knows its rank and its points, but not the edges that it came from.
 #pragma once
 
 #include <algorithm>

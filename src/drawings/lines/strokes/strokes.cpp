@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rank is a number for everything that the parts of a stroke have in common: whether they are hidden, whether they
-// are an outline, their kind and their instance, as far as the options ask for it. Sorting by rank sorts by drawing
-// order.
+// A rank is a number for everything that the parts of a stroke have in common, as far as the options ask for it:
+// whether they are hidden, whether they are an outline, their kind and their instance. Ranks are in drawing order.
 //
 //        a ________________ b          Short chain c ends in the air and is left out. Short chain d holds a line that
-//              |    d/                 would end in the air otherwise, so d stays. The lines that pass near the ends of
-//             c     /________ e        short chains show, once for all, which ends touch something.
+//              |    d/                 would end in the air otherwise, so d stays.
+//             c     /________ e
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -173,7 +172,6 @@ class ShortChains {
   std::vector<std::vector<std::size_t>> touched_by_;  ///< by chain: the short chains that end on it
 };
 
-/// The parts of a drawing, as the options of strokes see them.
 class PartReader {
  public:
   PartReader(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options)
@@ -284,8 +282,8 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
   report_progress(execution, "strokes", 0);
   const Ranked parts(surfaces, drawing, options);
   std::vector<Chain> chains = chained(draw_once(parts.segments, options.apart, execution));
-  // A chain that stays close to its beginning is seen as a point. It is left over where two tessellations of one circle
-  // pass through each other.
+  // A chain that stays close to its beginning is left over where two tessellations of one circle pass through each
+  // other.
   std::erase_if(chains, [&](const Chain& chain) {
     return std::all_of(chain.points.begin(), chain.points.end(),
                        [&](const glm::dvec2& p) { return glm::distance(chain.points.front(), p) < options.apart; });
