@@ -7,9 +7,8 @@
 //    +--+--+--+                       |##|##|##|##|##|      within it
 //
 // Places are rounded outwards to floats, and comparisons of places in cells have a pad far above the rounding error.
-#include "lines/hiding/occluder_grid.h"
-
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -19,7 +18,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "geometry/buckets.h"
-#include "lines/hiding/occluder.h"
+#include "lines/hiding/hidden_parts.h"
 #include "lines/lists.h"
 #include "lines/mesh/mesh.h"
 #include "surfaces/radix_sort.h"
