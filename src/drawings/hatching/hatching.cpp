@@ -299,10 +299,7 @@ struct HatchPiece {
   std::int32_t line;
   double begin, end;
   std::uint32_t instance;
-
-  friend bool operator<(const HatchPiece& a, const HatchPiece& b) {
-    return std::tie(a.set, a.line, a.begin, a.end, a.instance) < std::tie(b.set, b.line, b.begin, b.end, b.instance);
-  }
+  friend auto operator<=>(const HatchPiece&, const HatchPiece&) = default;
 };
 
 /// A view with its occluders.

@@ -13,21 +13,6 @@
 namespace frontmost::detail {
 namespace {
 
-constexpr char32_t replacement = 0xFFFD;
-
-/// The number of bytes after the first byte of a UTF-8 character, the data bits of the first byte, and the least code.
-struct Lead {
-  int following;
-  char32_t bits, least;
-};
-std::optional<Lead> lead_of(unsigned char byte) {
-  if (byte < 0x80) return Lead{0, byte, 0};
-  if (byte >= 0xC2 && byte < 0xE0) return Lead{1, byte & 0x1Fu, 0x80};
-  if (byte >= 0xE0 && byte < 0xF0) return Lead{2, byte & 0x0Fu, 0x800};
-  if (byte >= 0xF0 && byte < 0xF5) return Lead{3, byte & 0x07u, 0x10000};
-  return std::nullopt;
-}
-
 constexpr char hex[] = "0123456789ABCDEF";
 
 void append_hex(unsigned value, std::string& text) {
@@ -73,17 +58,19 @@ std::optional<Arc> whole_arc(const PageGroup& group, const PagePath& path) {
 }
 
 char32_t take_character(std::string_view& text) {
-  const std::optional<Lead> lead = lead_of((unsigned char)text[0]);
-  std::size_t length = 1;
-  char32_t code = lead ? lead->bits : replacement;
-  for (; lead && int(length) <= lead->following; ++length) {
-    if (length == text.size() || ((unsigned char)text[length] & 0xC0) != 0x80) break;
-    code = code << 6 | ((unsigned char)text[length] & 0x3Fu);
+  constexpr char32_t least[] = {0, 0, 0x80, 0x800, 0x10000};  // by length, the least code that needs so many bytes
+  const auto byte = [&](std::size_t i) { return char32_t(static_cast<unsigned char>(text[i])); };
+  const char32_t lead = byte(0);
+  const std::size_t length = lead < 0x80 ? 1 : lead < 0xC2 || lead > 0xF4 ? 0 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
+  bool is_whole = length > 0 && length <= text.size();
+  char32_t code = length == 1 ? lead : lead & 0x7Fu >> length;
+  for (std::size_t i = 1; is_whole && i < length; ++i) {
+    is_whole = (byte(i) & 0xC0u) == 0x80u;
+    code = code << 6 | (byte(i) & 0x3Fu);
   }
-  const bool whole = lead && int(length) == lead->following + 1 && code >= lead->least && code < 0x110000 &&
-                     !(code >= 0xD800 && code < 0xE000);
-  text.remove_prefix(whole ? length : 1);
-  return whole ? code : replacement;
+  is_whole = is_whole && code >= least[length] && code < 0x110000 && !(code >= 0xD800 && code < 0xE000);
+  text.remove_prefix(is_whole ? length : 1);
+  return is_whole ? code : U'\uFFFD';
 }
 
 PageText& PageText::operator<<(std::string_view text) {

@@ -6,8 +6,8 @@
 //                          |                 best_cut --> two halves ---> waiting
 //                          +------------------------------------------------+
 //
-// The piece that was cut last is taken first, so that few wait. Samples of many pieces are shaded together. A tree of
-// cuts keeps the order of the halves, so the order of writing does not depend on that of shading.
+// The piece that was cut last is taken first, so that few wait. Samples of many pieces are shaded together. A list
+// keeps the order of the halves, so the order of writing does not depend on that of shading.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -141,9 +141,9 @@ class PolygonColors {
     std::vector<glm::dvec2> corners;
     std::vector<ColorSample> samples;  ///< includes samples of the piece from which it was cut
     std::size_t known_samples = 0;
-    bool is_sliver = false;        ///< all of it lies beside cuts
-    std::uint32_t polygon = 0;     ///< index of its polygon
-    std::uint32_t node = 0;        ///< node in the tree of cuts
+    bool is_sliver = false;     ///< all of it lies beside cuts
+    std::uint32_t polygon = 0;  ///< index of its polygon
+    std::uint32_t slot = 0;
     std::uint32_t cut = no_index;  ///< the last cut that made it
   };
   /// A cut, linked to the one before it: a piece lies on one side of all of its cuts.
@@ -151,10 +151,9 @@ class PolygonColors {
     ScreenLine line;
     std::uint32_t before = no_index;
   };
-  /// A cut piece or a kept one. The order of the tree is the painting order.
-  struct Node {
-    std::uint32_t below = no_index, above = no_index;  ///< nodes
-    std::uint32_t kept = no_index;
+  /// The place of a piece in its polygon's list, which is in painting order.
+  struct Slot {
+    std::uint32_t next = no_index, kept = no_index;
   };
   struct Kept {
     glm::vec4 color;
@@ -164,7 +163,7 @@ class PolygonColors {
   struct Polygon {
     PaintPolygon outline;
     bool is_grouped = false;  ///< pieces of one colour become one shape
-    std::uint32_t node = 0;
+    std::uint32_t first_slot = 0;
     std::optional<ScreenCutout> holes{};
     std::optional<std::vector<TexcoordLines>> texture_lines{};  ///< made when first needed
   };
@@ -172,7 +171,7 @@ class PolygonColors {
     // A triangle is set up about its first sample, which must be on one of these polygons.
     shader_.clear();
     polygons_.clear();
-    nodes_.clear();
+    slots_.clear();
     cuts_.clear();
     kept_.clear();
     started_ = 0;
@@ -186,14 +185,14 @@ class PolygonColors {
 
   void start(const VisibleParts& parts, std::uint32_t number) {
     Polygon& polygon = polygons_[number];
-    polygon.node = std::uint32_t(nodes_.size());
-    nodes_.emplace_back();
+    polygon.first_slot = std::uint32_t(slots_.size());
+    slots_.emplace_back();
     const PaintCorner* const first = parts.corners.data() + polygon.outline.first_corner;
     Piece& piece = looked_at_.emplace_back();
     piece.corners.reserve(polygon.outline.corner_count);
     for (std::size_t i = 0; i < polygon.outline.corner_count; ++i) piece.corners.push_back(glm::dvec2(first[i].at));
     piece.polygon = number;
-    piece.node = polygon.node;
+    piece.slot = polygon.first_slot;
   }
 
   /// Takes pieces with samples for some batches; first the ones that were cut last.
@@ -270,7 +269,7 @@ class PolygonColors {
         return cut(piece, *line);
     }
     if (is_hole(color) || color.w < 0.5f) return;
-    nodes_[piece.node].kept = std::uint32_t(kept_.size());
+    slots_[piece.slot].kept = std::uint32_t(kept_.size());
     kept_.push_back({color, std::move(piece.corners)});
   }
 
@@ -307,16 +306,15 @@ class PolygonColors {
     return {holes == 0 && is_near, mean};
   }
 
-  /// Cuts a piece along a line and puts both halves into the waiting list.
+  /// Cuts a piece along a line and puts both halves into the waiting list, the one below in painting order first.
   void cut(Piece& piece, const ScreenLine& line) {
-    const auto number = std::uint32_t(cuts_.size()), node = std::uint32_t(nodes_.size());
+    const auto number = std::uint32_t(cuts_.size()), slot = std::uint32_t(slots_.size());
     cuts_.push_back({line, piece.cut});
-    nodes_[piece.node] = {node, node + 1, no_index};
-    nodes_.resize(nodes_.size() + 2);
+    slots_.push_back({std::exchange(slots_[piece.slot].next, slot), no_index});
     Piece below, above;
     for (Piece* const side : {&below, &above}) {
       side->polygon = piece.polygon;
-      side->node = node + (side == &above);
+      side->slot = side == &above ? slot : piece.slot;
       side->cut = number;
     }
     cut_outline(piece.corners, line, below.corners, above.corners);
@@ -356,20 +354,10 @@ class PolygonColors {
     return lines;
   }
 
-  /// Lists the kept pieces in painting order: below a cut before above it.
-  void list_kept(const Polygon& polygon) {
-    listed_.clear();
-    path_.assign(1, polygon.node);
-    while (!path_.empty()) {
-      const Node node = nodes_[path_.back()];
-      path_.pop_back();
-      if (node.kept != no_index) listed_.push_back(&kept_[node.kept]);
-      if (node.below != no_index) path_.insert(path_.end(), {node.above, node.below});
-    }
-  }
-
   void emit(const Polygon& polygon, ColoredOrder& into) {
-    list_kept(polygon);
+    listed_.clear();
+    for (std::uint32_t i = polygon.first_slot; i != no_index; i = slots_[i].next)
+      if (slots_[i].kept != no_index) listed_.push_back(&kept_[slots_[i].kept]);
     for (std::uint32_t i = 0; i < listed_.size(); ++i) listed_[i]->group = i;
     if (polygon.is_grouped) group_kept();
     for (std::size_t i = 0; i < listed_.size(); ++i) {
@@ -399,11 +387,10 @@ class PolygonColors {
   std::vector<Piece> waiting_;    ///< a stack: the next piece is last
   std::vector<Piece> looked_at_;  ///< the pieces of the current round
   std::vector<ColorSample*> asked_;
-  std::vector<Node> nodes_;
+  std::vector<Slot> slots_;
   std::vector<Cut> cuts_;
   std::vector<Kept> kept_;
   std::vector<Kept*> listed_;
-  std::vector<std::uint32_t> path_;
 };
 
 constexpr std::size_t kPolygonsPerPart = 256;

@@ -187,7 +187,7 @@ PartInCell seen_in(const PassedCell& cell, const Interval& part, const EdgeQuest
 bool hold_against_batch(const EdgeQuestion& question, EdgeSearch& search) {
   const SightedEdge& edge = question.edge.edge;
   HiddenBatch found;
-  ++search.batches;
+  search.work += 256;
   (question.hides() ? question.o.kernels.hide : question.o.kernels.cover)(search.batch, edge, question.o.sight, found);
   for (std::uint32_t bits = found.hides | found.open; bits != 0; bits &= bits - 1) {
     const auto i = std::size_t(std::countr_zero(bits));
@@ -230,7 +230,7 @@ void ask_many(const OccluderGrid::Visit& cell, const EdgeQuestion& question, Edg
   const std::size_t blocks = (before + kBlock - 1) / kBlock;
   for (std::size_t i = 0; i < blocks; ++i) {
     const std::size_t offset = (i == 0 ? 0 : blocks - i) * kBlock, count = std::min(kBlock, before - offset);
-    search.boxes += count;
+    search.work += count;
     std::uint64_t bits = question.o.kernels.overlapping(grid.boxes(cell.first + offset), count, in.box);
     if (bits != 0) bits &= question.o.kernels.within_sides(grid.sides(cell.cell, offset), count, in.segment);
     if (bits == 0) continue;
@@ -250,7 +250,7 @@ void ask_few(const OccluderGrid::Visit& cell, const EdgeQuestion& question, Edge
     const ScreenBoxes boxes = question.o.grid.boxes(first);
     if (*boxes.nearest > question.farthest) return;
     const std::size_t count = std::min(kMostAtOnce, cell.last - first);
-    search.boxes += count;
+    search.work += count;
     if (!ask_entries(question.o.kernels.overlapping(boxes, count, part), first, cell, question, search)) return;
   }
 }
@@ -261,7 +261,7 @@ void answer(const EdgeQuestion& question, EdgeSearch& search) {
   search.asked.fill(nullptr);
   search.batch.count = 0;
   question.o.grid.visit_cells(question.begin, question.end, [&](const OccluderGrid::Visit& cell) {
-    question.o.grid.has_sides(cell) ? ask_many(cell, question, search) : ask_few(cell, question, search);
+    question.o.grid.has_sides(cell.cell) ? ask_many(cell, question, search) : ask_few(cell, question, search);
     return !search.hidden.cover(question.span);
   });
   if (search.batch.count > 0) (void)hold_against_batch(question, search);

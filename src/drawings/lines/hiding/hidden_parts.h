@@ -55,7 +55,7 @@ class OccluderGrid {
   }
   /// Whether the cell stores the sides of its triangles. Without sides, an edge among many parallel slanting ones would
   /// be compared with all whose boxes it meets.
-  [[nodiscard]] bool has_sides(const Visit& visit) const { return has_sides(visit.cell); }
+  [[nodiscard]] bool has_sides(std::size_t cell) const { return first_[cell + 1] - first_[cell] >= kMany; }
   /// The sides of the entries from the cell's `offset`-th on. Precondition: has_sides().
   [[nodiscard]] ScreenSides sides(std::uint32_t cell, std::size_t offset) const {
     const std::size_t first = first_side_[cell] + offset;
@@ -80,7 +80,6 @@ class OccluderGrid {
 
  private:
   static constexpr std::size_t kMany = 512;
-  [[nodiscard]] bool has_sides(std::size_t cell) const { return first_[cell + 1] - first_[cell] >= kMany; }
   void fill_cells(const GridPlan& plan);
   void fill_sides(const GridPlan& plan);
 
@@ -184,8 +183,7 @@ struct EdgeSearch {
   /// The occluders that were asked last, by the low bits of their addresses, so that the next cell can skip them.
   std::array<const Occluder*, 64> asked{};
   std::vector<std::pair<double, int>> changes;  ///< places where one more or one less triangle hides the edge
-  std::uint64_t boxes = 0;                      ///< number of occluder boxes that were tested, over all edges
-  std::uint64_t batches = 0;                    ///< number of batches of occluders that were compared with edges
+  std::uint64_t work = 0;                       ///< as for EdgeCutter::take_work(), over all edges
 };
 
 /// Cuts one edge after another, with the same memory. Not for several threads at once.
@@ -197,15 +195,11 @@ class EdgeCutter {
   void cut(const SightedEdge& edge, std::uint32_t number, std::vector<DrawnPart>& parts);
 
   /// The work since the last call, in tested boxes. A batch that is compared with an edge counts as 256 boxes.
-  [[nodiscard]] std::uint64_t take_work() {
-    const std::uint64_t work = search_.boxes + 256 * search_.batches;
-    return work - std::exchange(told_, work);
-  }
+  [[nodiscard]] std::uint64_t take_work() { return std::exchange(search_.work, 0); }
 
  private:
   const EdgeOccluders o_;
   EdgeSearch search_;  ///< kept for its memory
-  std::uint64_t told_ = 0;
 };
 
 }  // namespace frontmost::lines_detail

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <tuple>
 
 #include "lines/strokes/parts.h"
 
@@ -22,13 +21,12 @@ constexpr std::uint32_t none = no_index;
 
 /// An end of a segment: number 2 i for `from`, 2 i + 1 for `to`.
 struct SegmentEnd {
+  std::uint32_t rank;
   std::int64_t x, y;
-  std::uint32_t rank, number;
+  std::uint32_t number;
 
   [[nodiscard]] bool meets(const SegmentEnd& o) const { return rank == o.rank && x == o.x && y == o.y; }
-  friend bool operator<(const SegmentEnd& a, const SegmentEnd& b) {
-    return std::tie(a.rank, a.x, a.y, a.number) < std::tie(b.rank, b.x, b.y, b.number);
-  }
+  friend auto operator<=>(const SegmentEnd&, const SegmentEnd&) = default;
 };
 
 /// By end: the only other end that it meets, or none.
@@ -38,7 +36,7 @@ std::vector<std::uint32_t> partners(const std::vector<LineSegment>& segments) {
   for (std::size_t i = 0; i < segments.size(); ++i)
     for (int k = 0; k < 2; ++k) {
       const glm::dvec2& p = k == 0 ? segments[i].from : segments[i].to;
-      ends.push_back({std::llround(p.x * places_per_pixel), std::llround(p.y * places_per_pixel), segments[i].rank,
+      ends.push_back({segments[i].rank, std::llround(p.x * places_per_pixel), std::llround(p.y * places_per_pixel),
                       std::uint32_t(2 * i) + std::uint32_t(k)});
     }
   std::sort(ends.begin(), ends.end());

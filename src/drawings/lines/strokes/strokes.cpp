@@ -9,7 +9,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <tuple>
 
 #include "base/parallel.h"
 #include "frontmost/lines.h"
@@ -57,11 +56,8 @@ SquareGrid grid_over(const std::vector<glm::dvec2>& places, double least) {
 /// A chain on which an end of a short chain lies. The first end of chain i is number 2 i, its last 2 i + 1.
 struct Touch {
   std::size_t end, chain;
-  bool is_at_end;  ///< it also is an end of that chain
-
-  friend bool operator<(const Touch& a, const Touch& b) {
-    return std::tie(a.end, a.chain, b.is_at_end) < std::tie(b.end, b.chain, a.is_at_end);
-  }
+  bool is_within;  ///< it is no end of that chain
+  friend auto operator<=>(const Touch&, const Touch&) = default;
 };
 
 /// Leaves out short chains with an end that touches nothing, and short chains between lines that continue without them,
@@ -142,7 +138,7 @@ class ShortChains {
     // Hidden chains hold no visible ones.
     if (end / 2 == chain || (rule_.is_hidden(chains_[chain]) && !rule_.is_hidden(chains_[end / 2]))) return;
     const auto is_near = [&](std::size_t other) { return glm::distance(place(end), place(other)) <= rule_.touching; };
-    touches_.push_back({end, chain, !chains_[chain].is_closed && (is_near(2 * chain) || is_near(2 * chain + 1))});
+    touches_.push_back({end, chain, chains_[chain].is_closed || !(is_near(2 * chain) || is_near(2 * chain + 1))});
   }
 
   /// Whether the short chain may be left out: one of its ends is in the air, or it is not of a contour and only
@@ -152,11 +148,11 @@ class ShortChains {
     bool is_link = true;
     for (std::size_t end = 2 * number; end < 2 * number + 2; ++end) {
       bool is_held = false, meets_end = false;
-      for (auto touch = std::lower_bound(touches_.begin(), touches_.end(), Touch{end, 0, true});
+      for (auto touch = std::lower_bound(touches_.begin(), touches_.end(), Touch{end, 0, false});
            touch != touches_.end() && touch->end == end; ++touch) {
         if (is_left_out_[touch->chain]) continue;
         is_held = true;
-        meets_end |= touch->is_at_end;
+        meets_end |= !touch->is_within;
       }
       if (!is_held) return true;
       is_link &= meets_end;
