@@ -6,7 +6,7 @@
 //     +-----  -----  -----  -----  -----  -------+        one span: a whole number of periods, and one more dash
 //                                                |
 //                                                |        around the corner the two dashes are one path
-//   a closed path without corners has no span: its pattern goes around a whole number of times
+//   around a closed path without corners, the pattern goes a whole number of times
 #include <algorithm>
 #include <cmath>
 

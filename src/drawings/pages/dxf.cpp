@@ -6,9 +6,8 @@
 //   8           the entity's layer
 //   2_VISIBLE
 //
-// Release 12 has neither groups nor line widths, so layers represent both: each group is a layer, which gives its line
-// type and colour. The page's layer comes first in the name, so that programs can select all of it. The y axis of a
-// page points down and that of DXF up, so places are flipped and arcs change their direction.
+// Release 12 has neither groups nor line widths: each group is a layer, which gives its line type and colour. The y
+// axis of a page points down and that of DXF up, so places are flipped and arcs change their direction.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -71,12 +70,11 @@ int color_number(const PageColor& color) {
   return nearest;
 }
 
-/// The colour of a layer's lines. Black lines get a colour by their class, the digit at which the page layer's name
-/// begins. So programs and lasers can distinguish classes; release 12 has no line widths for that.
+/// The colour of a layer's lines. Black lines get a colour by the digit at which the page layer's name begins, so that
+/// programs and lasers can distinguish classes.
 int layer_color(const std::string& page_layer, const Pen& pen) {
   const int color = color_number(pen.color);
-  // Hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame, sections: all are visible on black
-  // and on white.
+  // From 1: hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame, sections.
   constexpr int of_classes[] = {7, 6, 7, 5, 8, 9, 1, 3, 4, 3};
   const bool is_numbered = !page_layer.empty() && page_layer[0] >= '0' && page_layer[0] <= '9';
   return color == 7 && is_numbered ? of_classes[page_layer[0] - '0'] : color;
@@ -181,9 +179,8 @@ class DxfWriter {
     end_section();
   }
 
-  /// The line type of a pen. Some readers know only standard names and draw all others solid. A name tells how many
-  /// dashes a period has. The suffix "2" or "X2" means a period about half or twice as long as that of the first such
-  /// pen.
+  /// The line type of a pen, by the number of dashes in a period. Some readers draw all but standard names solid. The
+  /// suffix "2" or "X2" means a period about half or twice as long as that of the first such pen.
   [[nodiscard]] std::string type_name(const Pen& pen) const {
     constexpr const char* names[] = {"CONTINUOUS", "HIDDEN", "CENTER", "PHANTOM"};
     const std::string name = names[std::min(pen.dashes.size() / 2, std::size(names) - 1)];

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A drawing has millions of numbers of a few digits. They are integers here (thousandths of a millimetre), so writing
-// them needs no library that rounds, and gives the same bytes everywhere. Angles and radii are compared in millimetres
-// of paper, with a tolerance for rounding to thousandths.
+// them needs no library that rounds, and gives the same bytes everywhere.
 #include "pages/formats.h"
 
 #include <algorithm>

@@ -27,8 +27,7 @@ struct Arc {
   double radius = 0, begin = 0, turn = 0;
 };
 
-/// The arc from `from` to `to`. None for a straight join: without bulge, without length, or within a ten-thousandth of
-/// a millimetre of its chord.
+/// The arc from `from` to `to`. None within a ten-thousandth of a millimetre of its chord.
 [[nodiscard]] std::optional<Arc> arc_between(const glm::dvec2& from, const glm::dvec2& to, double bulge);
 
 /// The join that begins at point `i` of a path: its ends, and its bulge.
@@ -51,8 +50,7 @@ struct Join {
 [[nodiscard]] inline std::int64_t thousandths(double value) { return std::llround(value * 1000); }
 [[nodiscard]] inline glm::i64vec2 thousandths(const glm::dvec2& p) { return {thousandths(p.x), thousandths(p.y)}; }
 
-/// A buffer in front of a file, or of another sink of bytes. Its own number formatting takes nine nanoseconds per
-/// number; to_chars takes eighty.
+/// A buffer in front of a file, or of another sink of bytes. A number takes nine nanoseconds, by to_chars eighty.
 class PageText {
  public:
   using Sink = std::function<void(std::string_view)>;
@@ -71,8 +69,7 @@ class PageText {
   PageText& integer(std::int64_t value) { return fixed(value, 0); }
   /// Writes value / 10^digits without trailing zeros. `digits` is 0 to 9.
   PageText& fixed(std::int64_t value, int digits = 3);
-  /// Writes a number rounded to `digits`, with the zero before the point, which JSON and DXF need and other formats do
-  /// not.
+  /// Writes a number rounded to `digits`, with the zero before the point, which only JSON and DXF need.
   PageText& decimal(double value, int digits = 3);
   /// Number of bytes written so far.
   [[nodiscard]] std::uint64_t size() const { return passed_on_ + used_; }
@@ -89,8 +86,7 @@ class PageText {
   std::uint64_t passed_on_ = 0;
 };
 
-/// Removes and returns the first character of UTF-8 text that is not empty. An invalid byte is removed alone, as
-/// U+FFFD.
+/// Removes and returns the first character of UTF-8 text that is not empty; an invalid byte alone, as U+FFFD.
 [[nodiscard]] char32_t take_character(std::string_view& text);
 
 /// A name for element content and attributes of XML 1.0; printable_text() replaces characters that XML forbids.

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A page as JSON, for further processing by programs.
+// A page as JSON: all of its data under the names of the library's types, with as many digits as other formats.
 //
 //   {"width": ..., "layers": [{"name": ..., "groups": [{"pen": {...}, "paths": [{"points": [[x, y], ...]}, ...]}]}]}
-//
-// The file contains all data of a page under the names of the library's types, with as many digits as other formats.
 #include "pages/formats.h"
 
 namespace frontmost::detail {

@@ -7,8 +7,7 @@
 //                            10 20 m 30 40 l S        a path: move, line, stroke
 //                            q /F128 gs /G0 Do Q      a group with an opacity: form 0, composited as a whole
 //
-// Objects are written immediately, and their offsets are recorded for the table at the end. There is no date and no
-// file identifier, so a page always gives the same bytes.
+// There is no date and no file identifier, so a page always gives the same bytes.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -227,7 +226,7 @@ struct PdfPage {
   double scale;  ///< units per millimetre
 };
 
-/// Writes the objects of a file, and records their offsets.
+/// Writes the objects of a file at once, and records their offsets for the table at its end.
 class PdfWriter {
  public:
   PdfWriter(std::span<const Page> pages, OutputFile& file, const Execution& execution)

@@ -4,8 +4,7 @@
 //     --(---+---)--           sorted by direction, by the line's distance from the corner of the picture, and along
 //        '--+--'              the line.
 //           |
-// A piece is joined to the one before on the same line if a drafter would draw across the gap. So concentric circles
-// share a cross, and a stepped bore has one axis. Axes are joined before they are lengthened.
+// A piece is joined to the one before on the same line if a drafter would draw across the gap.
 #include <algorithm>
 #include <cmath>
 #include <tuple>

@@ -4,12 +4,10 @@
 //    corners of a chain     0   1   2   3   4   5   6   7   8   9 ...
 //    tried                  |---------------|  4 sides fit, then 8, until some do not; then the step is halved
 //
-// A circle goes through the first, middle and last vertex of a run. Arcs of one circle are united, whatever chains they
-// are in, because a rim is split wherever another edge meets it.
-//
-// A wall grows over all smooth neighbours that are parallel to its axis and have their vertices at its radius. Walls
-// from circles come first: a circle determines the axis better than two neighbours, whose tube is fitted again as they
-// get more.
+// A circle goes through the first, middle and last vertex of a run. Arcs of one circle are united, because a rim is
+// split wherever another edge meets it. A wall grows over all smooth neighbours that are parallel to its axis and have
+// their vertices at its radius. A circle determines the axis better than two neighbours, whose tube is fitted again as
+// they get more.
 #include <algorithm>
 #include <map>
 #include <numbers>
@@ -39,8 +37,7 @@ class RunFinder {
         return;
       }
     }
-    // A closed chain is a run from its first vertex, which may lie in the middle of an arc. Such an arc comes in two
-    // parts, which are united later.
+    // The first vertex of a closed chain may lie in the middle of an arc, whose two parts are united later.
     for (std::size_t at = 0; at + kFewestSides <= sides_;) {
       const std::size_t end = longest_run(
           at, kFewestSides, sides_, [&](std::size_t last) { return fit(at, last).has_value(); }, kLargestStep);
@@ -196,9 +193,9 @@ class Seeds {
     return has_one;
   }
 
-  /// Whether the next ring leans twice as much as this triangle. Then the triangle is beside a ring of a sphere or
-  /// torus, which is no cylinder and no higher than the next ring. In contrast, a fillet leans by half a step where it
-  /// begins at a wall and by three halves next; a slight chamfer does not lean more.
+  /// Whether the next ring leans twice as much as this triangle, as beside a ring of a sphere or torus, which is no
+  /// cylinder. A fillet leans by half a step where it begins at a wall and by three halves next; a slight chamfer does
+  /// not lean more.
   [[nodiscard]] bool leans_on(std::uint32_t triangle, const glm::dvec3& axis) const {
     const double first = lean(triangle, axis);
     const auto is_twice = [&](std::uint32_t t) { return std::abs(lean(t, axis) / first - 2) < 0.4; };
@@ -232,7 +229,7 @@ class WallGrower {
  public:
   explicit WallGrower(const SmoothMesh& mesh) : mesh_(mesh), is_used_(mesh.mesh.triangles.size()) {}
 
-  /// None if the seed's surface is no cylinder, or already part of one. Visited triangles are not visited again.
+  /// None if the seed's surface is no cylinder, or already part of one.
   [[nodiscard]] std::optional<FoundRound> grow(const Seed& seed) {
     const std::uint32_t other = mesh_.across(seed.triangle, seed.side);
     if (is_used_[seed.triangle] || is_used_[other] || !start(seed, other)) return std::nullopt;
@@ -255,7 +252,7 @@ class WallGrower {
   }
 
  private:
-  /// Grows the current triangles. The axis of a circle is better than a fit to few triangles, so it is not fitted.
+  /// Grows the current triangles. The axis of a circle is not fitted.
   std::optional<FoundRound> grown(bool fits) {
     std::size_t fitted = std::max(triangles_.size(), kFewestTriangles / 2);
     for (std::size_t i = 0; i < triangles_.size(); ++i) {

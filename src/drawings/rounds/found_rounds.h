@@ -7,8 +7,7 @@
 //    smooth neighbours ------------------------------> walls: cylinders that begin at circles, then the others
 //    other regions that close around an axis --------> surfaces of revolution
 //
-// A polygon of a mesh counts as a circle if its steps are alike and its corners lie on one circle to the precision of
-// the file.
+// A polygon counts as a circle if its steps are alike and its corners lie on one to the precision of the file.
 #pragma once
 
 #include <cmath>
@@ -80,8 +79,7 @@ struct Across {
 /// The direction that is closest to perpendicular to all vectors.
 [[nodiscard]] glm::dvec3 common_perpendicular(std::span<const glm::dvec3> vectors);
 
-/// 20.01 degrees: a larger turn between two neighbours is an edge, and between two sides of a polygon a corner. The
-/// same limit as for arcs of strokes.
+/// 20.01 degrees, as for arcs of strokes: a larger turn is an edge between neighbours, or a corner of a polygon.
 inline constexpr double kWidestStep = 0.34924038;
 inline constexpr double kWidestCosine = 0.93963;
 inline constexpr double kWhole = 2 * std::numbers::pi;  ///< radians of a whole turn
@@ -126,9 +124,8 @@ struct SharpChains {
 
 inline constexpr std::size_t kFewestSides = 4;  ///< the fewest of an arc
 
-/// Each edge is in one chain, except edges of chains that are shorter than an arc. Where several edges meet, the
-/// straightest pairs continue each other, unless the cosine of the turn is below `least_cosine`. O(edges log edges at a
-/// vertex).
+/// Chains of at least kFewestSides edges. Where several edges meet, the straightest pairs continue each other, unless
+/// the cosine of the turn is below `least_cosine`. O(edges log edges at a vertex).
 [[nodiscard]] SharpChains sharp_chains(const SmoothMesh& mesh, const Execution& execution,
                                        double least_cosine = kWidestCosine);
 

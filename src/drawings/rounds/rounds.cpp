@@ -6,8 +6,7 @@
 // test are checked ring by ring.
 //
 // A prism has two rims about one axis, each with its corners on a circle. Rims are sorted by the point of their axis
-// nearest to the origin, along a direction that is parallel to no usual row of holes. So the other rim is among the
-// next.
+// nearest to the origin, along a direction that is parallel to no usual row of holes.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -216,8 +215,7 @@ bool are_ends_of_one(const PrismRim& a, const PrismRim& b) {
          glm::length(glm::cross(a.circle.axis, b.circle.axis)) <= kSamePrism;
 }
 
-/// The prisms of a mesh, with a sharp rim at either end. O(sharp edges log sharp edges), and at most 4096 comparisons
-/// for each rim.
+/// O(sharp edges log sharp edges), and at most 4096 comparisons for each rim.
 std::vector<Round> find_prisms(const SmoothMesh& mesh, const Execution& execution) {
   const SharpChains all = sharp_chains(mesh, execution, std::cos(kWidestPrismTurn));
   std::vector<PrismRim> rims;

@@ -6,8 +6,7 @@
 //     /  \     .  plane   / |  cut face            removed part on its left. The segments of an object form outlines,
 //    /____\    .         /__|                      and the outlines bound the regions of the cut face.
 //
-// The intersection of an edge with the plane is computed from the edge's lesser end. So both triangles at the edge get
-// the same place to the bit, and outlines close without a tolerance.
+// The intersection of an edge with the plane is computed from the edge's lesser end, so outlines close to the bit.
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -24,7 +23,6 @@ using namespace lines_detail;
 
 constexpr std::size_t triangles_per_poll = 1 << 14;
 
-/// The intersection of an edge with the plane, computed from the same end for both triangles.
 glm::vec3 meeting(const PlaneAxes& plane, glm::vec3 p, glm::vec3 q) {
   if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(p, q);
   const int across = plane.across();

@@ -7,9 +7,8 @@
 //     |      +---+      |                   |      +---+      |
 //     +-----------------+                   +-----------------+
 //
-// All turns are exact signs, so no ear overlaps another. Only reflex corners may lie in an ear; they are found in a
-// grid. Where outlines cross there may be no ear: then flat corners are cut, then any corner that turns left, then any
-// corner.
+// All turns are exact signs, so no ear overlaps another. Where outlines cross there may be no ear: then flat corners
+// are cut, then any corner that turns left, then any corner.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -286,7 +285,7 @@ class EarCutter {
     return orientation(a, b, p) > 0 && orientation(b, c, p) > 0;
   }
 
-  /// Cuts an ear, and spikes that it leaves: these have no width and would hide the direction of the sides beside them.
+  /// Cuts an ear, and spikes that it leaves, which would hide the direction of the sides beside them.
   void cut(std::uint32_t i) {
     std::uint32_t ends[] = {rings_.last(i), rings_.next(i)};
     take(i);

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Segments are joined at places that are equal to the bit. Where several continue at a place, the leftmost is taken, so
-// that outlines touch but never cross:
-//
-//        \ | /          a walk from below takes the left one; another walk that comes by, or begins there,
-//         \|/           takes the others
-//          o
-//
-// A line that does not close is joined to another line, or to itself, where their ends are near. Closed lines are
-// nested, each with a winding number on either side. A line bounds a region if one side is filled and the other is not:
-// as the outer line of a region, or as a hole in the smallest region around it.
+// that outlines touch but never cross. A line that does not close is joined to another line, or to itself, where their
+// ends are near. Closed lines are nested, each with a winding number on either side. A line bounds a region if one side
+// is filled and the other is not: as the outer line of a region, or as a hole in the smallest region around it.
 #include "sections/regions.h"
 
 #include <algorithm>

@@ -4,8 +4,7 @@
 //
 //    segments --find_outlines--> closed lines --regions_of--> outer lines with their holes --fill--> triangles
 //
-// Coordinates are those of the plane, as floats. They are never recomputed, so a filled face shares its vertices with
-// the walls beside it to the bit.
+// Coordinates are never recomputed, so a filled face shares its vertices with the walls beside it to the bit.
 #pragma once
 
 #include <array>
@@ -22,7 +21,6 @@ namespace frontmost::lines_detail {
 
 /// Coordinates in a cutting plane: two axes within the plane and one across it, right-handed in this order with
 /// CuttingPlane::towards. The plane is perpendicular to a world axis, so coordinates are selected and never computed.
-/// Points in the plane stay there to the bit, and vertices of the cut face are vertices of the walls beside it.
 class PlaneAxes {
  public:
   explicit PlaneAxes(const CuttingPlane& plane)
@@ -83,8 +81,7 @@ using FlatTriangle = std::array<glm::vec2, 3>;
 
 /// Appends counter-clockwise triangles that fill the region. Each side is a side of another triangle or of an outline;
 /// corners on one line may give triangles without area. All signs are exact. Outlines that cross themselves are filled
-/// by triangles that may overlap and run clockwise, so that their sides have triangles, too. O(n log n) for usual
-/// parts, at worst O(n^2).
+/// by triangles that may overlap and run clockwise. O(n log n) for usual parts, at worst O(n^2).
 void fill(const Region& region, std::vector<FlatTriangle>& triangles, const Execution& execution);
 
 }  // namespace frontmost::lines_detail
