@@ -5,8 +5,7 @@
 //           --> plan: paper, scale, places --> strokes, hatching, dimensions, frame --> Page
 //
 // Lines are found before the scale is known, because the drawn lines determine how much room a view takes. Everything
-// measured in millimetres of paper comes after the plan: tolerances of strokes, dashes, hatching, numbers. Details that
-// are too short or too dense for a pen are left out then, not when a file is written.
+// measured in millimetres of paper comes after the plan: tolerances of strokes, dashes, hatching, numbers.
 #include <algorithm>
 #include <cmath>
 
@@ -137,8 +136,8 @@ bool wants_centre_lines(const SheetOptions& options) {
   return options.centre_lines.value_or(has_named_views(options) && options.style == DrawingStyle::technical);
 }
 
-/// The finest error that paper shows, or a coarser one if the eye is too near for that. None if even the coarsest error
-/// takes too many triangles: then the model's own triangles look better.
+/// The finest error that paper shows, or a coarser one if the eye is too near for that. None if even the coarsest takes
+/// too many triangles.
 std::optional<double> tessellation_error(const SheetOptions& options, const Scene& scene, const View& view) {
   if (options.tessellation_error) return options.tessellation_error;
   for (double error = fine_error; error <= coarsest_error; error *= 2)
@@ -197,7 +196,7 @@ PlannedView draw_named(const Surfaces& surfaces, NamedView direction, const Sect
   return result;
 }
 
-/// Draws the views of the options, then the sections, each with its lines but without a place.
+/// The views of the options, then the sections, without places.
 std::vector<PlannedView> draw_named_views(const Surfaces& surfaces, const SheetOptions& options,
                                           const Execution& execution) {
   std::vector<PlannedView> views;
@@ -311,7 +310,7 @@ HatchOptions hatch_options(const SheetOptions& options, const View& view, double
           std::min(shortest_hatch / millimetres, 1000.0), !options.plot, options.plot};
 }
 
-/// Adds hatching and dots if requested. \throws Error limit_exceeded if the view has too few pixels for them.
+/// \throws Error limit_exceeded if the view has too few pixels for hatching or dots.
 void place_tones(PlannedView& view, const SheetOptions& options, const Execution& execution) {
   const View& camera = view.drawing.view;
   const double millimetres = view.placed.millimetres_per_pixel;
@@ -349,7 +348,7 @@ void keep_room_for_sizes(std::vector<ViewCell>& cells, const std::vector<Planned
   }
 }
 
-/// Lays out the views and sets their places. \returns the plan.
+/// Sets the places of the views. \returns the plan.
 SheetPlan place_views(std::vector<PlannedView>& views, const Surfaces& surfaces, const SheetOptions& options) {
   Cells all = cells_of(views, surfaces, options);
   place_sections(all.cells, views);
@@ -397,7 +396,6 @@ void add_frame(Page& page, const SheetOptions& options, const Scene& scene, std:
   page.layers.push_back(draw_frame({page.width, page.height}, block));
 }
 
-/// Finishes a sheet from its drawn views.
 Sheet finish(std::vector<PlannedView> views, const Surfaces& surfaces, const SheetOptions& options,
              const Execution& execution) {
   report_progress(execution, "rounds", 0);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The frame of a sheet by ISO 5457 (border, zones, centring and trimming marks), and its title block by ISO 7200.
 //
-//      1   2   3   4          Zones are counted from the middle of each side, an even number on each. Their border is
-//    +---+---+---+---+        outside of the frame, so that the drawing space stays whole. Pages as narrow as A4 have
-//  A |               | A      letters and numbers on two sides only.
-//    +               +
-//  B |               | B      Letters have the heights of ISO 3098. A text too wide for its field is split into two
-//  lines
-//    +---+---+---+---+        before its letters get smaller. Nothing is cut off.
+//      1   2   3   4        Zones are counted from the middle of each side, an even number on each. Pages as narrow as
+//    +---+---+---+---+      A4 have letters and numbers on two sides only.
+//  A |               | A
+//    +               +      Letters have the heights of ISO 3098. A text too wide for its field is split into two lines
+//  B |               | B    before its letters get smaller. Nothing is cut off.
+//    +---+---+---+---+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -150,7 +149,6 @@ class BlockDrawing {
   std::map<double, PageGroup> texts_;  ///< by text height, since each height has its pen
 };
 
-/// Appends the groups of a title block whose upper left corner is `corner`.
 void draw_title_block(const TitleBlock& block, const glm::dvec2& corner, PageLayer& layer) {
   BlockDrawing drawing(corner);
   drawing.add({"Legal owner", {0, 0}, {69, 18}, 3.5, 2}, block.owner);
@@ -190,8 +188,8 @@ std::string zone_letter(int number) {
   return name;
 }
 
-/// The lines between zones along one axis, in the frame from `low` to `high`, including both ends. The number of zones
-/// is even and nearest to the page's side divided by 50 mm.
+/// The lines between zones along one axis, in the frame from `low` to `high`, including both ends. The even number of
+/// zones is nearest to the page's side divided by 50 mm.
 std::vector<double> zone_ends(double side, double low, double high) {
   const int half = std::max(1, int(std::lround(side / (2 * zone))));
   std::vector<double> ends = {low};

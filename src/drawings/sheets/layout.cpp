@@ -5,9 +5,8 @@
 //    |---------+--------|           |-----------+------|        one line of cells, along one axis
 //
 // A line of cells is as wide as its widest view before the anchor and its widest behind it, both times the scale, plus
-// room for annotations, which does not scale. So the largest scale for an area is a division. Candidate pages are tried
-// in order of preference. Next to a title block, whether a layout fits depends on its place. There the largest scale is
-// found by bisection: a layout that fits at a scale fits at every smaller one.
+// room for annotations, which does not scale. So the largest scale for an area is a division. Next to a title block,
+// where it depends on the layout's place, it is found by bisection.
 #include <algorithm>
 #include <cmath>
 #include <optional>

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paper of a sheet: marks besides the lines of the model, the frame with its title block, and the layout of the
-// views in columns and rows around the front view.
+// The paper of a sheet: the frame with its title block, and the layout of the views in columns and rows around the
+// front view. All marks are pen strokes, so plotters and DXF have them, too.
 //
 //               column -1   0     1             third-angle projection: the view from a side is on that side
 //    row -1                 top   iso           first-angle projection: on the opposite side
 //    row  0     left     front  right  back
 //    row  1              bottom
-//
-// Views in line share an axis: anchors of a row have the same height, so an edge has the same height in all of them.
-// Marks are pen strokes like the lines of the model, so plotters and DXF have them, too.
 #pragma once
 
 #include <string>
@@ -24,8 +21,7 @@ struct PageBox {
   glm::dvec2 low{0}, high{0};
 };
 
-/// An arrowhead, three pen widths wide and `length` millimetres long. It consists of two slender triangles side by
-/// side, whose sides are so near each other that the pen fills them, in every format and on a plotter.
+/// An arrowhead, three pen widths wide and `length` millimetres long: two triangles so slender that the pen fills them.
 inline void add_arrowhead(PageGroup& group, const glm::dvec2& tip, const glm::dvec2& pointing, double length) {
   const double width = group.pen.width;
   const glm::dvec2 base = tip - length * pointing, across(-pointing.y * width, pointing.x * width);
@@ -45,8 +41,7 @@ inline void add_arrowhead(PageGroup& group, const glm::dvec2& tip, const glm::dv
 /// The space for views: the rectangle from `low` to `high` without the title block in its lower right corner.
 struct DrawingSpace {
   glm::dvec2 low{0}, high{0};
-  /// The title block's upper left corner, in millimetres of the page. Its lower right corner is `high`.
-  glm::dvec2 block{0};
+  glm::dvec2 block{0};  ///< upper left corner of the title block
 };
 
 /// The smallest page with room for a frame, in millimetres.
@@ -58,11 +53,11 @@ inline constexpr glm::dvec2 least_framed_page{210, 100};
 
 /// The layer "8 frame" for a page of that size: frame (0.7 mm), zones of 50 mm from the middle with letters and
 /// numbers, centring marks, trimming marks, title block and its text. Zones are only above and on the right if a side
-/// is at most 210 mm. Everything is pen lines, also for plotters and DXF. \throws Error as drawing_space() does.
+/// is at most 210 mm. \throws Error as drawing_space() does.
 [[nodiscard]] PageLayer draw_frame(const glm::dvec2& page, const TitleBlock& block);
 
-/// The extent of a view around its anchor, in millimetres at scale 1:1, y down, and its cell. Views in line share the
-/// row or the column. Anchors of a row have the same height, those of a column the same x.
+/// The extent of a view around its anchor, in millimetres at scale 1:1, y down, and its cell. Anchors of a row have the
+/// same height, those of a column the same x.
 struct ViewCell {
   glm::dvec2 low{0}, high{0};
   int column = 0, row = 0;
@@ -70,8 +65,7 @@ struct ViewCell {
   glm::dvec2 room_before{0}, room_behind{0};
 };
 
-/// The cell of a named view relative to the front view. The view from the left is on the right in first-angle
-/// projection, and on the left in third-angle projection.
+/// The cell of a named view relative to the front view.
 [[nodiscard]] glm::ivec2 cell_of(NamedView view, ProjectionMethod method);
 
 /// The columns and rows in use, each as wide as its widest view.
@@ -88,10 +82,10 @@ class SheetLayout {
   [[nodiscard]] const glm::dvec2& gap() const { return gap_; }
   /// The number of columns and rows in use.
   [[nodiscard]] glm::dvec2 counts() const { return {lines_[0].size(), lines_[1].size()}; }
-  /// Whether no view extends beyond `block` to the right and downwards. `corner` is the layout's upper left corner.
-  [[nodiscard]] bool leaves_free(const glm::dvec2& block, double scale, const glm::dvec2& corner) const;
   /// The places of the anchors. `corner` is the layout's upper left corner.
   [[nodiscard]] std::vector<glm::dvec2> anchors(double scale, const glm::dvec2& corner) const;
+  /// Whether no view extends beyond `block` to the right and downwards.
+  [[nodiscard]] bool leaves_free(const glm::dvec2& block, double scale, const glm::dvec2& corner) const;
 
  private:
   /// A column or row in use, with its number and the extent of its views before and behind their anchors.

@@ -62,8 +62,7 @@ struct SectionMarkOptions {
   double text_height = 5;              ///< millimetres, as in TextStyle
 };
 
-/// Millimetres that a cutting line takes beyond its ends (`cutting_line_room`), and beside them on the side from which
-/// the section is viewed (`section_arrow_room`).
+/// Millimetres that a cutting line takes beyond its ends, and beside them on the side from which the section is viewed.
 inline constexpr double cutting_line_room = 12, section_arrow_room = 15;
 
 struct SectionMarks {
@@ -71,8 +70,7 @@ struct SectionMarks {
   std::vector<PageBox> boxes;     ///< boxes of arrows and letters
 };
 
-/// Draws cutting lines in long dashes and dots, with thick ends 3 to 9 mm beyond the cut part, an arrow at each end and
-/// its letter behind it; and the names of views. All are pen strokes, also for plotters.
+/// Draws cutting lines with thick ends 3 to 9 mm beyond the cut part, and the names of views.
 [[nodiscard]] SectionMarks draw_section_marks(std::span<const CuttingLine> lines, std::span<const ViewName> names,
                                               const SectionMarkOptions& options = {});
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The plane of a section is edge-on in views along other axes: the first of these gets the cutting line, even if it is
-// another section. The section takes the cell of the view with the same direction, if that is free, and otherwise a
-// column of its own behind those of all views.
+// another section.
 //
 //    A               A          A cutting line is thin, with long dashes and dots, and has thick ends beyond the cut
 //    |               |          part. Arrows at the ends point in the section's view direction, with its letter behind

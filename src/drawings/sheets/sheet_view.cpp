@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines of views as layers of a page. Each kind of line has a layer, in drawing order, so that visible lines are
-// above hidden ones. Layer names begin with the number of a plotter's pen. Within a layer, each object of each view is
-// a group.
+// Each kind of line has a layer of the page, in drawing order. Within a layer, each object of each view is a group.
 //
 //    dashes on a line     |=====  ==  =====  ==  =====|      it begins and ends with a whole long dash; long dashes are
 //                                                            stretched to fit the length

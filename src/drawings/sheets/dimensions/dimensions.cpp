@@ -7,8 +7,7 @@
 //      .--<'                       tip on the circle
 //     (  o  )
 //
-// A leader costs its length, and more for every line that it crosses. The cheapest free place is taken. The largest
-// sizes go first, because their leaders have the longest ways around inner circles.
+// A leader costs its length, and more for every line that it crosses. The cheapest free place is taken.
 #include "sheets/dimensions/dimensions.h"
 
 #include <algorithm>
@@ -34,7 +33,6 @@ struct SeenCircle {
   double radius;      ///< millimetres on the page
 };
 
-/// The extent of a view along one of its axes.
 struct Extent {
   double low, high;                 ///< on the page
   double size;                      ///< in units of the scene
@@ -143,7 +141,7 @@ constexpr double extension_overshoot = 2;  // beyond the dimension line
 constexpr double first_distance = 10;      // of a dimension line from the view
 constexpr double text_distance = 1;        // of a number from its line, and from everything else
 
-/// Draws into the groups of a layer, and registers everything drawn as obstacles.
+/// Registers everything drawn as obstacles.
 class DimensionPen {
  public:
   DimensionPen(const DimensionOptions& options, Obstacles& obstacles)

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dimensions of drawing sheets by ISO 129: overall sizes and diameters.
-//
-// Overall sizes are measured on the drawn lines, not on the model's box, along the axes of the view. If both ends
-// belong to one cylinder, its diameter is used: the corners of its polygon would give slightly less.
+// Dimensions of drawing sheets by ISO 129: diameters, and overall sizes of the drawn lines, not of the model's box.
 #pragma once
 
 #include <span>
@@ -55,11 +52,11 @@ struct Dimensions {
 };
 
 /// Places overall sizes by overall_sizes_of(), and the diameters of circles and cylinders seen along their axes, each
-/// once on the sheet, those of one size in a view together ("6x⌀10"). An overall size of a single cylinder has its sign
-/// and replaces the diameter. Circles at the end of a cone or chamfer, and arcs of little more than a half circle or
-/// less, have none. At most 64 diameters stand on leader lines, as near as possible and crossing few lines. They avoid
-/// lines and texts of the drawing and `taken`, and stay within `area` (the page within its frame). O(lines + rounds).
-/// \throws Error bad_argument for options out of range.
+/// once on the sheet, those of one size in a view together ("6x⌀10"). An overall size of a single cylinder is its
+/// diameter, which the corners of its polygon do not reach. Circles at the end of a cone or chamfer, and arcs of little
+/// more than a half circle or less, have none. At most 64 diameters stand on leader lines. They avoid lines and texts
+/// of the drawing and `taken`, and stay within `area` (the page within its frame). O(lines + rounds). \throws Error
+/// bad_argument for options out of range.
 [[nodiscard]] Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBox& area,
                                           std::span<const PageBox> taken, const DimensionOptions& options = {});
 
