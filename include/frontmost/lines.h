@@ -32,10 +32,10 @@ inline constexpr int edge_kind_count = 5;
 struct LineOptions {
   /// Radians, 0 to pi: an edge is a crease if the normals of its triangles differ by more, but never if the triangles
   /// are coplanar. None: an edge is a crease if it bends by at least 18 degrees more than half of what each surface
-  /// bends by at its next edge. 12 degrees suffice if both surfaces bend evenly and by at most half as much as the
-  /// edge, 9 degrees if a crease continues along the edge. Slivers take the normals of their surfaces. Triangles at
-  /// more than 34 degrees always form a crease, those at less than 15 never. One or two edges that end in the air are
-  /// no crease, unless they are longer than a twentieth of the scene's diagonal.
+  /// bends by at its next edge; 12 degrees suffice if both surfaces bend evenly and by at most half as much as the
+  /// edge, 9 degrees if a crease continues along the edge. Triangles at more than 34 degrees always form a crease,
+  /// those at less than 15 never. One or two edges that end in the air are no crease, unless they are longer than a
+  /// twentieth of the scene's diagonal.
   std::optional<double> crease_angle = std::nullopt;
   /// True: DrawnPart::hidden_by counts surfaces. False: it is 0 or 1, which costs less.
   bool counts_hidden = false;
@@ -93,9 +93,8 @@ struct Drawing {
 //   where two objects, each smooth, pass through each other exactly along a common edge.
 
 /// Finds the feature edges of `surfaces` and cuts each into seen and hidden parts. The result is the same to the bit
-/// for any number of threads and every instruction set. Near-linear: each edge is tested against triangles in the cells
-/// of a screen grid that it passes. Quadratic in a cell with `counts_hidden`, or if thousands of edges and triangles
-/// share a cell, as in stacks of triangles that are all seen or at a vertex of thousands of slivers: 20,000 take 11 s.
+/// for any number of threads and every instruction set. Near-linear; quadratic with `counts_hidden`, or if thousands of
+/// edges and triangles lie in one place of the screen, as at a vertex of thousands of slivers: 20,000 take 11 s.
 /// (A. Appel. The Notion of Quantitative Invisibility and the Machine Rendering of Solids. 1967.)
 /// \throws Error as validate(view) does; bad_argument for an angle out of range; limit_exceeded for more than 2^20
 /// segments of intersections and 16 for each triangle, 2^21 parts and 4 for each edge, or about 20 s of work.
@@ -127,9 +126,8 @@ struct StrokeOptions {
   double apart = 0.002;
   double tolerance = 0.01;  ///< pixels, 0.0001 to 1: greatest distance of a stroke from its parts
   /// Pixels, 0 to 100. Above 0: four or more consecutive parts become an arc if their ends lie within this distance of
-  /// a circle, at most 20 degrees apart. Polygons of up to 17 sides stay polygons. The arc also stays within this
-  /// distance of each part, unless two of the six parts nearest to it (three before, three after) are at least half as
-  /// long.
+  /// a circle, at most 20 degrees apart: polygons of up to 17 sides stay polygons. The arc also stays within this
+  /// distance of each part, unless two of the three parts before it and after it are at least half as long.
   double arc_tolerance = 0;
   /// Pixels, 0 to 10000: a shorter stroke is left out if it ends in the air, or lies between lines that continue
   /// without it. Pieces of silhouettes and boundaries that close an outline stay.
@@ -220,14 +218,9 @@ struct HatchLine {
   std::uint32_t instance = no_index;  ///< no_index without by_instance
 };
 
-// How hatch() works: each line of a set stands for a plane through the eye. The plane cuts every triangle below the
-// line in a segment. The segment is cut where it goes out of sight, as edges are in draw_lines(), and likewise where it
-// enters shadow, in the view of the light. The brightness crosses HatchSet::below at a root of a quadratic equation.
-// Nothing is sampled. Pieces that meet are joined, and lie on their line up to the rounding of doubles.
-
 /// The pieces of hatch lines that lie on visible, dark parts of `surfaces`: by set, then by line, from one end to the
-/// other. The result is the same to the bit for any number of threads and every instruction set. O(segments), one for
-/// each triangle and line over it, beside the grids of occluders of draw_lines().
+/// other. Nothing is sampled. The result is the same to the bit for any number of threads and every instruction set.
+/// O(segments), one for each triangle and line over it, beside the grids of occluders of draw_lines().
 /// (G. Winkenbach, D. Salesin. Computer-Generated Pen-and-Ink Illustration. 1994; E. Praun, H. Hoppe, M. Webb, A.
 /// Finkelstein. Real-Time Hatching. 2001: sets that stay where darker ones are added.)
 /// \throws Error as validate(view) does; bad_argument for options out of range; limit_exceeded for more than 2^26
@@ -329,14 +322,11 @@ struct SectionHatching {
 // Rounds: circles, cylinders and surfaces of revolution behind a scene's triangles, and their centre lines in drawings.
 //
 //            |
-//         .-~|~-.         +-----------------+
-//   - - /- - + - -\ - -   |- - - - - - - - -|- -
-//       \    |    /       +-----------------+
-//         `-~|~-'
+//         .-~|~-.         +-----------------+      A triangle file has polygons in place of circles. Drawings need the
+//   - - /- - + - -\ - -   |- - - - - - - - -|- -   circles: a cross over a circle that is seen along its axis, an axis
+//       \    |    /       +-----------------+      line where it is seen from the side, and a diameter among the
+//         `-~|~-'                                  dimensions.
 //            |
-//
-// A triangle file has polygons in place of circles. Drawings need the circles: a cross over a circle that is seen along
-// its axis, an axis line where it is seen from the side, and a diameter among the dimensions.
 
 enum class RoundKind : std::uint8_t { circle, cylinder, revolved };
 

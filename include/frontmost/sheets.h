@@ -6,8 +6,7 @@
 //   draw_sheet() --> Sheet ------+--> Page --save()--> SVG, PDF, DXF, JSON
 //   paths of one's own ----------+
 //
-// A Figure is the vector counterpart of an Image. It keeps millions of polygons in three arrays; the elements of each
-// array name a range of the next one:
+// A Figure is the vector counterpart of an Image: three arrays, of which the elements name a range of the next one:
 //
 //   shapes   | shape 0           | shape 1 | ...    filled in this order, each with one colour
 //   rings    | ring 0  | ring 1  | ring 2  | ...    the outlines of a shape: its rim, its holes, its other parts
@@ -40,8 +39,8 @@ struct FigureShape {
   glm::u8vec4 color{0};
   std::uint32_t ring_count = 0;
   std::size_t first_ring = 0;
-  /// Number of the blend group, ascending. The translucent shapes of one blend group have the same opacity. They are
-  /// filled opaquely, one after the other, on a transparent ground; the result is then blended with that opacity.
+  /// Ascending. The translucent shapes of one blend group have the same opacity. They are filled opaquely, one after
+  /// the other, on a transparent ground; the result is then blended with that opacity.
   std::uint32_t blend_group = 0;
 };
 /// A picture of polygons: paths to be filled in order. Pixels of the view, x right, y down.
@@ -89,8 +88,7 @@ struct FigureOptions {
 
 // Pages: pen lines and filled polygons in millimetres, written as SVG, PDF, DXF or JSON.
 //
-// A page has x to the right and y down, from its top left corner. Later elements lie over earlier ones. Colours are
-// sRGB, as in the files.
+// A page has x to the right and y down, from its top left corner. Later elements lie over earlier ones.
 
 /// sRGB and opacity, 0 to 255 each; not premultiplied.
 struct PageColor {
@@ -160,8 +158,8 @@ void validate(const Page& page);
 
 // How pages become files:
 //
-//   SVG    Sizes in millimetres, one user unit to the millimetre. Layers and groups are named as in Inkscape; paths of
-//          one pen share elements. No style sheets, clip paths, masks or transforms.
+//   SVG    Sizes in millimetres, one user unit to the millimetre. Layers and groups are named as in Inkscape. No style
+//          sheets, clip paths, masks or transforms.
 //   PDF    Version 1.5, compressed. Layers are optional content, groups with an opacity transparency groups. Version
 //          1.6 with a scaled user unit if a side exceeds 5080 mm.
 //   DXF    AutoCAD release 12, in millimetres ($INSUNITS), y up from the page's lower left corner. Lines only: LINE,
@@ -201,8 +199,8 @@ void save(const Figure& figure, const std::string& path, std::optional<PageForma
 
 // Lettering: text as strokes of one pen, the same in every format and on every machine.
 //
-// Fonts of page formats look different in every viewer, and plotters have none. Text therefore becomes paths of lines
-// and arcs. It is placed by one of nine points of the box around its capitals:
+// Fonts look different in every viewer, and plotters have none. Text therefore becomes paths of lines and arcs. It is
+// placed by one of nine points of the box around its capitals:
 //
 //   left         centre         right
 //    x-------------x-------------x     top: upper edge of capitals
@@ -236,12 +234,10 @@ void add_text(PageGroup& group, std::string_view text, const glm::dvec2& at, con
 [[nodiscard]] double text_width(std::string_view text, double height = 3.5);
 
 // Views of a sheet: strokes, hatching and centre lines at their places on a page, with the pens of drawing standards.
+// draw_sheet() performs all of these steps; call them yourself to lay out pages of your own.
 //
 //   Drawing --chain_strokes()--> Strokes ----+
 //   hatch(), stipple(), centre_lines_of() ----+--> SheetView --page_of()--> Page --save()--> file
-//                                                  a place and a scale
-//
-// draw_sheet() performs all of these steps; call them yourself to lay out pages of your own.
 
 /// Pens by the kind of line.
 struct LinePens {
