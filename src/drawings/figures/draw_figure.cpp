@@ -48,42 +48,24 @@ std::vector<ScreenPolygon> polygons_in_groups(const ColoredOrder& colored, const
   return polygons;
 }
 
-/// Consecutive shapes of one blend group.
-struct PaintedGroup {
-  std::size_t begin, end;  ///< range of ColoredOrder::polygons
-  bool has_traps;          ///< translucent, with several shapes
-};
-
-std::vector<PaintedGroup> groups_of(const ColoredOrder& colored) {
-  std::vector<PaintedGroup> groups;
-  const ColoredShape* first = nullptr;
-  for (const ColoredShape& shape : colored.shapes) {
-    const std::size_t end = shape.first_polygon + shape.polygon_count;
-    if (first && first->blend_group == shape.blend_group) {
-      groups.back() = {groups.back().begin, end, shape.color.a < 255};
-    } else {
-      groups.push_back({shape.first_polygon, end, false});
-      first = &shape;
-    }
-  }
-  return groups;
-}
-
 /// The traps of each polygon. Opaque polygons have traps under later ones, translucent ones under others of their blend
 /// group. Polygons of the same shape hide a trap, and so do parts of the same primitive with the same colour.
 TrapList find_traps(const ColoredOrder& colored, double width, const Occluders& occluders, const Execution& execution) {
   std::vector<ScreenPolygon> polygons = polygons_in_groups(colored, occluders);
   TrapList opaque = make_traps(polygons, colored.view, width, execution);
-  const std::vector<PaintedGroup> groups = groups_of(colored);
-  if (std::none_of(groups.begin(), groups.end(), [](const PaintedGroup& group) { return group.has_traps; }))
-    return opaque;
+  const std::vector<ColoredShape>& shapes = colored.shapes;
+  const auto is_translucent = [](const ColoredShape& shape) { return shape.color.a < 255; };
+  if (std::none_of(shapes.begin(), shapes.end(), is_translucent)) return opaque;
   for (ScreenPolygon& polygon : polygons) polygon.is_occluder = true;
   TrapList all;
-  for (const PaintedGroup& group : groups) {
-    const std::span<const ScreenPolygon> members(polygons.data() + group.begin, group.end - group.begin);
-    const TrapList own = group.has_traps ? make_traps(members, colored.view, width, execution) : TrapList();
-    for (std::size_t i = group.begin; i < group.end; ++i)
-      group.has_traps ? all.add_polygon(own, i - group.begin) : all.add_polygon(opaque, i);
+  for (std::size_t first = 0, next; first < shapes.size(); first = next) {
+    for (next = first + 1; next < shapes.size() && shapes[next].blend_group == shapes[first].blend_group;) ++next;
+    const std::size_t begin = shapes[first].first_polygon;
+    const std::size_t end = shapes[next - 1].first_polygon + shapes[next - 1].polygon_count;
+    const bool has_traps = next > first + 1 && is_translucent(shapes[next - 1]);
+    const std::span<const ScreenPolygon> members(polygons.data() + begin, end - begin);
+    const TrapList own = has_traps ? make_traps(members, colored.view, width, execution) : TrapList();
+    for (std::size_t i = begin; i < end; ++i) has_traps ? all.add_polygon(own, i - begin) : all.add_polygon(opaque, i);
   }
   return all;
 }

@@ -127,29 +127,22 @@ std::vector<bool> find_uncovered(const ColoredOrder& order, const Execution& exe
   return uncovered;
 }
 
-std::uint32_t code_of(const glm::u8vec4& c) {
-  return std::uint32_t(c.r) << 24 | std::uint32_t(c.g) << 16 | std::uint32_t(c.b) << 8 | c.a;
-}
-
-/// By polygon, its shape and whether no later polygon covers a part of it.
-struct Polygons {
-  std::vector<std::uint32_t> shapes;
-  std::vector<bool> uncovered;
-};
-
 /// The last polygon of a set is its leader: the set is painted in its place.
 using PolygonSets = DisjointSets<std::greater<>>;
 
 /// Joins uncovered polygons of one colour that share a part of a side, and those of one shape.
-PolygonSets joined(const ColoredOrder& colored, const Polygons& polygons, const Execution& execution) {
-  const auto& [shapes, uncovered] = polygons;
+PolygonSets joined(const ColoredOrder& colored, const std::vector<std::uint32_t>& shapes,
+                   const std::vector<bool>& uncovered, const Execution& execution) {
   PolygonSets sets(uncovered.size());
   for (std::uint32_t i = 1; i < uncovered.size(); ++i)
     if (shapes[i] == shapes[i - 1] && uncovered[i] && uncovered[i - 1]) sets.join(i, i - 1);
   std::vector<std::uint32_t> members;
   for (std::uint32_t i = 0; i < uncovered.size(); ++i)
     if (uncovered[i]) members.push_back(i);
-  const auto code = [&](std::uint32_t i) { return code_of(colored.shapes[polygons.shapes[i]].color); };
+  const auto code = [&](std::uint32_t i) {
+    const glm::u8vec4& c = colored.shapes[shapes[i]].color;
+    return std::uint32_t(c.r) << 24 | std::uint32_t(c.g) << 16 | std::uint32_t(c.b) << 8 | c.a;
+  };
   std::stable_sort(members.begin(), members.end(), [&](auto a, auto b) { return code(a) < code(b); });
   SideNet net;
   for (std::size_t begin = 0, end; begin < members.size(); begin = end) {
@@ -356,22 +349,22 @@ class BlendSorter {
 ColoredOrder merge_neighbours(const ColoredOrder& colored, const Execution& execution) {
   const std::size_t count = colored.polygons.size();
   const IeeeScope ieee;
-  const Polygons polygons{colored.shapes_of_polygons(), find_uncovered(colored, execution)};
-  PolygonSets sets = joined(colored, polygons, execution);
+  const std::vector<std::uint32_t> shapes = colored.shapes_of_polygons();
+  const std::vector<bool> uncovered = find_uncovered(colored, execution);
+  PolygonSets sets = joined(colored, shapes, uncovered, execution);
   std::vector<std::uint32_t> places(count), order(count);
   for (std::uint32_t i = 0; i < count; ++i) places[i] = sets.leader_of(i);
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(),
             [&](auto a, auto b) { return std::tie(places[a], a) < std::tie(places[b], b); });
   const auto are_one = [&](std::uint32_t a, std::uint32_t b) {
-    return places[a] == places[b] ||
-           (polygons.shapes[a] == polygons.shapes[b] && !polygons.uncovered[a] && !polygons.uncovered[b]);
+    return places[a] == places[b] || (shapes[a] == shapes[b] && !uncovered[a] && !uncovered[b]);
   };
   ColoredOrder merged;
   merged.view = colored.view;
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t i = order[k];
-    if (k == 0 || !are_one(order[k - 1], i)) merged.begin_shape(colored.shapes[polygons.shapes[i]].color);
+    if (k == 0 || !are_one(order[k - 1], i)) merged.begin_shape(colored.shapes[shapes[i]].color);
     merged.add_polygon(colored.polygons[i].id, colored.corners_of(colored.polygons[i]));
   }
   return merged;

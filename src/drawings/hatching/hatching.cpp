@@ -79,11 +79,11 @@ class HatchRows {
     const Projection& p = view.projection;
     const glm::dvec2 scale(view.width / (p.right - p.left), -view.height / (p.top - p.bottom));
     plane_ = {across_ * scale, -glm::dot(across_, scale * glm::dvec2(p.left, p.top))};
-    const double heights[] = {0, across_.x * view.width, across_.y * view.height,
-                              across_.x * view.width + across_.y * view.height};
-    const auto [low, high] = std::minmax_element(std::begin(heights), std::end(heights));
-    picture_ = {std::int32_t(std::ceil((*low - offset_) / spacing_)),
-                std::int32_t(std::floor((*high - offset_) / spacing_))};
+    const glm::dvec2 reach = across_ * size_;
+    const double low = std::min(reach.x, 0.0) + std::min(reach.y, 0.0),
+                 high = std::max(reach.x, 0.0) + std::max(reach.y, 0.0);
+    picture_ = {std::int32_t(std::ceil((low - offset_) / spacing_)),
+                std::int32_t(std::floor((high - offset_) / spacing_))};
   }
 
   struct Range {

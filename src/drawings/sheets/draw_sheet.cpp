@@ -232,32 +232,26 @@ glm::dvec3 middle_of(const Box& box) {
   return box.is_empty() ? glm::dvec3(0) : low + (high - low) * 0.5;
 }
 
-/// The cells of the views, and the pixel of each view at its cell's anchor.
-struct Cells {
+/// The cells of the views, whose anchors are set.
+std::vector<ViewCell> cells_of(std::vector<PlannedView>& views, const Surfaces& surfaces, const SheetOptions& options) {
   std::vector<ViewCell> cells;
-  std::vector<glm::dvec2> anchors;
-};
-
-Cells cells_of(const std::vector<PlannedView>& views, const Surfaces& surfaces, const SheetOptions& options) {
-  Cells all;
-  for (const PlannedView& view : views) {
+  for (PlannedView& view : views) {
     const View& camera = view.drawing.view;
     DrawingBounds box = bounds_of(view.drawing, view.shows_hidden);
     if (options.keeps_picture || box.is_empty()) box = {glm::dvec2(0), glm::dvec2(camera.width, camera.height)};
-    ViewCell& cell = all.cells.emplace_back();
-    glm::dvec2 anchor = (box.low + box.high) * 0.5;
+    ViewCell& cell = cells.emplace_back();
+    view.anchor = (box.low + box.high) * 0.5;
     if (view.direction) {
       const glm::ivec2 place = cell_of(*view.direction, options.projection);
       cell.column = place.x;
       cell.row = place.y;
-      if (!is_at_an_angle(*view.direction)) anchor = on_screen(camera, middle_of(surfaces.bounds()));
+      if (!is_at_an_angle(*view.direction)) view.anchor = on_screen(camera, middle_of(surfaces.bounds()));
     }
-    cell.low = (box.low - anchor) * view.millimetres_per_pixel;
-    cell.high = (box.high - anchor) * view.millimetres_per_pixel;
+    cell.low = (box.low - view.anchor) * view.millimetres_per_pixel;
+    cell.high = (box.high - view.anchor) * view.millimetres_per_pixel;
     if (view.rounds && !view.rounds->rounds.empty()) cell.room_before = cell.room_behind = glm::dvec2(centre_overshoot);
-    all.anchors.push_back(anchor);
   }
-  return all;
+  return cells;
 }
 
 constexpr double usual_crease = std::numbers::pi / 6;  // of intersections
@@ -350,16 +344,16 @@ void keep_room_for_sizes(std::vector<ViewCell>& cells, const std::vector<Planned
 
 /// Sets the places of the views. \returns the plan.
 SheetPlan place_views(std::vector<PlannedView>& views, const Surfaces& surfaces, const SheetOptions& options) {
-  Cells all = cells_of(views, surfaces, options);
-  place_sections(all.cells, views);
-  keep_section_room(all.cells, views);
-  if (options.dimensions) keep_room_for_sizes(all.cells, views);
+  std::vector<ViewCell> cells = cells_of(views, surfaces, options);
+  place_sections(cells, views);
+  keep_section_room(cells, views);
+  if (options.dimensions) keep_room_for_sizes(cells, views);
   const bool has_scale = views[0].drawing.view.projection.orthographic;
-  SheetPlan plan = plan_sheet(SheetLayout(all.cells, glm::dvec2(gap_between_views)), options, has_scale);
+  SheetPlan plan = plan_sheet(SheetLayout(cells, glm::dvec2(gap_between_views)), options, has_scale);
   for (std::size_t i = 0; i < views.size(); ++i) {
     SheetView& placed = views[i].placed;
     placed.millimetres_per_pixel = views[i].millimetres_per_pixel * plan.scale;
-    placed.origin = plan.anchors[i] - all.anchors[i] * placed.millimetres_per_pixel;
+    placed.origin = plan.anchors[i] - views[i].anchor * placed.millimetres_per_pixel;
   }
   return plan;
 }

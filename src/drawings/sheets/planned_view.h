@@ -21,6 +21,7 @@ struct PlannedView : DrawnView {
   CuttingPlane plane;                    ///< cutting plane of a section
   std::string letter;                    ///< letter of a section: "A"
   double millimetres_per_pixel = 1;      ///< at scale 1:1; meaningless by itself in perspective
+  glm::dvec2 anchor{0};                  ///< pixel at the anchor of the view's cell
   std::shared_ptr<const Rounds> rounds;  ///< circles of the surfaces; null if not needed
   /// Millimetres of paper on the left and below that marks of sections occupy.
   glm::dvec2 taken{0};
