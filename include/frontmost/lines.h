@@ -59,8 +59,7 @@ struct DrawnPart {
   glm::dvec2 from{0}, to{0};    ///< pixels of the view: x right, y down, the first pixel's centre at (0.5, 0.5)
   std::uint32_t hidden_by = 0;  ///< number of surfaces in front, see LineOptions::counts_hidden; 0: seen
   /// True: the part is seen, and bounds the picture of the scene. Its triangles lie on one side (it is a silhouette or
-  /// a boundary), and on the other side the scene has no triangle at any depth. Other silhouettes lie within the
-  /// picture.
+  /// a boundary), and on the other side the scene has no triangle at any depth.
   bool is_outline = false;
 };
 
@@ -114,15 +113,13 @@ struct Drawing {
 
 struct StrokeOptions {
   bool with_hidden = true;  ///< false: hidden parts are left out
-  /// Radians, 0 to pi/2: hidden intersections are left out if their surfaces cross at a smaller angle. Where two
-  /// surfaces of nearly the same shape coincide, as a bolt in its bore, intersections are many and show only the
-  /// tessellation.
+  /// Radians, 0 to pi/2: hidden intersections are left out if their surfaces cross at a smaller angle. Where surfaces
+  /// nearly coincide, as a bolt in its bore, intersections are many and show only the tessellation.
   double grazing_angle = 0;
   bool by_kind = true;      ///< false: edges of different kinds may share a stroke
   bool by_outline = true;   ///< false: outlines and other lines may share a stroke
   bool by_instance = true;  ///< false: edges of different objects may share a stroke
-  /// Pixels, 0.002 to 1: lines closer to each other are drawn once, and strokes that stay this close to their beginning
-  /// are points.
+  /// Pixels, 0.002 to 1: lines closer to each other are drawn once; strokes this close to their beginning are points.
   double apart = 0.002;
   double tolerance = 0.01;  ///< pixels, 0.0001 to 1: greatest distance of a stroke from its parts
   /// Pixels, 0 to 100. Above 0: four or more consecutive parts become an arc if their ends lie within this distance of
@@ -170,15 +167,13 @@ struct Strokes {
 //                  /   /   /  / / / / / /     X X X X X X
 //                /   /   /    / / / / / /     X X X X X X
 //
-// The lines of a HatchSet are drawn wherever the brightness is below its threshold, so darker places have the lines of
-// several sets.
+// Each HatchSet is drawn wherever the brightness is below its threshold, so darker places have the lines of several.
 
 /// Brightness of surfaces: the cosine of the angle between normal and light; 0 in shadow, and for surfaces turned away.
 /// Both sides of a surface are lit.
 ///
 /// The normal at a vertex is the mean of the object's triangles there whose normals differ from the triangle's own by
-/// at most the crease angle. Brightness therefore changes smoothly wherever no crease is drawn. Normals of the model's
-/// file are ignored.
+/// at most the crease angle, so brightness changes smoothly where no crease is. Normals of the file are ignored.
 struct ToneOptions {
   /// Direction towards the light, world space, any length but zero. None: from the upper left in front of the
   /// picture, as the key light of shade().
@@ -206,8 +201,7 @@ struct HatchOptions {
   ToneOptions tone{};
   double shortest = 0;      ///< pixels, 0 to 1000: shorter lines are left out
   bool by_instance = true;  ///< false: lines continue from object to object
-  /// True: within a set (and instance), each line begins as near as possible to the end of the one before: for
-  /// plotters.
+  /// True, for plotters: within a set (and instance), each line begins near the end of the one before.
   bool nearest_first = false;
 };
 
@@ -277,9 +271,8 @@ struct CutFace {
 };
 
 struct Section {
-  /// The part of the scene behind the plane. Instances keep their numbers and names; each has its own mesh with
-  /// positions in world space and no transform. Materials keep their numbers but lose their textures; materials of the
-  /// faces follow.
+  /// The part of the scene behind the plane. Instances keep their numbers and names; each has its own mesh in world
+  /// space. Materials keep their numbers but lose their textures; materials of the faces follow.
   Scene scene;
   std::vector<CutFace> faces;  ///< by instance; only objects that the plane cuts
 };

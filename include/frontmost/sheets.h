@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawings on paper: figures (vector pictures of polygons), pages in millimetres and their files, lettering, and
-// sheets.
+// Drawings on paper: figures (vector pictures of polygons), pages in millimetres and their files, lettering, sheets.
 //
 //   draw_figure() --> Figure ----+
 //   draw_sheet() --> Sheet ------+--> Page --save()--> SVG, PDF, DXF, JSON
@@ -108,9 +107,7 @@ struct Pen {
 struct PagePath {
   std::uint32_t first = 0, count = 0;
   bool is_closed = false;  ///< the last point is joined to the first one
-  /// True: the path belongs to the path before it, of the same group, and is filled together with it: a hole, or
-  /// another part.
-  bool is_part = false;
+  bool is_part = false;    ///< a hole, or another part, of the path before it, and filled together with it
 };
 
 /// Paths drawn with one pen, one after the other. One group of millions of paths is faster than many groups.
@@ -143,8 +140,7 @@ struct Page {
 
 /// Turns each dash of a page into a path of its own, for plotters, which know no dashes. Patterns run along whole
 /// paths. Between corners of 25 degrees or more they are stretched so that both ends are drawn (ISO 128-2). Fills are
-/// unchanged. O(points + dashes). \throws Error as validate() does, limit_exceeded for more than 20 million dashes, and
-/// cancelled.
+/// unchanged. O(points + dashes). \throws Error as validate() does; limit_exceeded for more than 20 million dashes.
 [[nodiscard]] Page with_real_dashes(Page page, const Execution& execution = {});
 
 enum class PageFormat : std::uint8_t { svg, pdf, dxf, json };
@@ -177,9 +173,8 @@ void validate(const Page& page);
 void save(const Page& page, const std::string& path, std::optional<PageFormat> format = std::nullopt,
           const Execution& execution = {});
 
-/// Writes several pages, which may differ in size, into one PDF. Layers of one name are switched together; the title is
-/// that of the first page. \throws Error as for one page; bad_argument without a page; unsupported for several pages in
-/// other formats.
+/// Writes several pages, of any sizes, into one PDF. Layers of one name are switched together; the title is that of the
+/// first page. \throws Error as for one page; bad_argument without a page; unsupported for several in other formats.
 void save(std::span<const Page> pages, const std::string& path, std::optional<PageFormat> format = std::nullopt,
           const Execution& execution = {});
 
@@ -229,8 +224,7 @@ struct TextStyle {
 /// as high as a capital. Blanks have no path. O(text).
 void add_text(PageGroup& group, std::string_view text, const glm::dvec2& at, const TextStyle& style = {});
 
-/// Millimetres from the left edge of the first character to the right edge of the last one, with their pen; 0 without
-/// any.
+/// Millimetres from the left edge of the first character to the right edge of the last, with their pen; 0 without any.
 [[nodiscard]] double text_width(std::string_view text, double height = 3.5);
 
 // Views of a sheet: strokes, hatching and centre lines at their places on a page, with the pens of drawing standards.
@@ -317,8 +311,7 @@ struct Paper {
 /// Where views stand around the front view. The title block shows the symbol of the method (ISO 5456-2).
 enum class ProjectionMethod : std::uint8_t { none, first_angle, third_angle };
 
-/// Contents of the fields of a title block, in UTF-8; empty fields stay empty. Text too long for its field at 1.8 mm is
-/// written smaller.
+/// Contents of the fields of a title block, in UTF-8. Text too long for its field at 1.8 mm is written smaller.
 struct TitleBlock {
   std::string title{};   ///< up to two lines
   std::string number{};  ///< number of the drawing
@@ -382,8 +375,7 @@ struct SheetOptions {
   std::optional<bool> standard_scale = std::nullopt;
   /// The unit of the model's numbers, in place of the file's. None: SceneSource::metres_per_unit, or else 1.
   std::optional<double> millimetres_per_unit = std::nullopt;
-  /// Unit of dimensions and title block: inches with three decimals, or millimetres with two. None: inches if the
-  /// model's unit is the inch.
+  /// Unit of dimensions and title block: inches with three decimals, or millimetres with two. None: as the model's.
   std::optional<bool> in_inches = std::nullopt;
   /// A frame with this title block. Scale, unit, paper and projection are filled in.
   std::optional<TitleBlock> title_block = std::nullopt;
@@ -396,8 +388,7 @@ struct SheetOptions {
   bool casts_shadows = true;
 
   // The camera.
-  /// Pixels of a view, 0.001 to 1000: greatest distance of triangles from curved surfaces. None: 0.2, or more if that
-  /// would take millions of triangles.
+  /// Pixels of a view, 0.001 to 1000: greatest distance of triangles from curved surfaces. None: 0.2, or what is quick.
   std::optional<double> tessellation_error = std::nullopt;
   /// For named views: clipping planes in place of those that enclose the model.
   std::optional<double> near = std::nullopt, far = std::nullopt;
@@ -408,8 +399,7 @@ struct SheetOptions {
 /// A drawn view of a sheet.
 struct DrawnView {
   std::string name;  ///< for example "front"; "A-A" for a section; empty if the view was given
-  /// The surfaces whose triangles `drawing` refers to: the caller's, which must still exist, or surfaces that were made
-  /// for a view of curved or cut ones.
+  /// The surfaces of `drawing`: the caller's, which must still exist, or those made for a view of curved or cut ones.
   std::shared_ptr<const Surfaces> surfaces;
   std::shared_ptr<const Section> section;  ///< null if nothing was cut
   Drawing drawing;
@@ -427,22 +417,18 @@ struct Sheet {
   std::size_t prisms = 0;        ///< number of diameters of cylinders of 7 to 17 sides, which count as polygons
 };
 
-/// \throws Error bad_argument for values out of range, and for options that exclude or need each other. The message
-/// begins with the name of the field.
+/// \throws Error bad_argument, with the field, for values out of range, and options that exclude or need each other.
 void validate(const SheetOptions& options);
 
 /// Draws the named views and sections of `options` on one page. Layers are those of page_of(), then "9 sections", "7
 /// dimensions" and "8 frame". A watch sees the stages "views", "rounds", "layout", "tones" and "page", and those of the
 /// functions called. The bytes are the same for any number of threads.
-/// \throws Error as validate() does, and for options without a view; bad_argument for a plane that misses the model;
-/// limit_exceeded if the page is too small, with a hint at what would fit; as draw_lines(), hatch(), stipple() and
-/// tessellate() do.
+/// \throws Error as validate(), draw_lines(), hatch(), stipple() and tessellate() do; bad_argument for options without
+/// a view, and for a plane that misses the model; limit_exceeded if the page is too small, with what would fit.
 [[nodiscard]] Sheet draw_sheet(const Surfaces& surfaces, const SheetOptions& options, const Execution& execution = {});
 
-/// Draws one view on a page of its own; a view in perspective has no scale. Lines are as fine as the view's pixels:
-/// 3840 x 2160 suffice for all paper.
-/// \throws Error as draw_sheet() does; bad_argument for options of named views, and for a scale or centre lines in
-/// perspective.
+/// Draws one view on a page of its own. Lines are as fine as the view's pixels: 3840 x 2160 suffice for all paper.
+/// \throws Error as draw_sheet() does; bad_argument for options of named views, and for a scale in perspective.
 [[nodiscard]] Sheet draw_view(const Surfaces& surfaces, const View& view, const SheetOptions& options = {},
                               const Execution& execution = {});
 

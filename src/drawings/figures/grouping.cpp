@@ -235,7 +235,6 @@ NodeLists lists_of(const std::vector<NodePair>& pairs, std::size_t count) {
 class BlendSorter {
  public:
   /// `over`: the second is painted after the first. `beside`: translucent pairs of one opacity, in both directions.
-  /// Both are sorted and unique.
   BlendSorter(std::vector<std::uint8_t> opacities, const std::vector<NodePair>& over,
               const std::vector<NodePair>& beside)
       : opacities_(std::move(opacities)),

@@ -59,8 +59,7 @@ class SideNet {
     });
   }
 
-  /// Calls share(a, b) for outlines that share a side. Where several coincide there, outlines are paired in ascending
-  /// order.
+  /// Calls share(a, b) for outlines that share a side. Where several coincide, they are paired in ascending order.
   template <class Share>
   void for_each_shared(const Share& share) const {
     for (std::size_t i = 0; i < sides_.size();) {

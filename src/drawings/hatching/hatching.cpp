@@ -198,8 +198,7 @@ class CornerNormals {
   /// The tip of a cone with more sides is flat: its normal means nothing.
   static constexpr std::size_t most_at_vertex = 256;
 
-  /// The mean with weights by N. Max (Weights for Computing Vertex Normals from Facet Normals, 1999), exact on spheres
-  /// for any tessellation.
+  /// The mean by N. Max (Weights for Computing Vertex Normals from Facet Normals, 1999), exact on spheres.
   [[nodiscard]] glm::dvec3 at(std::uint32_t triangle, int corner, const glm::dvec3& own) const {
     const std::uint32_t vertex = mesh_.triangles[triangle][corner];
     const std::span<const Corner> around = corners_[vertex];

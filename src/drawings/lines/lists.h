@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists that many threads make in parts, joined in the order of the parts and sorted. So results do not depend on which
-// thread made which part.
+// Lists that many threads make in parts, joined in the order of the parts and sorted.
 #pragma once
 
 #include <algorithm>

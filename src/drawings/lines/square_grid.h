@@ -42,8 +42,7 @@ struct SquareGrid {
     return square(int(number % std::size_t(columns)), int(number / std::size_t(columns)));
   }
 
-  /// Calls visit(PassedCell) for the squares that the segment from `a` to `b` passes within `pad`, row by row, until it
-  /// returns false.
+  /// Calls visit(PassedCell) for the squares that a segment passes within `pad`, row by row, until it returns false.
   template <class Visitor>
   void visit_along(const glm::dvec2& a, const glm::dvec2& b, double pad, const Visitor& visit) const {
     const glm::dvec2& bottom = a.y < b.y ? a : b;

@@ -289,8 +289,7 @@ class PdfWriter {
   }
   PageText& reference(std::size_t object) { return out_.integer(std::int64_t(object)) << " 0 R "; }
 
-  /// Writes the end of a stream's dictionary, the stream of a form or of a whole page, and its length as a separate
-  /// object.
+  /// Writes the end of a stream's dictionary, the stream of a form or else of the page, and its length as an object.
   States write_stream(const PdfPage& page, const PageGroup* form, std::size_t length_object) {
     out_ << "/Length ";
     out_.integer(std::int64_t(length_object)) << " 0 R " << stream_filter << ">>\nstream\n";

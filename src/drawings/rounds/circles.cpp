@@ -6,8 +6,7 @@
 //
 // A circle goes through the first, middle and last vertex of a run. Arcs of one circle are united, because a rim is
 // split wherever another edge meets it. A wall grows over all smooth neighbours that are parallel to its axis and have
-// their vertices at its radius. A circle determines the axis better than two neighbours, whose tube is fitted again as
-// they get more.
+// their vertices at its radius. Two neighbours determine its axis worse than a circle, so their tube is fitted again.
 #include <algorithm>
 #include <map>
 #include <numbers>
@@ -194,8 +193,7 @@ class Seeds {
   }
 
   /// Whether the next ring leans twice as much as this triangle, as beside a ring of a sphere or torus, which is no
-  /// cylinder. A fillet leans by half a step where it begins at a wall and by three halves next; a slight chamfer does
-  /// not lean more.
+  /// cylinder. A fillet leans by half a step and then by three halves; a slight chamfer does not lean more.
   [[nodiscard]] bool leans_on(std::uint32_t triangle, const glm::dvec3& axis) const {
     const double first = lean(triangle, axis);
     const auto is_twice = [&](std::uint32_t t) { return std::abs(lean(t, axis) / first - 2) < 0.4; };

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Round shapes in a mesh: circles among its sharp edges, cylinders among its smooth surfaces, and other surfaces of
-// revolution.
+// Round shapes in a mesh: circles of sharp edges, cylinders of smooth surfaces, and other surfaces of revolution.
 //
 //    sharp edges --chains--> arcs --on one circle--> circles ------+
 //                                                                  v
@@ -72,8 +71,7 @@ struct Across {
   explicit Across(const glm::dvec3& axis);
 };
 
-/// The tube about this axis that fits the points by least squares of squared radii (I. Kasa's fit of circles). None if
-/// the points lie on a line.
+/// The tube about this axis that fits the points best (I. Kasa's fit of circles). None if the points lie on a line.
 [[nodiscard]] std::optional<Tube> tube_through(std::span<const glm::dvec3> points, const glm::dvec3& axis);
 
 /// The direction that is closest to perpendicular to all vectors.

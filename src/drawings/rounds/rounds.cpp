@@ -2,8 +2,7 @@
 // Surfaces of revolution and prisms, and the public list of all rounds.
 //
 // Rings with corners at equal angles have equal moments in all directions across their axis. So the axis passes through
-// the mean of the corners, in the direction whose second moment differs from two equal ones. Regions that pass this
-// test are checked ring by ring.
+// the mean of the corners, in the direction whose second moment differs from two equal ones.
 //
 // A prism has two rims about one axis, each with its corners on a circle. Rims are sorted by the point of their axis
 // nearest to the origin, along a direction that is parallel to no usual row of holes.

@@ -188,8 +188,7 @@ std::optional<Tube> tube_through(std::span<const glm::dvec3> points, const glm::
 glm::dvec3 common_perpendicular(std::span<const glm::dvec3> vectors) {
   glm::dmat3 sum(0);
   for (const glm::dvec3& n : vectors) sum += glm::outerProduct(n, n);
-  // The adjugate's powers converge to the eigenvector of the least eigenvalue; taking the longest column is one more
-  // step.
+  // The adjugate's powers converge to the eigenvector of the least eigenvalue.
   const auto adjugate = [](const glm::dmat3& m) {
     return glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
   };

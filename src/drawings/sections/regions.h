@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the segments of triangles in a plane to closed lines, to the regions that these bound, and to triangles that
-// fill the regions.
+// From segments in a plane to closed lines, to the regions that these bound, and to triangles that fill the regions.
 //
 //    segments --find_outlines--> closed lines --regions_of--> outer lines with their holes --fill--> triangles
 //

@@ -136,8 +136,7 @@ bool wants_centre_lines(const SheetOptions& options) {
   return options.centre_lines.value_or(has_named_views(options) && options.style == DrawingStyle::technical);
 }
 
-/// The finest error that paper shows, or a coarser one if the eye is too near for that. None if even the coarsest takes
-/// too many triangles.
+/// The finest error that paper shows, or a coarser one, if that takes too many triangles; none if all do.
 std::optional<double> tessellation_error(const SheetOptions& options, const Scene& scene, const View& view) {
   if (options.tessellation_error) return options.tessellation_error;
   for (double error = fine_error; error <= coarsest_error; error *= 2)

@@ -102,8 +102,7 @@ Area area_on(const glm::dvec2& page, const SheetOptions& options) {
   return {page, space.low + options.margin, space.high - options.margin, space.block - options.margin};
 }
 
-/// The corner of a layout that fits into the area: centred, or centred in the part above or beside the block, or as far
-/// from the block as possible.
+/// The corner of a layout that fits: centred, or centred above or beside the block, or as far from it as possible.
 std::optional<glm::dvec2> corner_in(const Area& area, const SheetLayout& layout, double scale) {
   const glm::dvec2 size = layout.size(scale);
   const auto middle_of = [&](const glm::dvec2& high) { return area.low + (high - area.low - size) * 0.5; };

@@ -21,8 +21,7 @@ namespace {
 
 /// Strokes are the path of the pen's centre in tenths of the lettering's height, x to the right from the letter's left,
 /// y up from the baseline. Points "x,y" are joined in order; ";" separates strokes. Before a point, each ( turns the
-/// way to it by an eighth of a circle to the left, and each ) to the right: "5,6 ((((0,6" is the upper half of a
-/// circle.
+/// way to it by an eighth of a circle to the left, and each ) to the right.
 struct Glyph {
   char32_t code;
   double width;  ///< width of the glyph; its strokes stay within [0, width]

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plane of a section is edge-on in views along other axes: the first of these gets the cutting line, even if it is
-// another section.
+// The first view or other section that sees the plane of a section edge-on gets its cutting line.
 //
 //    A               A          A cutting line is thin, with long dashes and dots, and has thick ends beyond the cut
 //    |               |          part. Arrows at the ends point in the section's view direction, with its letter behind

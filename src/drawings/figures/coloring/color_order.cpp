@@ -92,8 +92,7 @@ class PointShader {
 /// In pixels: the least width of a cut piece, and the distance from a cut below which no samples are taken. Textures
 /// and shadows are filtered over about this distance, so colours this close to a cut belong to neither side.
 constexpr double kLeastWidth = 0.25, kBesideCut = 0.35;
-/// The share of the tolerance for differences within a piece, where pieces are grouped; the rest is for differences
-/// between pieces of a group.
+/// The share of the tolerance for differences within a piece, where pieces are grouped; the rest is for the group.
 constexpr double kWithin = 2.0 / 3;
 /// The factor of the tolerance for pieces narrower than a pixel, which are hardly visible.
 constexpr double kOfSlivers = 8;
@@ -286,8 +285,7 @@ class PolygonColors {
   }
 
   /// Whether a piece has one colour, and the colour: that of holes by majority, or else the mean of the surface
-  /// samples, if all are near enough to it. The middle between extremes would tint a wide field for the sake of its
-  /// edge.
+  /// samples, if all are near it. The middle between extremes would tint a wide field for the sake of its edge.
   [[nodiscard]] std::pair<bool, glm::vec4> judge(const Piece& piece) const {
     std::size_t holes = 0;
     for (const ColorSample& sample : piece.samples) holes += is_hole(sample.color);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each fold is judged by the surfaces beside it, in the plane across its edge. Then folds that share vertices are
-// judged together.
+// Each fold is judged by the surfaces beside it, in the plane across its edge; then with folds that share vertices.
 //
 //     left normal   right normal        The angle between both normals is how far the surface turns at the fold.
 //             \      /                  Beyond each triangle the surface turns on by some angle, which is found by
@@ -438,8 +437,7 @@ class CreaseGraph {
     }
   }
 
-  /// Removes the faintest crease of triangles with three. A crease that zigzags across a row of triangles gives them
-  /// three.
+  /// Removes the faintest crease of triangles with three, as where a crease zigzags across a row of triangles.
   void thin() {
     const auto for_each_side = [&](const auto& visit) {
       for (std::size_t i = 0; i < edges_.size(); ++i)

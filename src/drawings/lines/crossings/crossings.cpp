@@ -237,8 +237,7 @@ class BoxTree {
 
 constexpr std::size_t kGroupsPerPart = 16, kPairsPerPoll = 16384;
 constexpr std::size_t kMostSegments = std::size_t(1) << 20, kMostSegmentsOfTriangle = 16;
-/// A pair counts as kStepsOfPair steps of ten nanoseconds; the other two bound all steps. A city has 42 thousand
-/// segments.
+/// A pair counts as kStepsOfPair steps of ten nanoseconds; the other two bound all steps.
 constexpr std::uint64_t kStepsOfPair = 8, kMostSteps = std::uint64_t(1) << 30, kMostStepsOfTriangle = 256;
 
 /// A triangle with its vertices in ascending order, so that every computation with its plane gives the same bits.

@@ -29,8 +29,7 @@ struct Crossing {
 /// The segments of all pairs of triangles that each have a corner strictly on either side of the other's plane, by
 /// exact signs, and those of add_contacts(). Copies of a triangle give each segment once. Sorted by the segments' ends.
 /// O(triangles log triangles + pairs whose boxes touch).
-/// \throws Error limit_exceeded for more than 2^20 segments and 16 for each triangle, or more than 2^27 pairs and 32
-/// for each triangle.
+/// \throws Error limit_exceeded beyond 2^20 segments and 16 a triangle, or 2^27 pairs and 32 a triangle.
 [[nodiscard]] std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features,
                                                    const Execution& execution);
 

@@ -7,8 +7,7 @@
 //      neighbours lie on one side of the shared vertex along the common line       LiesApart
 //      both meet the planes' common line in overlapping stretches                  MeetsLineApart
 //
-// Each step answers "certainly not" or "perhaps", with a bound on all rounding errors. Pairs that are left are decided
-// exactly, one at a time.
+// Each step answers "certainly not" or "perhaps", with a bound on all rounding errors. The rest is decided exactly.
 
 #include "lines/crossings/space_lanes.h"
 
@@ -238,8 +237,7 @@ struct Lanes {
     const M below = hn::And(hn::And(a.is_below, b.is_below), hn::And(c.is_below, d.is_below));
     return frontmost::HWY_NAMESPACE::BitsOf(D(), hn::Or(above, below)) & known;
   }
-  /// Lanes that share a vertex with the probe and certainly lie on the other side of it along the planes' common line,
-  /// as most neighbours do.
+  /// Lanes that share a vertex with the probe and certainly lie on the other side of it along the planes' common line.
   HWY_INLINE M LiesApart(const Probe& probe, const M (&has)[3]) const {
     const D d;
     const Vector3 p[3] = {probe.Corner(0), probe.Corner(1), probe.Corner(2)};
@@ -261,8 +259,7 @@ struct Lanes {
 };
 
 /// For each probe: the range of heights over its plane, relative to the middle of a box, in which rounding leaves the
-/// side of a point in the box open. The error of the farthest point is used for all, so that it costs nothing per
-/// point.
+/// side of a point in the box open. The error of the farthest point is used for all points.
 struct Thresholds {
   HWY_ALIGN float least[kSpaceLanes], most[kSpaceLanes];
 

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// An edge is compared with the nearest occluders of a cell first, eight at a time. The cell is left as soon as the part
-// of the edge in it is hidden.
+// An edge is compared with the nearest occluders of a cell first, until its part in the cell is hidden.
 //
 //   edge ----> cells that it passes ----> boxes that overlap it ----> triangles that hide it ----> intervals
 //              (OccluderGrid)             (kernels, 16 at once)       (kernels, 8 at once)         (HiddenIntervals)
 //
-// A vertex of the triangle is in the planes through it by its number, not by arithmetic. The value at a root may be
-// rounded; a sign never is.
+// A vertex of the triangle is in the planes through it by its number, not by arithmetic. No sign is rounded.
 #include "lines/hiding/hidden_parts.h"
 
 #include <algorithm>

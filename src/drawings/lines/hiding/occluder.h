@@ -118,11 +118,9 @@ struct HiddenBatch {
 
 /// The functions of one instruction set.
 struct ShadowKernels {
-  /// Bit i: box i of the first `count`, at most 64, overlaps the part and is not wholly beyond it. Reads up to 64
-  /// boxes.
+  /// Bit i: box i of the first `count` overlaps the part and is not wholly beyond it. At most 64; reads up to 64.
   std::uint64_t (*overlapping)(const ScreenBoxes& boxes, std::size_t count, const ScreenPart& part);
-  /// Bit i: triangle i of the first `count`, at most 64, has the segment neither outside of one of its sides nor before
-  /// its plane. Reads up to 64 of each.
+  /// Likewise: triangle i has the segment neither outside of one of its sides nor before its plane.
   std::uint64_t (*within_sides)(const ScreenSides& sides, std::size_t count, const ScreenSegment& segment);
   /// hidden_by() of every occluder of the batch, to the bit, except for those left open.
   void (*hide)(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden);

@@ -77,8 +77,7 @@ class CellDepth {
     linear_.by_x = (along_b * (c.y - a.y) - along_c * (b.y - a.y)) / turn;
     linear_.by_y = (along_c * (b.x - a.x) - along_b * (c.x - a.x)) / turn;
     linear_.at_0 = at_a - linear_.by_x * a.x - linear_.by_y * a.y;
-    // An error in a place turns the plane, more for smaller triangles, and the plane may be evaluated far from the
-    // triangle.
+    // An error in a place turns the plane, more for smaller triangles, and it may be evaluated far from the triangle.
     linear_.slack = kDepthSlack * (1 + thin) *
                     (std::max(std::abs(value(low_)), std::abs(value(high_))) +
                      (std::abs(linear_.by_x) + std::abs(linear_.by_y)) * (most * 1e-3 + 0.1 / reach));
@@ -253,8 +252,7 @@ class GridPlan {
     find_footprints();
   }
 
-  /// Sets footprints, ranges, occluders and numbers of entries. In the order of first cells, neighbours on the screen
-  /// are neighbours in memory.
+  /// In the order of first cells, neighbours on the screen are neighbours in memory.
   void find_footprints() {
     const std::size_t count = seen.mesh.triangles.size(), cells = grid.count();
     Buffer<Footprint> all(count);

@@ -49,8 +49,7 @@ struct Rest {
   V begin, end;
   M is_gone, is_open;
 
-  /// where_positive() for vectors. `along` says whether an edge that lies wholly in the plane is removed, kept, or left
-  /// undecided.
+  /// where_positive() for vectors. `along`: whether an edge that lies in the plane is removed, kept, or left undecided.
   enum class Along { gone, kept, open };
   template <Along along>
   HWY_INLINE void Keep(const Values& a, const Values& b) {

@@ -45,8 +45,7 @@ class Classifier {
   [[nodiscard]] const WeldedMesh& mesh() const { return mesh_; }
   /// The least cosine of the angle by which a continuing surface turns.
   [[nodiscard]] double cosine() const { return cosine_; }
-  /// An edge of two triangles that are wound alike and face the same way is no feature if the cosine of their
-  /// SeenTriangle normals is higher.
+  /// An edge of two triangles wound and facing alike is no feature if the cosine of their normals is higher.
   [[nodiscard]] float plain_cosine() const {
     if (has_borders_) return std::numeric_limits<float>::infinity();
     if (!options_.creases) return -std::numeric_limits<float>::infinity();

@@ -28,8 +28,7 @@ struct Features {
   std::vector<FeatureEdge> edges;    ///< in the order of their vertices
   VertexPairs continued;             ///< result of leave_out_gaps()
   std::vector<std::uint32_t> twins;  ///< ascending: triangles with the same corners as another before them
-  /// By vertex, Star::is_spread: no two of its triangles meet except in their common corners. 0 or an empty list means
-  /// unknown.
+  /// By vertex, Star::is_spread: no two of its triangles meet except in their common corners. 0 or empty: unknown.
   Buffer<std::uint8_t> is_spread;
 };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vertices of all instances are numbered by their places. All lists are counted in parts before they are written, so no
-// list grows and no thread waits.
+// All lists are counted in parts before they are written, so no list grows and no thread waits.
 //
 //    fillers that share sides      A-M-B, A-N-M ...      one line (a seam) each, found by uniting fillers
 //    corners of the seam           A N M B               sorted along any axis on which two of them differ

@@ -57,11 +57,9 @@ struct SeenTriangle {
   [[nodiscard]] bool is_open() const { return bits >= kOpen; }
   /// Sight::facing()
   [[nodiscard]] int facing() const { return int(bits >> kFacingShift) - 1; }
-  /// Bit i: seen along axis i, the triangle certainly turns left (i = 0 to 2) or right (i = 3 to 5). 0 if nothing is
-  /// known.
+  /// Bit i: seen along axis i, the triangle certainly turns left (i = 0 to 2) or right (i = 3 to 5).
   [[nodiscard]] std::uint32_t turns() const { return bits & 63; }
-  /// Bit i: seen along axis i, a walk around the corner passes in this triangle from below the corner to above it.
-  /// Valid where the triangle turns.
+  /// Bit i, if the triangle turns: seen along axis i, a walk around the corner passes here from below it to above it.
   [[nodiscard]] std::uint32_t climbs(std::uint32_t corner) const { return bits >> (6 + 3 * corner) & 7; }
 };
 

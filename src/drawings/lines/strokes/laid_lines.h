@@ -50,8 +50,7 @@ class Nearness {
 
   [[nodiscard]] double apart() const { return apart_; }
 
-  /// The allowed difference in direction from a long line. It moves the end by several times `apart`, because the part
-  /// on the long line may be short.
+  /// The allowed slope to a long line. It moves the end by several times `apart`: the part on that line may be short.
   [[nodiscard]] double slope_within(double length) const { return std::min(8 * apart_ / length, most_slope); }
 
   /// The greatest distance from a line of that length of lines that lie on it.
@@ -163,8 +162,7 @@ class LongLines {
     if (table.empty()) return 0;
     std::size_t looked_at = 0;
     const double slope = near_.slope_within(segment.length), off = near_.apart();
-    // A line that turns about the middle moves by up to `spread` at the farther side, and by a share of it at the
-    // nearer one.
+    // A line that turns about the middle moves by up to `spread` at the farther side, by a share of it at the nearer.
     const glm::dvec2 at = heights(segment, axis);
     const double middle = ((segment.from[axis] + segment.to[axis]) / 2 - low_[axis]) / extent_;
     const int far = middle < 0.5 ? 1 : 0;
@@ -217,9 +215,8 @@ class LaidLines {
     });
   }
 
-  /// Calls visit(numbers) for candidates among the added lines, possibly repeatedly. These contain all short lines with
-  /// a stretch by Nearness::overlap(), and of long ones those that LongLines::for_each() finds. \returns how many were
-  /// tested.
+  /// Calls visit(numbers) for candidates, possibly repeatedly: all short lines with a stretch by Nearness::overlap(),
+  /// and the long ones that LongLines::for_each() finds. \returns how many were tested.
   ///
   /// Cost: a few tests per line in drawings. Thousands of lines in one cell, as of a model that is seen very small, are
   /// tested each against each: 20 thousand take up to 1.4 s.

@@ -86,8 +86,7 @@ LaidLines::Extent::Extent(const std::vector<Line>& lines) {
   }
 }
 
-/// A grid with about one short line to a cell. The least cell size matters for a drawing of one point, which would have
-/// ten million cells a side.
+/// A grid with about one short line to a cell. The least size of a cell matters for a drawing of one point.
 SquareGrid LaidLines::Extent::grid(double near) const {
   const double count = std::max(short_count, 1.0), side = std::max({high.x - low.x, high.y - low.y, 1e-6});
   const double cell = std::max({short_length / count, side / std::sqrt(count), side / 4096, 8 * near});

@@ -179,8 +179,7 @@ class PartReader {
     return options_.with_hidden && (options_.grazing_angle == 0 || !is_grazing(drawing_.edges[part.edge]));
   }
 
-  /// The common properties of a stroke's parts. Lower keys are drawn above higher ones: outlines come first, hidden
-  /// lines last.
+  /// The common properties of a stroke's parts, in the order of ranks: outlines come first, hidden lines last.
   [[nodiscard]] std::uint64_t key(const DrawnPart& part) const {
     const DrawnEdge& edge = drawing_.edges[part.edge];
     std::uint64_t key = part.hidden_by != 0;
@@ -278,8 +277,7 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
   report_progress(execution, "strokes", 0);
   const Ranked parts(surfaces, drawing, options);
   std::vector<Chain> chains = chained(draw_once(parts.segments, options.apart, execution));
-  // A chain that stays close to its beginning is left over where two tessellations of one circle pass through each
-  // other.
+  // Where two tessellations of one circle pass through each other, chains are left over that are seen as points.
   std::erase_if(chains, [&](const Chain& chain) {
     return std::all_of(chain.points.begin(), chain.points.end(),
                        [&](const glm::dvec2& p) { return glm::distance(chain.points.front(), p) < options.apart; });

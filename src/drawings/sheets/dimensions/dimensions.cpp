@@ -264,8 +264,7 @@ class Diameters {
     }
   }
 
-  /// Counts the cylinders of a view without a diameter, because no view draws them or because they are prisms. Call it
-  /// after all views were added.
+  /// Counts cylinders without a diameter, because no view draws them or they are prisms. Call it after all add().
   void count_missing(const MeasuredView& view, Dimensions& all) {
     const auto count = [&](const std::vector<const Round*>& rounds, std::size_t& number) {
       std::size_t looked_at = 0;
