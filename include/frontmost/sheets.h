@@ -427,8 +427,8 @@ void validate(const SheetOptions& options);
 /// a view, and for a plane that misses the model; limit_exceeded if the page is too small, with what would fit.
 [[nodiscard]] Sheet draw_sheet(const Surfaces& surfaces, const SheetOptions& options, const Execution& execution = {});
 
-/// Draws one view on a page of its own. Lines are as fine as the view's pixels: 3840 x 2160 suffice for all paper.
-/// \throws Error as draw_sheet() does; bad_argument for options of named views, and for a scale in perspective.
+/// Draws one view on a page of its own. Lines are as fine as its pixels: 3840 x 2160 suffice for all paper. \throws
+/// Error as draw_sheet() does; bad_argument for options of named views, and for a scale or centre lines in perspective.
 [[nodiscard]] Sheet draw_view(const Surfaces& surfaces, const View& view, const SheetOptions& options = {},
                               const Execution& execution = {});
 

@@ -12,6 +12,7 @@
 
 #include "base/parallel.h"
 #include "lines/lists.h"
+#include "lines/strokes/parts.h"
 #include "rounds/found_rounds.h"
 
 namespace frontmost::lines_detail {
@@ -65,17 +66,18 @@ class Chainer {
 
   void run(const Execution& execution) {
     join_all(execution);
-    std::vector<bool> is_done(edges_.size());
-    // First open chains from their ends, then the rest, which are closed.
-    for (const bool closed : {false, true})
-      for (std::uint32_t edge = 0; edge < edges_.size(); ++edge) {
-        if (edge % 65536 == 0) check_cancelled(execution);
-        if (is_done[edge]) continue;
-        if (closed || next_[2 * edge] == no_index)
-          follow(2 * edge + 1, closed, is_done);
-        else if (next_[2 * edge + 1] == no_index)
-          follow(2 * edge, closed, is_done);
+    std::size_t steps = 0;
+    for_each_chain(next_, [&](const std::vector<ChainEnd>& ends, bool is_closed) {
+      if (++steps % 65536 == 0) check_cancelled(execution);
+      if (ends.size() < kFewestSides) return;
+      SharpChain& chain = chains_.emplace_back();
+      chain.is_closed = is_closed;
+      for (const ChainEnd end : ends) {
+        chain.vertices.push_back(vertex(end));
+        chain.edges.push_back(end / 2);
       }
+      if (!is_closed) chain.vertices.push_back(vertex(ends.back() ^ 1));
+    });
   }
 
  private:
@@ -124,23 +126,6 @@ class Chainer {
       next_[pair.a] = pair.b;
       next_[pair.b] = pair.a;
     }
-  }
-
-  /// Follows a chain from the edge whose far end is `ahead`.
-  void follow(ChainEnd ahead, bool closed, std::vector<bool>& is_done) {
-    SharpChain chain;
-    chain.is_closed = closed;
-    while (!is_done[ahead / 2]) {
-      is_done[ahead / 2] = true;
-      chain.vertices.push_back(vertex(ahead ^ 1));
-      chain.edges.push_back(ahead / 2);
-      if (next_[ahead] == no_index) {
-        chain.vertices.push_back(vertex(ahead));
-        break;
-      }
-      ahead = next_[ahead] ^ 1;
-    }
-    if (chain.edges.size() >= kFewestSides) chains_.push_back(std::move(chain));
   }
 
   const SmoothMesh& mesh_;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -175,15 +176,11 @@ class Seams {
     const auto found = std::lower_bound(sides_.begin(), sides_.end(), side);
     return found != sides_.end() && !(side < *found) && is_open_[found->seam] ? found->seam : no_index;
   }
-  struct Range {
-    std::size_t first, last;  ///< last is one beyond
-  };
-  /// The places of the seam's corners strictly between two of its corners.
-  [[nodiscard]] Range between(std::uint32_t seam, std::uint32_t a, std::uint32_t b) const {
-    const std::size_t i = place_of(seam, a), j = place_of(seam, b);
-    return {std::min(i, j) + 1, std::max(i, j)};
+  /// The seam's corners strictly between two of its corners.
+  [[nodiscard]] std::span<const std::uint32_t> between(std::uint32_t seam, std::uint32_t a, std::uint32_t b) const {
+    const auto [first, last] = std::minmax({place_of(seam, a), place_of(seam, b)});
+    return {corners_.data() + first + 1, last - first - 1};
   }
-  [[nodiscard]] std::uint32_t corner(std::size_t place) const { return corners_[place]; }
   [[nodiscard]] std::size_t count() const { return axes_.size(); }
   void leave(std::uint32_t seam) { is_open_[seam] = false; }
 
@@ -269,8 +266,7 @@ std::size_t leave_crowded(Seams& seams, const WeldedMesh& mesh, const Execution&
     const Seamed triangle = seamed(seams, t);
     for (int k = 0; k < 3; ++k) {
       if (triangle.seams[k] == no_index) continue;
-      const Seams::Range range = seams.between(triangle.seams[k], t[k], t[k == 2 ? 0 : k + 1]);
-      added[triangle.seams[k]] += range.last - range.first;
+      added[triangle.seams[k]] += seams.between(triangle.seams[k], t[k], t[k == 2 ? 0 : k + 1]).size();
     }
   }
   const std::size_t most = kMostAdded * mesh.triangles.size() + kAlwaysAdded;
@@ -289,22 +285,22 @@ std::size_t leave_crowded(Seams& seams, const WeldedMesh& mesh, const Execution&
 template <class Add>
 void split(const Seams& seams, const Seamed& triangle, const Add& add) {
   int side = -1;
-  Seams::Range at{0, 0};
+  std::span<const std::uint32_t> at;
   std::pair<std::uint32_t, std::uint32_t> lowest;
   for (int k = 0; k < 3; ++k) {
     if (triangle.seams[k] == no_index) continue;
     const std::uint32_t a = triangle.corners[k], b = triangle.corners[k == 2 ? 0 : k + 1];
-    const Seams::Range range = seams.between(triangle.seams[k], a, b);
-    const std::pair<std::uint32_t, std::uint32_t> ends{std::min(a, b), std::max(a, b)};
-    if (range.first == range.last || (side >= 0 && lowest < ends)) continue;
-    side = k, at = range, lowest = ends;
+    const std::span<const std::uint32_t> between = seams.between(triangle.seams[k], a, b);
+    const std::pair<std::uint32_t, std::uint32_t> ends = std::minmax({a, b});
+    if (between.empty() || (side >= 0 && lowest < ends)) continue;
+    side = k, at = between, lowest = ends;
   }
   if (side < 0) {
     add(triangle.corners);
     return;
   }
   const int next = side == 2 ? 0 : side + 1;
-  const std::uint32_t middle = seams.corner(at.first + (at.last - at.first) / 2);
+  const std::uint32_t middle = at[at.size() / 2];
   // The new side between the halves lies on no seam.
   Seamed from = triangle, to = triangle;
   from.corners[next] = middle;

@@ -17,8 +17,6 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::uint32_t none = no_index;
-
 /// An end of a segment: number 2 i for `from`, 2 i + 1 for `to`.
 struct SegmentEnd {
   std::uint32_t rank;
@@ -29,7 +27,7 @@ struct SegmentEnd {
   friend auto operator<=>(const SegmentEnd&, const SegmentEnd&) = default;
 };
 
-/// By end: the only other end that it meets, or none.
+/// By end: the only other end that it meets, or no_index.
 std::vector<std::uint32_t> partners(const std::vector<LineSegment>& segments) {
   std::vector<SegmentEnd> ends;
   ends.reserve(2 * segments.size());
@@ -40,7 +38,7 @@ std::vector<std::uint32_t> partners(const std::vector<LineSegment>& segments) {
                       std::uint32_t(2 * i) + std::uint32_t(k)});
     }
   std::sort(ends.begin(), ends.end());
-  std::vector<std::uint32_t> partner(ends.size(), none);
+  std::vector<std::uint32_t> partner(ends.size(), no_index);
   for (std::size_t first = 0; first < ends.size();) {
     std::size_t last = first + 1;
     while (last < ends.size() && ends[last].meets(ends[first])) ++last;
@@ -245,28 +243,19 @@ class ArcFinder {
 }  // namespace
 
 std::vector<Chain> chained(const std::vector<LineSegment>& segments) {
-  const std::vector<std::uint32_t> partner = partners(segments);
-  std::vector<bool> is_used(segments.size());
   std::vector<Chain> chains;
   const auto place = [&](std::uint32_t end) { return end % 2 == 0 ? segments[end / 2].from : segments[end / 2].to; };
-  const auto follow = [&](std::uint32_t end) {
-    Chain chain;
-    chain.rank = segments[end / 2].rank;
-    chain.points.push_back(place(end));
-    while (end != none && !is_used[end / 2]) {
-      is_used[end / 2] = true;
+  for_each_chain(partners(segments), [&](const std::vector<std::uint32_t>& ends, bool is_closed) {
+    Chain& chain = chains.emplace_back();
+    chain.rank = segments[ends[0] / 2].rank;
+    chain.is_closed = is_closed;
+    chain.points.push_back(place(ends[0]));
+    for (const std::uint32_t end : ends) {
       chain.is_contour |= segments[end / 2].is_contour;
       chain.points.push_back(place(end ^ 1));
-      end = partner[end ^ 1];
     }
-    chain.is_closed = end != none;
-    if (chain.is_closed) chain.points.pop_back();
-    chains.push_back(std::move(chain));
-  };
-  for (std::uint32_t end = 0; end < partner.size(); ++end)
-    if (partner[end] == none && !is_used[end / 2]) follow(end);
-  for (std::uint32_t end = 0; end < partner.size(); end += 2)
-    if (!is_used[end / 2]) follow(end);
+    if (is_closed) chain.points.pop_back();
+  });
   std::stable_sort(chains.begin(), chains.end(), [](const Chain& a, const Chain& b) { return a.rank < b.rank; });
   return chains;
 }

@@ -45,6 +45,27 @@ inline constexpr double places_per_pixel = 1000;
 /// Joins segments of one rank wherever exactly two ends meet. Chains are sorted by rank, then by their first segment.
 [[nodiscard]] std::vector<Chain> chained(const std::vector<LineSegment>& segments);
 
+/// Calls visit(ends, is_closed) for each chain of edges: first the open ones, then those that are closed. The ends of
+/// edge i are 2 i and 2 i + 1; each is continued by its partner, or by none (no_index). `ends`: where a walk along the
+/// chain enters each of its edges.
+template <class Visit>
+void for_each_chain(const std::vector<std::uint32_t>& partner, const Visit& visit) {
+  std::vector<bool> is_used(partner.size() / 2);
+  std::vector<std::uint32_t> ends;
+  const auto follow = [&](std::uint32_t end) {
+    ends.clear();
+    for (; end != no_index && !is_used[end / 2]; end = partner[end ^ 1]) {
+      is_used[end / 2] = true;
+      ends.push_back(end);
+    }
+    visit(ends, end != no_index);
+  };
+  for (std::uint32_t end = 0; end < partner.size(); ++end)
+    if (partner[end] == no_index && !is_used[end / 2]) follow(end);
+  for (std::uint32_t end = 0; end < partner.size(); end += 2)
+    if (!is_used[end / 2]) follow(end);
+}
+
 /// The end of the longest run from `first` up to `most` for which fits(end) holds; `first` if the run of `least` steps
 /// does not fit. The run is lengthened by doubled steps while it fits, up to `largest_step`, and then by halved steps.
 template <class Fits>
