@@ -4,8 +4,6 @@
 #include "pages/formats.h"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 
 #include "frontmost/base.h"
 

@@ -6,10 +6,8 @@
 //           |
 // A piece is joined to the one before on the same line if a drafter would draw across the gap.
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
-#include "frontmost/lines.h"
 #include "rounds/found_rounds.h"
 
 namespace frontmost {

@@ -71,12 +71,6 @@ struct Across {
   explicit Across(const glm::dvec3& axis);
 };
 
-/// The tube about this axis that fits the points best (I. Kasa's fit of circles). None if the points lie on a line.
-[[nodiscard]] std::optional<Tube> tube_through(std::span<const glm::dvec3> points, const glm::dvec3& axis);
-
-/// The direction that is closest to perpendicular to all vectors.
-[[nodiscard]] glm::dvec3 common_perpendicular(std::span<const glm::dvec3> vectors);
-
 /// 20.01 degrees, as for arcs of strokes: a larger turn is an edge between neighbours, or a corner of a polygon.
 inline constexpr double kWidestStep = 0.34924038;
 inline constexpr double kWidestCosine = 0.93963;

@@ -7,12 +7,9 @@
 // A prism has two rims about one axis, each with its corners on a circle. Rims are sorted by the point of their axis
 // nearest to the origin, along a direction that is parallel to no usual row of holes.
 #include <algorithm>
-#include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "base/parallel.h"
-#include "frontmost/lines.h"
 #include "rounds/found_rounds.h"
 
 namespace frontmost {

@@ -12,7 +12,6 @@
 #include <tuple>
 
 #include "base/parallel.h"
-#include "frontmost/lines.h"
 #include "sections/regions.h"
 #include "surfaces/cluster_set.h"
 

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <map>
 
-#include "frontmost/sheets.h"
 #include "sheets/paper.h"
 
 namespace frontmost::detail {

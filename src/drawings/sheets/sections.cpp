@@ -9,9 +9,7 @@
 #include <array>
 #include <cmath>
 
-#include "frontmost/sheets.h"
 #include "rounds/found_rounds.h"
-#include "sheets/paper.h"
 #include "sheets/planned_view.h"
 
 namespace frontmost::detail {
@@ -141,9 +139,9 @@ void keep_section_room(std::vector<ViewCell>& cells, std::vector<PlannedView>& v
     const bool reaches_out = rest < size / 4;
     double& side = is_behind ? cell.room_behind[across] : cell.room_before[across];
     if (reaches_out) side = std::max(side, section_arrow_room);
-    const bool is_left = along == 0 || (reaches_out && !is_behind), is_below = along == 1 || (reaches_out && is_behind);
-    if (is_left) host.taken.x = std::max(host.taken.x, along == 0 ? cutting_line_room : section_arrow_room);
-    if (is_below) host.taken.y = std::max(host.taken.y, along == 1 ? cutting_line_room : section_arrow_room);
+    host.taken[along] = std::max(host.taken[along], cutting_line_room);
+    const bool is_left_or_below = is_behind == (across == 1);
+    if (reaches_out && is_left_or_below) host.taken[across] = std::max(host.taken[across], section_arrow_room);
   }
 }
 

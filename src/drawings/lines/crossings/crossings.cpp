@@ -9,21 +9,18 @@
 #include "lines/crossings/crossings.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <tuple>
-#include <vector>
 
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/work_limit.h"
 #include "lines/crossings/space_lanes.h"
 #include "lines/lists.h"
-#include "lines/mesh/feature_edges.h"
 #include "surfaces/hilbert.h"
 #include "surfaces/radix_sort.h"
 #include "view/sight.h"
@@ -241,8 +238,7 @@ constexpr std::size_t kMostSegments = std::size_t(1) << 20, kMostSegmentsOfTrian
 constexpr std::uint64_t kStepsOfPair = 8, kMostSteps = std::uint64_t(1) << 30, kMostStepsOfTriangle = 256;
 
 /// A triangle with its vertices in ascending order, so that every computation with its plane gives the same bits.
-class CrossedFace {
- public:
+struct CrossedFace {
   CrossedFace(const WeldedMesh& mesh, std::uint32_t number)
       : triangle(number),
         vertices(ascending(mesh.triangles[number])),
@@ -256,7 +252,6 @@ class CrossedFace {
   const glm::uvec3 vertices;
   const FacePlane plane;
 
- private:
   static glm::uvec3 ascending(glm::uvec3 v) {
     if (v.x > v.y) std::swap(v.x, v.y);
     if (v.y > v.z) std::swap(v.y, v.z);

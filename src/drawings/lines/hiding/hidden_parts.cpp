@@ -7,7 +7,6 @@
 // A vertex of the triangle is in the planes through it by its number, not by arithmetic. No sign is rounded.
 #include "lines/hiding/hidden_parts.h"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 

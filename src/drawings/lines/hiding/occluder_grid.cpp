@@ -7,20 +7,17 @@
 //    +--+--+--+                       |##|##|##|##|##|      within it
 //
 // Places are rounded outwards to floats, and comparisons of places in cells have a pad far above the rounding error.
-#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <vector>
 
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "geometry/buckets.h"
 #include "lines/hiding/hidden_parts.h"
 #include "lines/lists.h"
-#include "lines/mesh/mesh.h"
 #include "surfaces/radix_sort.h"
 
 namespace frontmost::lines_detail {

@@ -14,14 +14,10 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <span>
 #include <string>
-#include <utility>
 
 #include "base/parallel.h"
 #include "lines/lists.h"
-#include "lines/mesh/mesh.h"
 
 namespace frontmost::lines_detail {
 namespace {

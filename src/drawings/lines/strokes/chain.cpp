@@ -7,7 +7,6 @@
 //            . - '       p4 lies outside of the cone: p3 becomes
 //    p0 <====.  p2  p3   a corner, and a new cone begins there
 //            ' - .    p4
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>

@@ -5,8 +5,6 @@
 //    [ 3 7 9 | 4 5 ]         3       hold a nearer end, or one as near with a lower number. Both ends of a chain leave
 //      /         .                   the tree when it is drawn, and the lowest numbers are updated on the way up. So
 //    [3 7 9]   [4 5]                 crowds of ends cost no more than others.
-#include <algorithm>
-#include <limits>
 #include <tuple>
 
 #include "base/parallel.h"
