@@ -208,19 +208,17 @@ struct Seed {
   int side;
 };
 
-class Seeds {
- public:
-  explicit Seeds(const SmoothMesh& mesh) : mesh_(mesh) {}
+struct Seeds {
+  const SmoothMesh& mesh;
 
   [[nodiscard]] bool is_one(const Seed& seed) const {
-    const std::uint32_t other = mesh_.across(seed.triangle, seed.side);
-    if (other == no_index || other < seed.triangle || !mesh_.is_smooth(seed.triangle, seed.side)) return false;
-    if (glm::dot(mesh_.normals[seed.triangle], mesh_.normals[other]) > kFlat) return false;
-    const glm::dvec3 side = mesh_.corner(seed.triangle, (seed.side + 1) % 3) - mesh_.corner(seed.triangle, seed.side);
+    const std::uint32_t other = mesh.across(seed.triangle, seed.side);
+    if (other == no_index || other < seed.triangle || !mesh.is_smooth(seed.triangle, seed.side)) return false;
+    if (glm::dot(mesh.normals[seed.triangle], mesh.normals[other]) > kFlat) return false;
+    const glm::dvec3 side = mesh.corner(seed.triangle, (seed.side + 1) % 3) - mesh.corner(seed.triangle, seed.side);
     return goes_on(seed.triangle, other, side) && goes_on(other, seed.triangle, side);
   }
 
- private:
   /// Whether `triangle` has, apart from `before`, a smooth neighbour parallel to the axis, and no other smooth
   /// neighbour that is part of a doubly curved surface.
   [[nodiscard]] bool goes_on(std::uint32_t triangle, std::uint32_t before, const glm::dvec3& side) const {
@@ -228,8 +226,8 @@ class Seeds {
     const glm::dvec3 axis = side / length;
     bool has_one = false;
     for (int k = 0; k < 3; ++k) {
-      const std::uint32_t next = mesh_.across(triangle, k);
-      if (next == before || !mesh_.is_smooth(triangle, k)) continue;
+      const std::uint32_t next = mesh.across(triangle, k);
+      if (next == before || !mesh.is_smooth(triangle, k)) continue;
       if (std::abs(lean(next, axis)) <= kUpright)
         has_one = true;
       else if (2 * height(next, axis) > length && leans_on(next, axis))
@@ -244,12 +242,12 @@ class Seeds {
     const double first = lean(triangle, axis);
     const auto is_twice = [&](std::uint32_t t) { return std::abs(lean(t, axis) / first - 2) < 0.4; };
     for (int k = 0; k < 3; ++k) {
-      if (!mesh_.is_smooth(triangle, k)) continue;
-      const std::uint32_t next = mesh_.across(triangle, k);
+      if (!mesh.is_smooth(triangle, k)) continue;
+      const std::uint32_t next = mesh.across(triangle, k);
       if (is_twice(next)) return true;
       // The next ring may begin behind the other half of the triangle's quad.
       for (int j = 0; j < 3; ++j)
-        if (mesh_.is_smooth(next, j) && is_twice(mesh_.across(next, j))) return true;
+        if (mesh.is_smooth(next, j) && is_twice(mesh.across(next, j))) return true;
     }
     return false;
   }
@@ -257,16 +255,14 @@ class Seeds {
   /// The extent of a triangle along the axis.
   [[nodiscard]] double height(std::uint32_t triangle, const glm::dvec3& axis) const {
     double at[3];
-    for (int k = 0; k < 3; ++k) at[k] = glm::dot(mesh_.corner(triangle, k), axis);
+    for (int k = 0; k < 3; ++k) at[k] = glm::dot(mesh.corner(triangle, k), axis);
     return *std::max_element(at, at + 3) - *std::min_element(at, at + 3);
   }
 
   /// The angle between a triangle and the axis; 0 if it is parallel to the axis.
   [[nodiscard]] double lean(std::uint32_t triangle, const glm::dvec3& axis) const {
-    return std::asin(std::clamp(glm::dot(mesh_.normals[triangle], axis), -1.0, 1.0));
+    return std::asin(std::clamp(glm::dot(mesh.normals[triangle], axis), -1.0, 1.0));
   }
-
-  const SmoothMesh& mesh_;
 };
 
 class WallGrower {
@@ -454,7 +450,7 @@ std::vector<FoundRound> find_walls(const SmoothMesh& mesh, const std::vector<Fou
   const std::size_t count = mesh.mesh.triangles.size();
   std::vector<std::vector<Seed>> lists((count + kSeedsPerPart - 1) / kSeedsPerPart);
   parallel_for(execution, count, kSeedsPerPart, [&](std::size_t begin, std::size_t end) {
-    const Seeds seeds(mesh);
+    const Seeds seeds{mesh};
     for (auto t = std::uint32_t(begin); t < end; ++t)
       for (int k = 0; k < 3; ++k)
         if (const Seed seed{t, k}; seeds.is_one(seed)) lists[begin / kSeedsPerPart].push_back(seed);

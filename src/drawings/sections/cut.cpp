@@ -24,11 +24,11 @@ constexpr std::size_t triangles_per_poll = 1 << 14;
 
 glm::vec3 meeting(const PlaneAxes& plane, glm::vec3 p, glm::vec3 q) {
   if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(p, q);
-  const int across = plane.across();
+  const int across = plane.across;
   const glm::dvec3 from(p), to(q);
-  const double t = (plane.at() - from[across]) / (to[across] - from[across]);
+  const double t = (plane.at - from[across]) / (to[across] - from[across]);
   glm::vec3 place(t <= 0.5 ? from + (to - from) * t : to + (from - to) * (1 - t));
-  place[across] = plane.at();
+  place[across] = plane.at;
   return place + 0.0f;  // -0 is 0
 }
 

@@ -20,30 +20,25 @@ namespace frontmost::lines_detail {
 
 /// Coordinates in a cutting plane: two axes within the plane and one across it, right-handed in this order with
 /// CuttingPlane::towards. The plane is perpendicular to a world axis, so coordinates are selected and never computed.
-class PlaneAxes {
- public:
+struct PlaneAxes {
   explicit PlaneAxes(const CuttingPlane& plane)
-      : across_(int(plane.towards) % 3), is_minus_(int(plane.towards) >= 3), at_(float(plane.at)) {}
+      : across(int(plane.towards) % 3), is_minus(int(plane.towards) >= 3), at(float(plane.at)) {}
 
   /// Whether a point lies behind the plane.
-  [[nodiscard]] bool is_behind(const glm::vec3& p) const { return is_minus_ ? p[across_] > at_ : p[across_] < at_; }
+  [[nodiscard]] bool is_behind(const glm::vec3& p) const { return is_minus ? p[across] > at : p[across] < at; }
   [[nodiscard]] glm::vec2 in_plane(const glm::vec3& p) const { return {p[axis(0)], p[axis(1)]}; }
   [[nodiscard]] glm::vec3 in_space(const glm::vec2& p) const {
     glm::vec3 place;
-    place[across_] = at_;
+    place[across] = at;
     place[axis(0)] = p.x;
     place[axis(1)] = p.y;
     return place;
   }
-  [[nodiscard]] int across() const { return across_; }
-  [[nodiscard]] float at() const { return at_; }
+  [[nodiscard]] int axis(int i) const { return (across + (is_minus ? 2 - i : 1 + i)) % 3; }
 
- private:
-  [[nodiscard]] int axis(int i) const { return (across_ + (is_minus_ ? 2 - i : 1 + i)) % 3; }
-
-  int across_;
-  bool is_minus_;
-  float at_;
+  int across;
+  bool is_minus;
+  float at;
 };
 
 /// A segment of a triangle in the plane. If the triangle is wound outwards, the removed part is on the segment's left.

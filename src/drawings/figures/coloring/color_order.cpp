@@ -55,38 +55,32 @@ struct FigureTriangles {
   BitSet large;  ///< triangles that need a smooth normal if the model has none
 };
 
-class PointShader {
- public:
+struct PointShader {
   /// Borrows all but the options; prepares whatever the scene lacks. \throws Error as check_opacity() does.
   PointShader(PreparedScene& scene, const ShadeInput& input, const FigureTriangles& triangles,
               const ShadeOptions& options, const Execution& execution)
-      : source_(smoothed(scene, triangles.large, execution), input.first().view, &triangles.large),
-        lighting_(lighting_of(scene, input, options, execution)),
-        opacity_(shows_materials(options.shading) ? options.opacity : 1.0f) {
+      : source(smoothed(scene, triangles.large, execution), input.first().view, &triangles.large),
+        lighting(lighting_of(scene, input, options, execution)),
+        opacity(shows_materials(options.shading) ? options.opacity : 1.0f) {
     check_opacity(options);
     check_ambient_occlusion(options);
     scene.make_materials_ready(triangles.seen, execution);
     if (options.shading == Shading::lit) {
-      Lit lit = lit_by(lighting_, {input, options, kAtPoint}, scene, execution);
+      Lit lit = lit_by(lighting, {input, options, kAtPoint}, scene, execution);
       lit.occlusion = scene.find_occlusion(input, options, execution);
       scene.shadows.ask_at_points();
-      colorist_ = std::move(lit);
+      colorist = std::move(lit);
     } else if (options.shading == Shading::depth) {
-      colorist_ = depth_colorist(depth_range(input.first(), execution), glm::vec3(input.first().view.forward()));
+      colorist = depth_colorist(depth_range(input.first(), execution), glm::vec3(input.first().view.forward()));
     } else {
-      colorist_ = unlit_colorist(options.shading, scene.materials, execution.isa);
+      colorist = unlit_colorist(options.shading, scene.materials, execution.isa);
     }
   }
 
-  [[nodiscard]] const TriangleSource& source() const { return source_; }
-  [[nodiscard]] const FragmentShader::Colorist& colorist() const { return colorist_; }
-  [[nodiscard]] float opacity() const { return opacity_; }
-
- private:
-  const TriangleSource source_;
-  const Lighting lighting_;
-  FragmentShader::Colorist colorist_;
-  const float opacity_;
+  const TriangleSource source;
+  const Lighting lighting;
+  FragmentShader::Colorist colorist;
+  const float opacity;
 };
 
 /// In pixels: the least width of a cut piece, and the distance from a cut below which no samples are taken. Textures
@@ -118,7 +112,7 @@ class PolygonColors {
   PolygonColors(const Surfaces& surfaces, const View& view, const PointShader& shader, const FigureOptions& options,
                 const Execution& execution)
       : surfaces_(surfaces), shading_(shader), options_(options), execution_(execution), rays_(view) {
-    shader_.begin(shader.source(), shader.colorist(), execution.isa);
+    shader_.begin(shader.source, shader.colorist, execution.isa);
   }
 
   /// Appends some of these parts in pieces, without holes and clear pieces. The result depends only on these polygons.
@@ -178,7 +172,7 @@ class PolygonColors {
     for (const PaintPolygon& outline : polygons) {
       Polygon& polygon = polygons_.emplace_back(Polygon{outline});
       if (cutouts && cutouts->has(outline.id)) polygon.holes.emplace((*cutouts)[outline.id], rays_);
-      polygon.is_grouped = options_.merges_neighbours || shading_.opacity() < 1 || !is_opaque(surfaces_, outline.id);
+      polygon.is_grouped = options_.merges_neighbours || shading_.opacity < 1 || !is_opaque(surfaces_, outline.id);
     }
   }
 
@@ -238,7 +232,7 @@ class PolygonColors {
         // Paper shows nothing brighter than white: brighter reflections hide what is behind instead.
         const float brightest = std::max(1.0f, std::max(light.x, std::max(light.y, light.z)));
         const glm::vec3 shown = light / brightest;
-        const float opacity = std::clamp(shaded.alpha * brightest * shading_.opacity(), 0.0f, 1.0f);
+        const float opacity = std::clamp(shaded.alpha * brightest * shading_.opacity, 0.0f, 1.0f);
         asked_[shaded.number]->color = {float(srgb8_of_linear(shown.x)), float(srgb8_of_linear(shown.y)),
                                         float(srgb8_of_linear(shown.z)), opacity * 255.0f};
       });
@@ -333,7 +327,7 @@ class PolygonColors {
     std::vector<TexcoordLines>& lines = polygon.texture_lines.emplace();
     std::vector<TriangleSetup> setups(1);
     const NewTriangle triangle{polygon.outline.id, 0, glm::vec2(piece.samples.front().at)};
-    shading_.source().set_up({&triangle, 1}, setups);
+    shading_.source.set_up({&triangle, 1}, setups);
     const TriangleSetup& setup = setups[0];
     const Scene& scene = surfaces_.scene();
     if (setup.material >= scene.materials.size()) return lines;

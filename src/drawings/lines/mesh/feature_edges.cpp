@@ -191,23 +191,22 @@ bool cover(std::vector<std::pair<double, double>>& stretches, double length, dou
   return reached >= length - slack;
 }
 
-class Gaps {
- public:
-  Gaps(const SeenMesh& seen, const Classifier& classifier, double widest, std::vector<OpenSide> sides)
-      : seen_(seen), classifier_(classifier), widest_(widest), tree_(std::move(sides)) {}
-
-  [[nodiscard]] const std::vector<OpenSide>& sides() const { return tree_.sides(); }
+struct Gaps {
+  const SeenMesh& seen;
+  const Classifier& classifier;
+  const double most;  ///< the widest gap
+  const SideTree& tree;
 
   /// Whether the side is a gap. Adds its vertices, with those beyond the gap, to `continued`.
   [[nodiscard]] bool is_one(const OpenSide& side, VertexPairs& continued) const {
-    const double widest = std::min(widest_, kShare * side.length);
+    const double widest = std::min(most, kShare * side.length);
     Box box = side.box;
     box.low -= glm::vec3(float(widest));
     box.high += glm::vec3(float(widest));
     std::vector<std::pair<double, double>> stretches;
     const std::size_t first = continued.size();
     std::size_t count = 0;
-    tree_.visit_near(box, [&](const OpenSide& other) {
+    tree.visit_near(box, [&](const OpenSide& other) {
       if (other.number == side.number) return true;
       const auto stretch = stretch_beside(side, other, widest);
       if (stretch.first < stretch.second && goes_on(side, other)) {
@@ -223,7 +222,6 @@ class Gaps {
     return is_gap;
   }
 
- private:
   /// The stretch of `side` beside which `other` lies, in lengths from its beginning; empty if there is none.
   static std::pair<double, double> stretch_beside(const OpenSide& side, const OpenSide& other, double widest) {
     const double slope = glm::dot(other.along, side.along);
@@ -242,15 +240,10 @@ class Gaps {
   [[nodiscard]] bool goes_on(const OpenSide& side, const OpenSide& other) const {
     const double cosine = glm::dot(side.normal, other.normal);
     const std::uint32_t own = side.edge.left, its = other.edge.left;  // triangles
-    return glm::dot(side.ahead, other.ahead) < -kAcross && std::abs(cosine) > classifier_.cosine() &&
-           seen_.facing[own] != 0 && seen_.facing[own] == seen_.facing[its] * (cosine < 0 ? -1 : 1) &&
-           classifier_.surface_of(own) == classifier_.surface_of(its);
+    return glm::dot(side.ahead, other.ahead) < -kAcross && std::abs(cosine) > classifier.cosine() &&
+           seen.facing[own] != 0 && seen.facing[own] == seen.facing[its] * (cosine < 0 ? -1 : 1) &&
+           classifier.surface_of(own) == classifier.surface_of(its);
   }
-
-  const SeenMesh& seen_;
-  const Classifier& classifier_;
-  const double widest_;
-  SideTree tree_;
 };
 
 /// Removes from `edges` the boundaries across which their surface continues: exporters tessellate each face by itself,
@@ -265,10 +258,11 @@ VertexPairs leave_out_gaps(const SeenMesh& seen, const Classifier& classifier, d
     if (edges[i].kind == EdgeKind::boundary && edges[i].right == no_index && seen.facing[edges[i].left] != 0)
       sides.push_back(open_side(seen.mesh, edges[i], std::uint32_t(i)));
   if (sides.empty() || sides.size() > triangles) return {};
-  const Gaps gaps(seen, classifier, widest, std::move(sides));
+  const SideTree tree(std::move(sides));
+  const Gaps gaps{seen, classifier, widest, tree};
   VertexPairs continued;
   std::vector<bool> is_gap(edges.size(), false);
-  for (const OpenSide& side : gaps.sides()) is_gap[side.number] = gaps.is_one(side, continued);
+  for (const OpenSide& side : tree.sides()) is_gap[side.number] = gaps.is_one(side, continued);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < edges.size(); ++i)
     if (!is_gap[i]) edges[kept++] = edges[i];
