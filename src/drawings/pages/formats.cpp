@@ -147,12 +147,9 @@ std::string pdf_text(std::string_view name) {
   std::string text = "<FEFF";
   for (std::string_view rest = shown; !rest.empty();) {
     const char32_t code = take_character(rest);
-    if (code >= 0x10000) {
-      append_hex(0xD800 + unsigned((code - 0x10000) >> 10), text);
-      append_hex(0xDC00 + unsigned((code - 0x10000) & 0x3FF), text);
-    } else {
-      append_hex(unsigned(code), text);
-    }
+    const bool is_pair = code >= 0x10000;  // of surrogates
+    if (is_pair) append_hex(0xD800 + unsigned((code - 0x10000) >> 10), text);
+    append_hex(is_pair ? 0xDC00 + unsigned((code - 0x10000) & 0x3FF) : unsigned(code), text);
   }
   return text + '>';
 }

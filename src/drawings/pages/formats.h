@@ -4,7 +4,7 @@
 //              . - .          A writer is a class over one page that appends text to a PageText. The bulge of a join is
 //          .-'   |   '-.      the height of its arc by half of the chord: the tangent of a quarter of its angle.
 //          Formats
-//        from ---+--- to      need a radius and flags, a centre and angles, or approximating curves instead.
+//        from ---+--- to      need radius and flags, centre and angles, or approximating curves.
 #pragma once
 
 #include <cmath>

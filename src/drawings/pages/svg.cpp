@@ -91,11 +91,10 @@ class SvgWriter {
       }
       if (dots == 0) out_ << "<path d=\"";
       write_path(group, path);
-      if (is_dot) {
+      if (is_dot)
         ++dots;
-      } else {
+      else
         out_ << "\"/>\n";
-      }
     }
     if (dots > 0) out_ << "\"/>\n";
   }
@@ -104,11 +103,10 @@ class SvgWriter {
     const PathPaint paint = paint_of(group, i);
     if (!paint.is_seen()) return;
     out_ << "<path";
-    if (paint.fill) {
+    if (paint.fill)
       color("fill", *paint.fill);
-    } else {
+    else
       out_ << " fill=\"none\"";
-    }
     out_ << " d=\"";
     do write_path(group, group.paths[i]);
     while (++i < group.paths.size() && group.paths[i].is_part);
@@ -139,11 +137,7 @@ class SvgWriter {
       const std::optional<Arc> arc = arc_between(join.from, join.to, join.bulge);
       if (path.is_closed && i + 1 == joins && !arc) break;  // z draws it
       const glm::i64vec2 to = thousandths(join.to);
-      if (arc) {
-        turn(*arc, to - at);
-      } else {
-        step(to - at);
-      }
+      arc ? turn(*arc, to - at) : step(to - at);
       at = to;
     }
     if (path.is_closed) out_ << 'z';

@@ -40,14 +40,10 @@ class RunFinder {
     for (std::size_t at = 0; at + kFewestSides <= sides_;) {
       const std::size_t end = longest_run(
           at, kFewestSides, sides_, [&](std::size_t last) { return fit(at, last).has_value(); }, kLargestStep);
-      if (end == at) {
-        ++at;
-        continue;
-      }
       // A circle through three points has their orientation.
-      if (const auto arc = fit(at, end); arc->second >= kShortestArc)
+      if (const auto arc = end > at ? fit(at, end) : std::nullopt; arc && arc->second >= kShortestArc)
         found.push_back({arc->first, {{corner(at), corner(end), arc->second}}, triangles_of(at, end)});
-      at = end;
+      at = std::max(at + 1, end);
     }
   }
 

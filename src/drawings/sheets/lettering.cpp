@@ -325,11 +325,10 @@ void add_text(PageGroup& group, std::string_view text, const glm::dvec2& at, con
   group.bulges.resize(group.points.size());
   const auto draw = [&](const char* strokes, const glm::dvec2& place) {
     for_each_point(strokes, [&](const glm::dvec2& p, double bulge, bool begins) {
-      if (begins) {
+      if (begins)
         group.paths.push_back({std::uint32_t(group.points.size()), 0, false});
-      } else {
+      else
         group.bulges.back() = bulge;
-      }
       const glm::dvec2 q = p + place + shift;
       group.points.push_back(at + along * q.x + glm::dvec2(along.y, -along.x) * q.y);
       group.bulges.push_back(0);

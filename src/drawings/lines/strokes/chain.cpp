@@ -142,12 +142,8 @@ class ArcFinder {
                                           [&](std::size_t last) { return fit(at, last).has_value(); });
       kept.push_back(points_[at]);
       bulges_.push_back(0);
-      if (end > at) {
-        add_arc(at, end, kept);
-        at = end;
-      } else {
-        ++at;
-      }
+      if (end > at) add_arc(at, end, kept);
+      at = std::max(at + 1, end);
     }
     if (!chain_.is_closed) {
       kept.push_back(points_.back());
