@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The outlines of adjacent polygons, without the sides that two of them share.
 //
-//    A ------------------ B     Corners are rounded to a grid. A neighbour has a corner C on the side A-B, which
-//    becomes |         C          |     A-C and C-B. So each of the three polygons has the same sides as its
-//    neighbours, in
-//    +---------+----------+     opposite directions. Shared sides are found by their numbers.
+//    A ------------------ B     Corners are rounded to a grid. A neighbour has a corner C on
+//    |         C          |     the side A-B, which becomes A-C and C-B. So each of the three
+//    |         |          |     polygons has the same sides as its neighbours, in opposite
+//    +---------+----------+     directions. Shared sides are found by their numbers.
 //
 // Points are sorted by rows of the picture, and by x within a row. The sides that are not shared form closed rings: as
 // many sides end at a point as begin there.

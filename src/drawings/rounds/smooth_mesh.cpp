@@ -6,6 +6,7 @@
 //       pair
 //    ---o---     first. Chains are followed from their open ends first; the others are closed.
 #include <algorithm>
+#include <tuple>
 
 #include "base/parallel.h"
 #include "lines/lists.h"
@@ -17,18 +18,6 @@ namespace {
 
 constexpr std::size_t kTrianglesPerPart = 4096;
 constexpr double kSixDigits = 2e-6;  // of the largest coordinate
-
-/// Fillers of T-junctions have no area and would split smooth surfaces.
-void close_all_seams(WeldedMesh& mesh, const Execution& execution) {
-  Buffer<std::int8_t> may_be_flat(mesh.triangles.size());
-  for (std::size_t i = 0; i < may_be_flat.size(); ++i) {
-    const glm::uvec3& t = mesh.triangles[i];
-    const glm::dvec3 at = mesh.positions[t.x], p = mesh.positions[t.y] - at, q = mesh.positions[t.z] - at;
-    const glm::dvec3 normal = glm::cross(p, q);
-    may_be_flat[i] = glm::dot(normal, normal) > 1e-20 * glm::dot(p, p) * glm::dot(q, q);
-  }
-  static_cast<void>(close_seams(mesh, may_be_flat, execution));
-}
 
 /// More edges at one vertex belong to no circle, and would take the square of their number.
 constexpr std::size_t kMostAtVertex = 16;
@@ -103,25 +92,19 @@ class Chainer {
 
   /// Joins the straightest pairs first.
   void join(std::span<const std::pair<std::uint32_t, ChainEnd>> ends) {
-    struct Pair {
-      double cosine;
-      ChainEnd a, b;
-    };
-    std::vector<Pair> pairs;
+    std::vector<std::tuple<double, ChainEnd, ChainEnd>> pairs;  // with the negative cosine
     for (std::size_t i = 0; i < ends.size(); ++i)
       for (std::size_t k = 0; k < i; ++k) {
         // Copies of an edge, from duplicate surfaces, do not continue each other.
         if (vertex(ends[i].second ^ 1) == vertex(ends[k].second ^ 1)) continue;
         const double cosine = -glm::dot(direction(ends[i].second), direction(ends[k].second));
-        if (cosine >= least_cosine_) pairs.push_back({cosine, ends[k].second, ends[i].second});
+        if (cosine >= least_cosine_) pairs.emplace_back(-cosine, ends[k].second, ends[i].second);
       }
-    std::sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) {
-      return p.cosine != q.cosine ? p.cosine > q.cosine : p.a != q.a ? p.a < q.a : p.b < q.b;
-    });
-    for (const Pair& pair : pairs) {
-      if (next_[pair.a] != no_index || next_[pair.b] != no_index) continue;
-      next_[pair.a] = pair.b;
-      next_[pair.b] = pair.a;
+    std::sort(pairs.begin(), pairs.end());
+    for (const auto& [turn, a, b] : pairs) {
+      if (next_[a] != no_index || next_[b] != no_index) continue;
+      next_[a] = b;
+      next_[b] = a;
     }
   }
 
@@ -146,8 +129,16 @@ Across::Across(const glm::dvec3& axis) {
 SmoothMesh smooth_mesh(const Surfaces& surfaces, const Execution& execution) {
   SmoothMesh result;
   result.mesh = weld(surfaces, execution);
-  close_all_seams(result.mesh, execution);
   const WeldedMesh& mesh = result.mesh;
+  // Fillers of T-junctions have no area and would split smooth surfaces.
+  Buffer<std::int8_t> may_be_flat(mesh.triangles.size());
+  for (std::size_t i = 0; i < may_be_flat.size(); ++i) {
+    const glm::uvec3& t = mesh.triangles[i];
+    const glm::dvec3 at = mesh.positions[t.x], p = mesh.positions[t.y] - at, q = mesh.positions[t.z] - at;
+    const glm::dvec3 normal = glm::cross(p, q);
+    may_be_flat[i] = glm::dot(normal, normal) > 1e-20 * glm::dot(p, p) * glm::dot(q, q);
+  }
+  static_cast<void>(close_seams(result.mesh, may_be_flat, execution));
   result.normals = Buffer<glm::dvec3>(mesh.triangles.size());
   parallel_for(execution, mesh.triangles.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) result.normals[i] = unit_of(normal_of(mesh, std::uint32_t(i)));

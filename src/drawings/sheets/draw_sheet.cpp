@@ -225,14 +225,10 @@ void find_rounds_of(std::vector<PlannedView>& views, const SheetOptions& options
   }
 }
 
-/// The middle of the model, where views in line have their anchors.
-glm::dvec3 middle_of(const Box& box) {
-  const glm::dvec3 low(box.low), high(box.high);
-  return box.is_empty() ? glm::dvec3(0) : low + (high - low) * 0.5;
-}
-
-/// The cells of the views, whose anchors are set.
+/// The cells of the views, whose anchors are set: views in line have theirs in the middle of the model.
 std::vector<ViewCell> cells_of(std::vector<PlannedView>& views, const Surfaces& surfaces, const SheetOptions& options) {
+  const glm::dvec3 low(surfaces.bounds().low), high(surfaces.bounds().high);
+  const glm::dvec3 middle = surfaces.bounds().is_empty() ? glm::dvec3(0) : low + (high - low) * 0.5;
   std::vector<ViewCell> cells;
   for (PlannedView& view : views) {
     const View& camera = view.drawing.view;
@@ -244,7 +240,7 @@ std::vector<ViewCell> cells_of(std::vector<PlannedView>& views, const Surfaces& 
       const glm::ivec2 place = cell_of(*view.direction, options.projection);
       cell.column = place.x;
       cell.row = place.y;
-      if (!is_at_an_angle(*view.direction)) view.anchor = on_screen(camera, middle_of(surfaces.bounds()));
+      if (!is_at_an_angle(*view.direction)) view.anchor = on_screen(camera, middle);
     }
     cell.low = (box.low - view.anchor) * view.millimetres_per_pixel;
     cell.high = (box.high - view.anchor) * view.millimetres_per_pixel;
@@ -290,27 +286,25 @@ void check_spacing(const char* field, double spacing, double least) {
                   number_text(std::ceil(least * 100) / 100, 3) + " or more, or a smaller page or scale");
 }
 
-StippleOptions stipple_options(const SheetOptions& options, const View& view, double millimetres) {
-  constexpr double most_dots = 2e7;  // the limit of stipple()
-  const double least = std::max(1.0, std::sqrt(double(view.width) * view.height / most_dots));
-  check_spacing("stipple", *options.stipple, least * millimetres);
-  return {*options.stipple / millimetres, tone_options(options, view), !options.plot, options.plot};
-}
-
-HatchOptions hatch_options(const SheetOptions& options, const View& view, double millimetres) {
-  check_spacing("hatch", *options.hatch, millimetres);
-  return {hatch_sets(*options.hatch / millimetres, options.hatch_angle), tone_options(options, view),
-          std::min(shortest_hatch / millimetres, 1000.0), !options.plot, options.plot};
-}
-
 /// \throws Error limit_exceeded if the view has too few pixels for hatching or dots.
 void place_tones(PlannedView& view, const SheetOptions& options, const Execution& execution) {
   const View& camera = view.drawing.view;
   const double millimetres = view.placed.millimetres_per_pixel;
-  if (options.hatch)
-    view.placed.hatching = hatch(*view.surfaces, camera, hatch_options(options, camera, millimetres), execution);
-  if (options.stipple)
-    view.placed.stippling = stipple(*view.surfaces, camera, stipple_options(options, camera, millimetres), execution);
+  if (options.hatch) {
+    check_spacing("hatch", *options.hatch, millimetres);
+    const HatchOptions lines{hatch_sets(*options.hatch / millimetres, options.hatch_angle),
+                             tone_options(options, camera), std::min(shortest_hatch / millimetres, 1000.0),
+                             !options.plot, options.plot};
+    view.placed.hatching = hatch(*view.surfaces, camera, lines, execution);
+  }
+  if (options.stipple) {
+    constexpr double most_dots = 2e7;  // the limit of stipple()
+    const double least = std::max(1.0, std::sqrt(double(camera.width) * camera.height / most_dots));
+    check_spacing("stipple", *options.stipple, least * millimetres);
+    const StippleOptions dots{*options.stipple / millimetres, tone_options(options, camera), !options.plot,
+                              options.plot};
+    view.placed.stippling = stipple(*view.surfaces, camera, dots, execution);
+  }
 }
 
 void place_centre_lines(PlannedView& view, const SheetOptions& options) {

@@ -226,7 +226,8 @@ class GridPlan {
   struct Outline {
     std::array<glm::dvec2, 5> corners;
     int count = 0;
-    double nearest = 0;
+    double nearest = infinite;
+    glm::dvec2 low{infinite}, high{-infinite};
   };
   /// The left and right ends, in cells; empty if left > right.
   struct Span {
@@ -246,25 +247,21 @@ class GridPlan {
         places_[v] = {p.x * scale, p.y * scale, p.z};
       }
     });
-    find_footprints();
-  }
-
-  /// In the order of first cells, neighbours on the screen are neighbours in memory.
-  void find_footprints() {
-    const std::size_t count = seen.mesh.triangles.size(), cells = grid.count();
+    // In the order of first cells, neighbours on the screen are neighbours in memory.
+    const std::size_t count = seen.mesh.triangles.size(), cell_count = grid.count();
     Buffer<Footprint> all(count);
     Buffer<std::uint64_t> keys(count);  // the first cell, then the triangle
     parallel_for(execution, count, kCornersPerPart, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         all[t] = footprint_of(std::uint32_t(t));
         const bool is_seen = all[t].nearest < std::numeric_limits<float>::infinity();
-        const std::size_t cell = is_seen ? grid.number(column(all[t].low.x), row(all[t].low.y)) : cells;
+        const std::size_t cell = is_seen ? grid.number(column(all[t].low.x), row(all[t].low.y)) : cell_count;
         keys[t] = std::uint64_t(cell) << 32 | t;
       }
     });
-    keys = radix_sort(std::move(keys), std::bit_width(cells), execution);
+    keys = radix_sort(std::move(keys), std::bit_width(cell_count), execution);
     const auto held =
-        std::size_t(std::lower_bound(keys.begin(), keys.end(), std::uint64_t(cells) << 32) - keys.begin());
+        std::size_t(std::lower_bound(keys.begin(), keys.end(), std::uint64_t(cell_count) << 32) - keys.begin());
     footprints = Buffer<Footprint>(held);
     ranges = Buffer<CellRange>(held);
     occluders = Buffer<Occluder>(held);
@@ -301,13 +298,8 @@ class GridPlan {
       const Outline outline = outline_of(triangle);
       if (outline.count == 0) return none;
       nearest = outline.nearest;
-      low = glm::dvec3(infinite);
-      high = -low;
-      for (int i = 0; i < outline.count; ++i) {
-        const glm::dvec3 corner(outline.corners[std::size_t(i)], 0);
-        low = glm::min(low, corner);
-        high = glm::max(high, corner);
-      }
+      low = glm::dvec3(outline.low, 0);
+      high = glm::dvec3(outline.high, 0);
     }
     if (nearest > sight.far()) return none;
     low = {widened(low.x, -1), widened(low.y, -1), 0};
@@ -328,10 +320,11 @@ class GridPlan {
     const glm::uvec3& corners = seen.mesh.triangles[triangle];
     const double near = sight.near();
     Outline outline;
-    outline.nearest = infinite;
     const auto add = [&](const glm::dvec2& place, double distance) {
       outline.corners[std::size_t(outline.count++)] = place;
       outline.nearest = std::min(outline.nearest, widened(distance, -1));
+      outline.low = glm::min(outline.low, place);
+      outline.high = glm::max(outline.high, place);
     };
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t v = corners[k], w = corners[(k + 1) % 3];
@@ -513,11 +506,6 @@ void OccluderGrid::fill_sides(const GridPlan& plan) {
   }
   for (Buffer<float>& values : sides_) values = Buffer<float>(count + kPadding, 0.0f);
   if (count == 0) return;
-  const auto set_side = [&](std::size_t i, int k, const CellDepth::Side& side) {
-    sides_[3 * k][i] = side.a;
-    sides_[3 * k + 1][i] = side.b;
-    sides_[3 * k + 2][i] = side.c;
-  };
   parallel_for(plan.execution, cells, kCellsPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell) {
       if (!has_sides(cell)) continue;
@@ -526,8 +514,12 @@ void OccluderGrid::fill_sides(const GridPlan& plan) {
         const Footprint& footprint = plan.footprints[numbers_[first_[cell] + i]];
         const CellDepth depth = plan.depth_of(footprint.triangle);
         for (int k = 0; k < ScreenSides::count; ++k) {
-          const CellDepth::Side side = k < 3 ? depth.side(k, corner) : depth.plane(corner);
-          set_side(first_side_[cell] + i, k, plan.is_near(footprint) ? CellDepth::nowhere_outside : side);
+          const CellDepth::Side side = plan.is_near(footprint) ? CellDepth::nowhere_outside
+                                       : k < 3                 ? depth.side(k, corner)
+                                                               : depth.plane(corner);
+          sides_[3 * k][first_side_[cell] + i] = side.a;
+          sides_[3 * k + 1][first_side_[cell] + i] = side.b;
+          sides_[3 * k + 2][first_side_[cell] + i] = side.c;
         }
       }
     }
