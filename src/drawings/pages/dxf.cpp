@@ -136,13 +136,10 @@ class DxfWriter {
 
  private:
   // A group code is one short line, its value another.
-  void text(int code, std::string_view value) { out_.integer(code) << '\n' << value << '\n'; }
-  void integer(int code, int value) {
-    out_.integer(code) << '\n';
-    out_.integer(value) << '\n';
-  }
+  void text(int code, std::string_view value) { out_ << code << '\n' << value << '\n'; }
+  void integer(int code, int value) { out_ << code << '\n' << value << '\n'; }
   void number(int code, double value, int digits = 3) {
-    out_.integer(code) << '\n';
+    out_ << code << '\n';
     out_.decimal(value, digits) << '\n';
   }
   void section(std::string_view name) {

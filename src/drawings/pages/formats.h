@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The formats behind save(page), and their common parts: text, arcs and the appearance of paths.
 //
-//              . - .          A writer is a class over one page that appends text to a PageText. The bulge of a join is
-//          .-'   |   '-.      the height of its arc by half of the chord: the tangent of a quarter of its angle.
-//          Formats
-//        from ---+--- to      need radius and flags, centre and angles, or approximating curves.
+//              . - .          A writer is a class over one page that appends text to a PageText.
+//          .-'   |   '-.      The bulge of a join is the height of its arc by half of the chord:
+//        from ---+--- to      the tangent of a quarter of its angle.
 #pragma once
 
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 #include "base/output_file.h"
 #include "base/parallel.h"
@@ -65,8 +65,10 @@ class PageText {
     buffer_[used_++] = character;
     return *this;
   }
-  /// Writes a decimal number without a fraction.
-  PageText& integer(std::int64_t value) { return fixed(value, 0); }
+  template <class Integer, class = std::enable_if_t<std::is_integral_v<Integer>>>
+  PageText& operator<<(Integer value) {
+    return fixed(std::int64_t(value), 0);
+  }
   /// Writes value / 10^digits without trailing zeros. `digits` is 0 to 9.
   PageText& fixed(std::int64_t value, int digits = 3);
   /// Writes a number rounded to `digits`, with the zero before the point, which only JSON and DXF need.

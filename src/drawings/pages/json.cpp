@@ -9,8 +9,8 @@ namespace {
 
 void write_color(PageText& out, const PageColor& color) {
   out << "[";
-  for (const std::uint8_t part : {color.red, color.green, color.blue}) out.integer(part) << ", ";
-  out.integer(color.opacity) << "]";
+  for (const std::uint8_t part : {color.red, color.green, color.blue}) out << part << ", ";
+  out << color.opacity << "]";
 }
 
 void write_pen(PageText& out, const Pen& pen) {
@@ -66,10 +66,7 @@ void save_json(const Page& page, OutputFile& file, const Execution& execution) {
     for (const PageGroup& group : layer.groups) {
       out << (&group == layer.groups.data() ? "\n" : ",\n") << "{\"name\": " << json_text(group.name) << ", \"pen\": ";
       write_pen(out, group.pen);
-      if (group.opacity < 255) {
-        out << ", \"opacity\": ";
-        out.integer(group.opacity);
-      }
+      if (group.opacity < 255) out << ", \"opacity\": " << group.opacity;
       out << ", \"paths\": [";
       for (std::size_t i = 0; i < group.paths.size(); ++i) {
         progress.step();

@@ -83,17 +83,14 @@ class PdfContent {
     out_.fixed(-std::llround(scale_ * 1e9), 9) << " 0 ";
     out_.fixed(std::llround(page_.height * scale_ * 1e6), 6) << " cm 1 J 1 j\n";
     for (std::size_t i = 0; i < page_.layers.size(); ++i) {
-      out_ << "/OC /L";
-      out_.integer(std::int64_t(i)) << " BDC\n";
+      out_ << "/OC /L" << i << " BDC\n";
       for (const PageGroup& group : page_.layers[i].groups) {
         if (group.opacity == 255) {
           write_group(group);
           continue;
         }
         states_.fills[group.opacity] = true;
-        out_ << "q /F";
-        out_.integer(group.opacity) << " gs /G";
-        out_.integer(std::int64_t(form++)) << " Do Q\n";
+        out_ << "q /F" << group.opacity << " gs /G" << form++ << " Do Q\n";
       }
       out_ << "EMC\n";
     }
@@ -155,8 +152,7 @@ class PdfContent {
     }
     if (color.opacity != now.opacity) {
       used[color.opacity] = true;
-      out_ << state;
-      out_.integer(color.opacity) << " gs\n";
+      out_ << state << color.opacity << " gs\n";
     }
     now = color;
   }
@@ -285,14 +281,13 @@ class PdfWriter {
 
   PageText& begin(std::size_t object) {
     places_[object] = out_.size();
-    return out_.integer(std::int64_t(object)) << " 0 obj\n";
+    return out_ << object << " 0 obj\n";
   }
-  PageText& reference(std::size_t object) { return out_.integer(std::int64_t(object)) << " 0 R "; }
+  PageText& reference(std::size_t object) { return out_ << object << " 0 R "; }
 
   /// Writes the end of a stream's dictionary, the stream of a form or else of the page, and its length as an object.
   States write_stream(const PdfPage& page, const PageGroup* form, std::size_t length_object) {
-    out_ << "/Length ";
-    out_.integer(std::int64_t(length_object)) << " 0 R " << stream_filter << ">>\nstream\n";
+    out_ << "/Length " << length_object << " 0 R " << stream_filter << ">>\nstream\n";
     const std::uint64_t start = out_.size();
     PdfStream stream{out_};
     PageText operators([&stream](std::string_view bytes) { stream.write(bytes); });
@@ -302,8 +297,7 @@ class PdfWriter {
     stream.finish();
     const std::uint64_t end = out_.size();
     out_ << "\nendstream\nendobj\n";
-    begin(length_object);
-    out_.integer(std::int64_t(end - start)) << "\nendobj\n";
+    begin(length_object) << (end - start) << "\nendobj\n";
     return content.states();
   }
 
@@ -348,8 +342,7 @@ class PdfWriter {
   void write_states(const PdfContent::Opacities& used, const char* name, const char* key) {
     for (std::size_t i = 0; i < used.size(); ++i) {
       if (!used[i]) continue;
-      out_ << name;
-      out_.integer(std::int64_t(i)) << " << " << key << ' ';
+      out_ << name << i << " << " << key << ' ';
       out_.fixed(thousandths(double(i) / 255)) << " >> ";
     }
   }
@@ -360,25 +353,20 @@ class PdfWriter {
     // Rounded down, because rasterizers round up.
     out_.fixed(std::int64_t(page.page->width * page.scale * 1e6), 6) << ' ';
     out_.fixed(std::int64_t(page.page->height * page.scale * 1e6), 6) << "]";
-    if (page.unit > 1) {
-      out_ << " /UserUnit ";
-      out_.integer(std::int64_t(page.unit));
-    }
+    if (page.unit > 1) out_ << " /UserUnit " << std::int64_t(page.unit);
     out_ << "\n/Resources << ";
     write_all_states(states);
     if (!page.forms.empty()) {
       out_ << "/XObject << ";
       for (std::size_t i = 0; i < page.forms.size(); ++i) {
-        out_ << "/G";
-        out_.integer(std::int64_t(i)) << ' ';
+        out_ << "/G" << i << ' ';
         reference(page.forms[i].object);
       }
       out_ << ">> ";
     }
     out_ << "/Properties << ";
     for (std::size_t i = 0; i < page.layers.size(); ++i) {
-      out_ << "/L";
-      out_.integer(std::int64_t(i)) << ' ';
+      out_ << "/L" << i << ' ';
       reference(layers_[page.layers[i]].object);
     }
     out_ << ">> >> >>\nendobj\n";
@@ -387,22 +375,19 @@ class PdfWriter {
   void write_end() {
     begin(page_tree) << "<< /Type /Pages /Kids [ ";
     for (const PdfPage& page : pages_) reference(page.object);
-    out_ << "] /Count ";
-    out_.integer(std::int64_t(pages_.size())) << " >>\nendobj\n";
+    out_ << "] /Count " << pages_.size() << " >>\nendobj\n";
     begin(info) << "<< /Producer (Frontmost) /Title " << pdf_text(pages_[0].page->title) << " >>\nendobj\n";
     begin(catalog) << "<< /Type /Catalog /Pages 2 0 R /OCProperties << /OCGs [ ";
     layer_references() << "] /D << /Order [ ";
     layer_references() << "] >> >> >>\nendobj\n";
     const std::uint64_t table = out_.size();
-    out_ << "xref\n0 ";
-    out_.integer(std::int64_t(places_.size())) << "\n0000000000 65535 f \n";
+    out_ << "xref\n0 " << places_.size() << "\n0000000000 65535 f \n";
     for (std::size_t i = 1; i < places_.size(); ++i) {
       const std::string digits = std::to_string(places_[i]);
       out_ << std::string(10 - std::min<std::size_t>(digits.size(), 10), '0') << digits << " 00000 n \n";
     }
-    out_ << "trailer\n<< /Size ";
-    out_.integer(std::int64_t(places_.size())) << " /Root 1 0 R /Info 6 0 R >>\nstartxref\n";
-    out_.integer(std::int64_t(table)) << "\n%%EOF\n";
+    out_ << "trailer\n<< /Size " << places_.size() << " /Root 1 0 R /Info 6 0 R >>\nstartxref\n"
+         << table << "\n%%EOF\n";
   }
 
   PageText out_;

@@ -36,9 +36,8 @@ class SvgWriter {
   PageText& millimetres(double value) { return out_.fixed(thousandths(value)); }
 
   void write_layer(const PageLayer& layer, std::size_t number) {
-    out_ << "<g id=\"layer";
-    out_.integer(std::int64_t(number)) << "\" inkscape:groupmode=\"layer\" inkscape:label=\"" << xml_text(layer.name)
-                                       << "\">\n";
+    out_ << "<g id=\"layer" << number << "\" inkscape:groupmode=\"layer\" inkscape:label=\"" << xml_text(layer.name)
+         << "\">\n";
     for (const PageGroup& group : layer.groups) write_group(group);
     out_ << "</g>\n";
   }
