@@ -88,17 +88,15 @@ bool reaches_beyond_picture(const PaintOrder& order) {
   });
 }
 
-/// All polygons of an order within the picture, hidden or not.
-VisibleParts all_parts(PaintOrder order, const Execution& execution) {
-  if (reaches_beyond_picture(order)) return visible_parts(order, Occluders::none(), execution);
-  return {order.view, std::move(order.polygons), std::move(order.corners)};
-}
-
 VisibleParts parts_of(const Surfaces& surfaces, const View& view, const FigureOptions& options,
                       const Execution& execution) {
-  if (!options.visible_only) return all_parts(painter(surfaces, view, {}, execution), execution);
-  const Occluders occluders = occluders_of(surfaces, options, false);
-  return visible_parts(painter(surfaces, view, {.occluders = occluders}, execution), occluders, execution);
+  if (options.visible_only) {
+    const Occluders occluders = occluders_of(surfaces, options, false);
+    return visible_parts(painter(surfaces, view, {.occluders = occluders}, execution), occluders, execution);
+  }
+  PaintOrder order = painter(surfaces, view, {}, execution);
+  if (reaches_beyond_picture(order)) return visible_parts(order, Occluders::none(), execution);
+  return {order.view, std::move(order.polygons), std::move(order.corners)};
 }
 
 Figure figure_of(shading::PreparedScene& scene, const ShadeInput& input, const FigureOptions& options,

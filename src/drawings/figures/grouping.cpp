@@ -256,10 +256,16 @@ class BlendSorter {
       if (below_[node] == 0) make_ready(node);
     while (!opaque_.empty() || !by_open_sides_.empty()) {
       ++group_;
-      if (opaque_.empty())
+      if (opaque_.empty()) {
         paint_patches();
-      else
-        paint_opaque();
+        continue;
+      }
+      while (!opaque_.empty()) {
+        const std::uint32_t node = opaque_.top();
+        opaque_.pop();
+        paint(node);
+        release(node);
+      }
     }
     return std::move(order_);
   }
@@ -288,15 +294,6 @@ class BlendSorter {
     }
     open_sides_[patch] = open;
     by_open_sides_.insert({open, patch});
-  }
-
-  void paint_opaque() {
-    while (!opaque_.empty()) {
-      const std::uint32_t node = opaque_.top();
-      opaque_.pop();
-      paint(node);
-      release(node);
-    }
   }
 
   /// Paints all patches without open sides or, if there are none, the one with the fewest.

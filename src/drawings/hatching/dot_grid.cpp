@@ -70,15 +70,12 @@ class Torus {
 };
 
 /// A generator of the same numbers on every machine.
-class Shuffle {
- public:
+struct Shuffle {
+  std::uint64_t state = 1;
   std::uint32_t next() {
-    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
-    return std::uint32_t(state_ >> 33);
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return std::uint32_t(state >> 33);
   }
-
- private:
-  std::uint64_t state_ = 1;
 };
 
 std::vector<int> ranks() {

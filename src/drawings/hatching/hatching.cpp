@@ -70,7 +70,8 @@ class HatchRows {
  public:
   HatchRows(const HatchSet& set, const View& view)
       : size_(view.width, view.height),
-        direction_(direction_of(set.angle)),
+        // Sines differ between C libraries in their last bit, but not as floats.
+        direction_(glm::normalize(glm::dvec2(float(std::cos(set.angle)), -float(std::sin(set.angle))))),
         across_(-direction_.y, direction_.x),
         spacing_(set.spacing),
         offset_(set.offset),
@@ -155,11 +156,6 @@ class HatchRows {
   }
 
  private:
-  /// Sines differ between C libraries in their last bit, but not as floats.
-  [[nodiscard]] static glm::dvec2 direction_of(double angle) {
-    return glm::normalize(glm::dvec2(float(std::cos(angle)), -float(std::sin(angle))));
-  }
-
   [[nodiscard]] double height_of(std::int32_t line) const { return offset_ + line * spacing_; }
   [[nodiscard]] double weight(const glm::dvec3& in_eye) const { return is_parallel_ ? 1 : in_eye.z; }
   /// The distance across the lines in pixels, times the weight.
@@ -274,10 +270,6 @@ glm::dvec3 light_of(const ToneOptions& tone, const View& view) {
   return *tone.to_light / length;
 }
 
-View view_from_light(const Surfaces& surfaces, const glm::dvec3& to_light) {
-  return frame(surfaces, 1024, 1024, {.orthographic = true, .forward = -to_light, .objects = FramedObjects::all});
-}
-
 /// Coincident triangles hide no more and have no other lines than one of them, so only the first is kept.
 SeenMesh see_once(const WeldedMesh& mesh, const std::vector<std::uint32_t>& twins, const Sight& sight,
                   const Execution& execution) {
@@ -332,7 +324,9 @@ struct TonedScene {
         twins(twins_of(mesh, view, surfaces, execution)),
         eye(mesh, twins, view, execution),
         normals(eye.seen, surfaces, tone.crease_angle, execution) {
-    if (tone.casts_shadows) light.emplace(mesh, twins, view_from_light(surfaces, to_light), execution);
+    if (!tone.casts_shadows) return;
+    const FrameOptions from_light{.orthographic = true, .forward = -to_light, .objects = FramedObjects::all};
+    light.emplace(mesh, twins, frame(surfaces, 1024, 1024, from_light), execution);
   }
 
   const Surfaces& surfaces;

@@ -190,17 +190,6 @@ class DxfWriter {
     return std::accumulate(dashes.begin(), dashes.end(), 0.0);
   }
 
-  void line_type(const std::string& name, const std::vector<double>& dashes) {
-    text(0, "LTYPE");
-    text(2, name);
-    integer(70, 0);
-    text(3, dashes.empty() ? "Solid line" : "Dashed, in millimetres");
-    integer(72, 'A');
-    integer(73, int(dashes.size()));
-    number(40, period_of(dashes));
-    for (std::size_t i = 0; i < dashes.size(); ++i) number(49, i % 2 == 0 ? dashes[i] : -dashes[i]);
-  }
-
   void table(std::string_view name, std::size_t entries) {
     text(0, "TABLE");
     text(2, name);
@@ -210,7 +199,16 @@ class DxfWriter {
   void write_tables() {
     section("TABLES");
     table("LTYPE", types_.size());
-    for (const auto& [name, dashes] : types_) line_type(name, dashes);
+    for (const auto& [name, dashes] : types_) {
+      text(0, "LTYPE");
+      text(2, name);
+      integer(70, 0);
+      text(3, dashes.empty() ? "Solid line" : "Dashed, in millimetres");
+      integer(72, 'A');
+      integer(73, int(dashes.size()));
+      number(40, period_of(dashes));
+      for (std::size_t i = 0; i < dashes.size(); ++i) number(49, i % 2 == 0 ? dashes[i] : -dashes[i]);
+    }
     text(0, "ENDTAB");
     table("LAYER", layers_.list.size());
     for (const Layer& layer : layers_.list) {

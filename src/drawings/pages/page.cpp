@@ -20,16 +20,13 @@ constexpr double least_side = 0.01, most_side = 1e5, farthest = 1e6, most_width 
   throw Error(ErrorCode::bad_argument, where, reason);
 }
 
-void check_pen(const Pen& pen, const std::string& where) {
+void check_group(const PageGroup& group, const std::string& where) {
+  const Pen& pen = group.pen;
   // The condition is written so that NaN fails, here and below.
   if (!(pen.width >= 0 && pen.width <= most_width)) refuse(where, "the pen's width must be from 0 to 1000 mm");
   if (pen.dashes.size() % 2 != 0) refuse(where, "dashes and gaps must come in pairs");
   for (const double dash : pen.dashes)
     if (!(dash >= 0.001 && dash <= most_side)) refuse(where, "dashes and gaps must be from 0.001 to 100000 mm");
-}
-
-void check_group(const PageGroup& group, const std::string& where) {
-  check_pen(group.pen, where);
   if (group.points.size() > 0xFFFFFFFFu) throw Error(ErrorCode::limit_exceeded, where, "over 2^32 points");
   for (const glm::dvec2& p : group.points)
     if (!(std::abs(p.x) <= farthest && std::abs(p.y) <= farthest))

@@ -136,14 +136,6 @@ Scene without_objects(const Scene& from) {
   return scene;
 }
 
-/// The material of the object's other triangles, under the object's name.
-Material material_of_face(const Scene& scene, const Instance& instance, const Mesh& mesh) {
-  Material material;
-  if (const std::uint32_t own = mesh.material_of(0); own != no_index) material = scene.materials[own];
-  material.name = instance.name;
-  return material;
-}
-
 constexpr int style_count = 6;
 constexpr std::size_t most_compared = 2048;
 constexpr double spacings[] = {1, 0.7, 1.4};  // two angles of each
@@ -175,15 +167,6 @@ struct PlacedFace {
   Box box;
 };
 
-std::vector<PlacedFace> faces_of(std::span<const Section* const> sections) {
-  std::vector<PlacedFace> faces;
-  for (std::size_t i = 0; i < sections.size(); ++i)
-    for (const CutFace& face : sections[i]->faces) faces.push_back({face.instance, i, box_of(face)});
-  std::stable_sort(faces.begin(), faces.end(),
-                   [](const PlacedFace& a, const PlacedFace& b) { return a.instance < b.instance; });
-  return faces;
-}
-
 }  // namespace
 
 Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution& execution) {
@@ -199,10 +182,13 @@ Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution
     ObjectCutter cutter(axes, mesh, surfaces.is_mirrored(i));
     cutter.run(ToWorld(instance.world_from_mesh), execution);
     if (!cutter.segments.empty()) {
-      section.faces.push_back(
-          close(cutter.segments, axes, std::uint32_t(section.scene.materials.size()), cutter.left, execution));
+      std::vector<Material>& materials = section.scene.materials;
+      section.faces.push_back(close(cutter.segments, axes, std::uint32_t(materials.size()), cutter.left, execution));
       section.faces.back().instance = i;
-      section.scene.materials.push_back(material_of_face(section.scene, instance, mesh));
+      // The material of the object's other triangles, under the object's name.
+      const std::uint32_t own = mesh.material_of(0);
+      materials.push_back(own != no_index ? Material(materials[own]) : Material());
+      materials.back().name = instance.name;
     }
     section.scene.instances.push_back({instance.name, i, glm::dmat4(1)});
     section.scene.meshes.push_back(std::move(cutter.left));
@@ -214,7 +200,11 @@ Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution
 std::vector<std::uint8_t> hatch_styles(std::span<const Section* const> sections) {
   std::vector<std::uint8_t> styles;
   for (const Section* const section : sections) styles.resize(std::max(styles.size(), section->scene.instances.size()));
-  const std::vector<PlacedFace> faces = faces_of(sections);
+  std::vector<PlacedFace> faces;
+  for (std::size_t i = 0; i < sections.size(); ++i)
+    for (const CutFace& face : sections[i]->faces) faces.push_back({face.instance, i, box_of(face)});
+  std::stable_sort(faces.begin(), faces.end(),
+                   [](const PlacedFace& a, const PlacedFace& b) { return a.instance < b.instance; });
   for (std::size_t begin = 0, end = 0; begin < faces.size(); begin = end) {
     const std::uint32_t instance = faces[begin].instance;
     std::size_t uses[style_count] = {};

@@ -26,12 +26,6 @@ constexpr PaperKind paper_kinds[] = {
     {"a0", 841, 1189}, {"a1", 594, 841}, {"a2", 420, 594},         {"a3", 297, 420},        {"a4", 210, 297},
     {"a5", 148, 210},  {"a6", 105, 148}, {"letter", 215.9, 279.4}, {"legal", 215.9, 355.6}, {"tabloid", 279.4, 431.8}};
 
-std::string in_small_letters(std::string_view text) {
-  std::string small(text);
-  for (char& c : small) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-  return small;
-}
-
 /// Removes `ending` if the text has it. \returns whether it did.
 bool take_ending(std::string& text, std::string_view ending) {
   if (text.size() <= ending.size() || text.compare(text.size() - ending.size(), ending.size(), ending) != 0)
@@ -43,7 +37,8 @@ bool take_ending(std::string& text, std::string_view ending) {
 }  // namespace
 
 Paper named_paper(std::string_view name) {
-  std::string rest = in_small_letters(name);
+  std::string rest(name);
+  for (char& c : rest) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
   const bool landscape = take_ending(rest, "-landscape"), portrait = take_ending(rest, "-portrait");
   for (const PaperKind& kind : paper_kinds) {
     if (kind.name != rest) continue;

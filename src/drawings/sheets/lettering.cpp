@@ -231,13 +231,6 @@ constexpr Mark marks[] = {
     {"0.3,-0.9 0.3,-1.3 -0.3,-2.6", true, U"SȘsșTȚtțGĢKĶkķLĻlļNŅnņRŖrŗ"},
 };
 
-/// The letter; a box if there is none.
-const Glyph* find_glyph(char32_t code) {
-  const Glyph* const found = std::lower_bound(std::begin(glyphs), std::end(glyphs), code,
-                                              [](const Glyph& glyph, char32_t c) { return glyph.code < c; });
-  return found != std::end(glyphs) && found->code == code ? found : &missing;
-}
-
 constexpr double gap = 3;       // between the middles of strokes: ISO 3098-1 has two pen widths between letters
 constexpr double rise = 3;      // of a mark above a tall letter
 constexpr double tall = 6.5;    // letters that reach higher are tall
@@ -271,7 +264,7 @@ void for_each_point(const char* strokes, const Visit& visit) {
   }
 }
 
-/// A character to be drawn: a letter, possibly with a mark.
+/// A character to be drawn: a letter (a box if there is none), possibly with a mark.
 struct Character {
   const Glyph* glyph;
   const char* mark;  ///< null if there is none
@@ -285,7 +278,9 @@ Character character_of(char32_t code) {
   for (const Mark& each : marks)
     for (std::size_t i = 1; i < each.letters.size() && !mark; i += 2)
       if (each.letters[i] == code) mark = &each, base = each.letters[i - 1];
-  const Glyph* const glyph = find_glyph(base);
+  const Glyph* const found = std::lower_bound(std::begin(glyphs), std::end(glyphs), base,
+                                              [](const Glyph& g, char32_t c) { return g.code < c; });
+  const Glyph* const glyph = found != std::end(glyphs) && found->code == base ? found : &missing;
   if (!mark) return {glyph, nullptr, {}, 0, glyph->width};
   double half = 0, top = base < U'a' ? capital : 0;
   for_each_point(mark->strokes, [&](const glm::dvec2& p, double, bool) { half = std::max(half, std::abs(p.x)); });

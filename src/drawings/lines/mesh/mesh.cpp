@@ -194,9 +194,8 @@ class Seams {
   /// By filler, the number of its line. Fillers with a common side are on one line, since they share two points.
   [[nodiscard]] std::vector<std::uint32_t> number_lines(std::size_t fillers) {
     DisjointSets<> lines(fillers);
-    for (std::size_t s = 1; s < sides_.size(); ++s) {
+    for (std::size_t s = 1; s < sides_.size(); ++s)
       if (!(sides_[s - 1] < sides_[s])) lines.join(sides_[s - 1].seam, sides_[s].seam);
-    }
     std::vector<std::uint32_t> numbers(fillers);
     std::uint32_t count = 0;
     for (std::uint32_t i = 0; i < fillers; ++i) numbers[i] = lines.is_leader(i) ? count++ : numbers[lines.leader_of(i)];

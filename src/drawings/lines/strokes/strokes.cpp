@@ -21,13 +21,6 @@ namespace {
 
 using namespace lines_detail;
 
-struct ShortChainRule {
-  double shortest;                     ///< pixels: chains below this length are short
-  double touching;                     ///< pixels: nearer ends and lines touch
-  const std::vector<Stroke>& strokes;  ///< by rank: what the chains become
-  [[nodiscard]] bool is_hidden(const Chain& chain) const { return strokes[chain.rank].is_hidden; }
-};
-
 double length_of(const Chain& chain) {
   double length = 0;
   for (std::size_t i = 1; i < chain.points.size(); ++i) length += glm::distance(chain.points[i - 1], chain.points[i]);
@@ -65,9 +58,17 @@ struct Touch {
 /// Near-linear, unless most short chains lie within a thousandth of the drawing. Precondition: no arcs.
 class ShortChains {
  public:
-  ShortChains(std::vector<Chain>& chains, const ShortChainRule& rule, const Execution& execution)
-      : chains_(chains), rule_(rule), execution_(execution), is_short_(chains.size()), is_left_out_(chains.size()) {
-    for (std::size_t i = 0; i < chains.size(); ++i) is_short_[i] = length_of(chains[i]) < rule.shortest;
+  /// `strokes`: by rank, what the chains become.
+  ShortChains(std::vector<Chain>& chains, const std::vector<Stroke>& strokes, const StrokeOptions& options,
+              const Execution& execution)
+      : chains_(chains),
+        strokes_(strokes),
+        shortest_(options.shortest),
+        touching_(2 * options.apart),
+        execution_(execution),
+        is_short_(chains.size()),
+        is_left_out_(chains.size()) {
+    for (std::size_t i = 0; i < chains.size(); ++i) is_short_[i] = length_of(chains[i]) < shortest_;
   }
 
   std::vector<Chain> kept() {
@@ -106,7 +107,7 @@ class ShortChains {
         }
     touched_by_.resize(chains_.size());
     if (ends.empty()) return;
-    const SquareGrid grid = grid_over(places, rule_.shortest);
+    const SquareGrid grid = grid_over(places, shortest_);
     const auto list = [&](std::size_t i, const auto& add) {
       grid.visit_along(places[i], places[i], 0, [&](const PassedCell& passed) {
         add(passed.cell, ends[i]);
@@ -120,9 +121,9 @@ class ShortChains {
       const std::size_t joins = chain.points.size() - (chain.is_closed ? 0 : 1);
       for (std::size_t k = 0; k < joins; ++k) {
         const glm::dvec2 &a = chain.points[k], &b = chain.points[k + 1 == chain.points.size() ? 0 : k + 1];
-        grid.visit_along(a, b, rule_.touching, [&](const PassedCell& passed) {
+        grid.visit_along(a, b, touching_, [&](const PassedCell& passed) {
           for (const std::uint32_t end : by_cell[passed.cell])
-            if (distance_to(place(end), a, b) <= rule_.touching) add_touch(end, i);
+            if (distance_to(place(end), a, b) <= touching_) add_touch(end, i);
           return true;
         });
       }
@@ -135,9 +136,10 @@ class ShortChains {
   }
 
   void add_touch(std::size_t end, std::size_t chain) {
+    const auto is_hidden = [&](std::size_t number) { return strokes_[chains_[number].rank].is_hidden; };
     // Hidden chains hold no visible ones.
-    if (end / 2 == chain || (rule_.is_hidden(chains_[chain]) && !rule_.is_hidden(chains_[end / 2]))) return;
-    const auto is_near = [&](std::size_t other) { return glm::distance(place(end), place(other)) <= rule_.touching; };
+    if (end / 2 == chain || (is_hidden(chain) && !is_hidden(end / 2))) return;
+    const auto is_near = [&](std::size_t other) { return glm::distance(place(end), place(other)) <= touching_; };
     touches_.push_back({end, chain, chains_[chain].is_closed || !(is_near(2 * chain) || is_near(2 * chain + 1))});
   }
 
@@ -161,7 +163,8 @@ class ShortChains {
   }
 
   std::vector<Chain>& chains_;
-  const ShortChainRule& rule_;
+  const std::vector<Stroke>& strokes_;
+  const double shortest_, touching_;  ///< pixels: chains below `shortest_` are short, nearer ends and lines touch
   const Execution& execution_;
   std::vector<bool> is_short_, is_left_out_;
   std::vector<Touch> touches_;                        ///< ascending
@@ -283,10 +286,7 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
                        [&](const glm::dvec2& p) { return glm::distance(chain.points.front(), p) < options.apart; });
   });
   report_progress(execution, "strokes", 0.6);
-  if (options.shortest > 0) {
-    const ShortChainRule rule{options.shortest, 2 * options.apart, parts.strokes};
-    chains = ShortChains(chains, rule, execution).kept();
-  }
+  if (options.shortest > 0) chains = ShortChains(chains, parts.strokes, options, execution).kept();
   parallel_for(execution, chains.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       straighten(chains[i], options.tolerance);
