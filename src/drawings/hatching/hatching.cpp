@@ -278,12 +278,8 @@ SeenMesh see_once(const WeldedMesh& mesh, const std::vector<std::uint32_t>& twin
   return seen;
 }
 
-std::vector<std::uint32_t> twins_of(const WeldedMesh& mesh, const View& view, const Surfaces& surfaces,
-                                    const Execution& execution) {
-  const LineOptions none{.boundaries = false, .silhouettes = false, .borders = false, .creases = false};
-  return find_features(see(mesh, Sight(view), execution), surfaces, none, execution).twins;
-}
-
+/// Features have only twins then.
+const LineOptions no_edges{.boundaries = false, .silhouettes = false, .borders = false, .creases = false};
 /// A piece of line `line` of a set, from `begin` to `end` in pixels along the line; a dot has no length.
 struct HatchPiece {
   std::uint32_t set;
@@ -321,7 +317,7 @@ struct TonedScene {
       : surfaces(its_surfaces),
         to_light(light_of(tone, view)),
         mesh(weld(surfaces, execution)),
-        twins(twins_of(mesh, view, surfaces, execution)),
+        twins(find_features(see(mesh, Sight(view), execution), surfaces, no_edges, execution).twins),
         eye(mesh, twins, view, execution),
         normals(eye.seen, surfaces, tone.crease_angle, execution) {
     if (!tone.casts_shadows) return;

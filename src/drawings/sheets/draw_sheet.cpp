@@ -71,8 +71,8 @@ void check_named_views(const SheetOptions& o) {
 
 void check_section_views(const SheetOptions& o) {
   if (o.sections.empty()) return;
-  if (o.sections.size() > section_letters.size())
-    refuse_option("sections", std::to_string(section_letters.size()) + " are the most");
+  if (o.sections.size() > clear_letters.size())
+    refuse_option("sections", std::to_string(clear_letters.size()) + " are the most");
   for (std::size_t i = 0; i < o.sections.size(); ++i) {
     const SectionView& section = o.sections[i];
     if (is_at_an_angle(section.direction))
@@ -171,21 +171,17 @@ void draw_lines_of(PlannedView& planned, const View& view, const Scene& scene, c
     planned.millimetres_per_pixel = (p.right - p.left) / view.width * millimetres_per_unit(options, scene);
 }
 
-/// The near and far planes of the options in place of those that enclose the model.
-ClipDistances planes_of(const ClipDistances& fitted, NamedView direction, const SheetOptions& options) {
-  const ClipDistances planes{options.near.value_or(fitted.near), options.far.value_or(fitted.far)};
-  if (!(planes.near < planes.far) && !(options.near && options.far))
-    refuse_option(options.near ? "near" : "far", "leaves nothing of the " + std::string(view_name(direction)) +
-                                                     " view, in which the model lies from " +
-                                                     number_text(fitted.near, 3) + " to " + number_text(fitted.far, 3));
-  return planes;
-}
-
 PlannedView draw_named(const Surfaces& surfaces, NamedView direction, const SectionView* section,
                        const SheetOptions& options, const Execution& execution) {
   View view = frame(surfaces, fine_grid.x, fine_grid.y,
                     {.direction = direction, .orthographic = true, .objects = FramedObjects::all});
-  view.projection.clip = planes_of(view.projection.clip, direction, options);
+  ClipDistances& planes = view.projection.clip;
+  const ClipDistances fitted = planes;  // they enclose the model
+  planes = {options.near.value_or(fitted.near), options.far.value_or(fitted.far)};
+  if (!(planes.near < planes.far) && !(options.near && options.far))
+    refuse_option(options.near ? "near" : "far", "leaves nothing of the " + std::string(view_name(direction)) +
+                                                     " view, in which the model lies from " +
+                                                     number_text(fitted.near, 3) + " to " + number_text(fitted.far, 3));
   PlannedView result;
   result.direction = direction;
   result.shows_hidden = !section && shows_hidden(options, direction);
@@ -206,7 +202,7 @@ std::vector<PlannedView> draw_named_views(const Surfaces& surfaces, const SheetO
   for (std::size_t i = 0; i < options.sections.size(); ++i) {
     const SectionView& section = options.sections[i];
     PlannedView& view = views.emplace_back(draw_named(surfaces, section.direction, &section, options, execution));
-    view.letter = section_letters[i];
+    view.letter = clear_letters[i];
     view.name = view.placed.name = view.letter + "-" + view.letter;
   }
   return views;

@@ -148,24 +148,6 @@ class BlockDrawing {
   std::map<double, PageGroup> texts_;  ///< by text height, since each height has its pen
 };
 
-void draw_title_block(const TitleBlock& block, const glm::dvec2& corner, PageLayer& layer) {
-  BlockDrawing drawing(corner);
-  drawing.add({"Legal owner", {0, 0}, {69, 18}, 3.5, 2}, block.owner);
-  drawing.add({"Scale", {0, 18}, {45, 27}, 2.5, 1}, block.scale);
-  drawing.add({"Unit", {0, 27}, {22.5, 36}, 2.5, 1}, block.unit);
-  drawing.add({"Paper", {22.5, 27}, {45, 36}, 2.5, 1}, block.paper);
-  drawing.add_symbol({"Projection", {45, 18}, {69, 36}, 3.5, 1}, block.projection);
-  drawing.add({"Created by", {69, 0}, {129, 9}, 2.5, 1}, block.author);
-  drawing.add({"Approved by", {69, 9}, {129, 18}, 2.5, 1}, "");  // signed by hand
-  drawing.add({"Title", {69, 18}, {129, 36}, 5, 2}, block.title);
-  drawing.add({"Document type", {129, 0}, {180, 9}, 2.5, 1}, "Technical drawing");
-  drawing.add({"Number", {129, 9}, {180, 27}, 5, 1}, block.number);
-  drawing.add({"Date of issue", {129, 27}, {159, 36}, 2.5, 1}, block.date);
-  drawing.add({"Sheet", {159, 27}, {180, 36}, 2.5, 1},
-              std::to_string(block.sheet) + "/" + std::to_string(block.sheets));
-  drawing.finish(layer);
-}
-
 std::vector<glm::dvec2> rectangle(const glm::dvec2& low, const glm::dvec2& high) {
   return {low, {high.x, low.y}, high, {low.x, high.y}};
 }
@@ -177,13 +159,12 @@ constexpr double mark_inside = 10;                       // of centring marks
 constexpr double narrow_page = 210;                      // A4 has zones on two sides
 constexpr double frame_width = 0.7, zone_width = 0.35, zone_text = 3.5;
 
-/// A, B, ... without I and O, which look like digits; AA follows Z.
+/// A, B, ...; AA follows Z.
 std::string zone_letter(int number) {
-  constexpr std::string_view letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";
-  const int count = int(letters.size());
+  constexpr int count = int(clear_letters.size());
   std::string name;
-  for (int rest = number; rest >= 0; rest = rest / count - 1)
-    name.insert(name.begin(), letters[std::size_t(rest % count)]);
+  for (; number >= 0; number = number / count - 1)
+    name.insert(name.begin(), clear_letters[std::size_t(number % count)]);
   return name;
 }
 
@@ -291,7 +272,21 @@ DrawingSpace drawing_space(const glm::dvec2& page) {
 PageLayer draw_frame(const glm::dvec2& page, const TitleBlock& block) {
   PageLayer layer{"8 frame"};
   FrameDrawing(page).draw(layer);
-  draw_title_block(block, drawing_space(page).block, layer);
+  BlockDrawing drawing(drawing_space(page).block);
+  drawing.add({"Legal owner", {0, 0}, {69, 18}, 3.5, 2}, block.owner);
+  drawing.add({"Scale", {0, 18}, {45, 27}, 2.5, 1}, block.scale);
+  drawing.add({"Unit", {0, 27}, {22.5, 36}, 2.5, 1}, block.unit);
+  drawing.add({"Paper", {22.5, 27}, {45, 36}, 2.5, 1}, block.paper);
+  drawing.add_symbol({"Projection", {45, 18}, {69, 36}, 3.5, 1}, block.projection);
+  drawing.add({"Created by", {69, 0}, {129, 9}, 2.5, 1}, block.author);
+  drawing.add({"Approved by", {69, 9}, {129, 18}, 2.5, 1}, "");  // signed by hand
+  drawing.add({"Title", {69, 18}, {129, 36}, 5, 2}, block.title);
+  drawing.add({"Document type", {129, 0}, {180, 9}, 2.5, 1}, "Technical drawing");
+  drawing.add({"Number", {129, 9}, {180, 27}, 5, 1}, block.number);
+  drawing.add({"Date of issue", {129, 27}, {159, 36}, 2.5, 1}, block.date);
+  drawing.add({"Sheet", {159, 27}, {180, 36}, 2.5, 1},
+              std::to_string(block.sheet) + "/" + std::to_string(block.sheets));
+  drawing.finish(layer);
   return layer;
 }
 

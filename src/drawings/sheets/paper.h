@@ -16,6 +16,9 @@
 
 namespace frontmost::detail {
 
+/// Letters that do not look like digits.
+inline constexpr std::string_view clear_letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";
+
 /// A rectangle of the page, in millimetres.
 struct PageBox {
   glm::dvec2 low{0}, high{0};

@@ -27,8 +27,6 @@ struct PlannedView : DrawnView {
   glm::dvec2 taken{0};
 };
 
-inline constexpr std::string_view section_letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";  // letters that do not look like digits
-
 /// Surfaces that own a reference to their scene.
 [[nodiscard]] std::shared_ptr<const Surfaces> surfaces_of(std::shared_ptr<const Scene> scene,
                                                           const Execution& execution);

@@ -21,8 +21,6 @@ namespace {
 
 /// Up to so many colours are tested one by one.
 constexpr std::size_t kFewColors = 64;
-/// Least size of a cell, in steps of 8 bits.
-constexpr double kLeastCell = 1.0 / 64;
 
 std::uint64_t key_of(const glm::ivec4& cell) {
   std::uint64_t key = 0;
@@ -271,8 +269,6 @@ float difference(const glm::vec4& a, const glm::vec4& b) {
   const glm::vec4 d = glm::abs(a - b);
   return std::max({d.x, d.y, d.z, d.w});
 }
-
-ColorGroups::ColorGroups(double reach) : reach_(reach), cell_size_(std::max(reach * 1.001, kLeastCell)) {}
 
 std::uint32_t ColorGroups::find(const glm::ivec4& cell, const glm::vec4& color) const {
   if (colors_.size() <= kFewColors) {

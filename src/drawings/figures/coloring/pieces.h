@@ -164,7 +164,7 @@ void cut_outline(std::span<const glm::dvec2> corners, const ScreenLine& line, st
 class ColorGroups {
  public:
   /// Channels, 0 to 255, may differ by `reach`.
-  explicit ColorGroups(double reach);
+  explicit ColorGroups(double reach) : reach_(reach), cell_size_(std::max(reach * 1.001, kLeastCell)) {}
 
   /// The number of the first group within reach of `color`; adds a new group if there is none.
   std::uint32_t find_or_add(const glm::vec4& color);
@@ -173,6 +173,7 @@ class ColorGroups {
  private:
   [[nodiscard]] std::uint32_t find(const glm::ivec4& cell, const glm::vec4& color) const;
 
+  static constexpr double kLeastCell = 1.0 / 64;  ///< steps of 8 bits
   const double reach_, cell_size_;
   std::vector<glm::vec4> colors_;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;

@@ -54,7 +54,20 @@ struct MeasuredView {
     is_empty = drawn.is_empty();
     if (is_empty) return;
     box = {view.sheet->on_page(drawn.low), view.sheet->on_page(drawn.high)};
-    if (view.rounds != nullptr) find_circles();
+    if (view.rounds == nullptr) return;
+    for (const Round& prism : view.rounds->prisms)
+      if (is_seen_along(prism)) prisms.push_back(&prism);
+    const std::vector<double> lengths = drawn_lengths(*view.rounds, *view.drawing, view.with_hidden);
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+      const Round& round = view.rounds->rounds[i];
+      if (round.kind == RoundKind::revolved) continue;  // its largest circle is no edge
+      if (!is_seen_along(round)) continue;
+      const double radius = round.radius * millimetres_;
+      if (lengths[i] * view.sheet->millimetres_per_pixel >= least_drawn * round.turn * radius)
+        circles.push_back({&round, on_page(round.from), radius});
+      else if (round.kind == RoundKind::cylinder)
+        undrawn.push_back(&round);
+    }
   }
 
   /// The extent along axis 0 (to the right) or 1 (upwards). Rounds reach farther than the corners of their polygons.
@@ -112,22 +125,6 @@ struct MeasuredView {
   }
 
  private:
-  void find_circles() {
-    for (const Round& prism : view_.rounds->prisms)
-      if (is_seen_along(prism)) prisms.push_back(&prism);
-    const std::vector<double> lengths = drawn_lengths(*view_.rounds, *view_.drawing, view_.with_hidden);
-    for (std::size_t i = 0; i < lengths.size(); ++i) {
-      const Round& round = view_.rounds->rounds[i];
-      if (round.kind == RoundKind::revolved) continue;  // its largest circle is no edge
-      if (!is_seen_along(round)) continue;
-      const double radius = round.radius * millimetres_;
-      if (lengths[i] * view_.sheet->millimetres_per_pixel >= least_drawn * round.turn * radius)
-        circles.push_back({&round, on_page(round.from), radius});
-      else if (round.kind == RoundKind::cylinder)
-        undrawn.push_back(&round);
-    }
-  }
-
   [[nodiscard]] bool is_seen_along(const Round& round) const {
     return glm::length(glm::cross(round.axis, view_.drawing->view.forward())) <= square;
   }
