@@ -13,6 +13,7 @@
 #include "base/orientation.h"
 #include "base/parallel.h"
 #include "geometry/buckets.h"
+#include "lines/strokes/parts.h"
 
 namespace frontmost::lines_detail {
 namespace {
@@ -146,53 +147,39 @@ class Walker {
   std::size_t taken_ = 0;
 };
 
-/// For each line, the line that begins nearest to its end, within `gap`. No line succeeds two others.
-std::vector<std::uint32_t> successors(const std::vector<SectionOutline>& lines, double gap) {
-  std::vector<std::uint32_t> order(lines.size()), next(lines.size(), no_index);
+/// The partners of lines' ends, as for for_each_chain(): the last point of a line is joined to the nearest first point,
+/// within `gap`, that is not joined yet.
+std::vector<std::uint32_t> partners_of(const std::vector<SectionOutline>& lines, double gap) {
+  std::vector<std::uint32_t> order(lines.size()), partner(2 * lines.size(), no_index);
   std::iota(order.begin(), order.end(), 0u);
   const auto start_x = [&](std::uint32_t i) { return lines[i].front().x; };
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return start_x(a) < start_x(b); });
-  std::vector<std::uint8_t> is_taken(lines.size());
-  for (std::size_t i = 0; i < lines.size(); ++i) {
+  for (std::uint32_t i = 0; i < lines.size(); ++i) {
     const glm::dvec2 end = lines[i].back();
+    std::uint32_t& begins = partner[2 * i + 1];
     double nearest = gap;
     const auto begin = std::lower_bound(order.begin(), order.end(), end.x - gap,
                                         [&](std::uint32_t k, double x) { return start_x(k) < x; });
     for (auto k = begin; k != order.end() && start_x(*k) <= end.x + gap; ++k) {
       const double off = glm::distance(glm::dvec2(lines[*k].front()), end);
-      if (is_taken[*k] || !(off < nearest)) continue;
+      if (partner[2 * *k] != no_index || !(off < nearest)) continue;
       nearest = off;
-      next[i] = *k;
+      begins = 2 * *k;
     }
-    if (next[i] != no_index) is_taken[next[i]] = 1;
+    if (begins != no_index) partner[begins] = 2 * i + 1;
   }
-  return next;
+  return partner;
 }
 
 /// Joins lines across small gaps. \returns the closed ones; `open_count` counts the others.
 std::vector<SectionOutline> close_gaps(const std::vector<SectionOutline>& lines, double gap, std::size_t& open_count) {
-  const std::vector<std::uint32_t> next = successors(lines, gap);
-  std::vector<std::uint8_t> is_done(lines.size()), has_before(lines.size());
-  for (const std::uint32_t k : next)
-    if (k != no_index) has_before[k] = 1;
-  const auto follow = [&](std::uint32_t k, SectionOutline& line) {
-    for (; k != no_index && !is_done[k]; k = next[k]) {
-      is_done[k] = 1;
-      line.insert(line.end(), lines[k].begin(), lines[k].end());
-    }
-  };
-  SectionOutline line;
-  for (std::uint32_t i = 0; i < lines.size(); ++i) {
-    if (has_before[i]) continue;
-    ++open_count;
-    follow(i, line);
-  }
   std::vector<SectionOutline> closed;
-  for (std::uint32_t i = 0; i < lines.size(); ++i) {
-    line.clear();
-    follow(i, line);
-    if (line.size() > 2) closed.push_back(line);
-  }
+  for_each_chain(partners_of(lines, gap), [&](const std::vector<std::uint32_t>& ends, bool is_closed) {
+    open_count += !is_closed;
+    SectionOutline line;
+    for (const std::uint32_t end : ends) line.insert(line.end(), lines[end / 2].begin(), lines[end / 2].end());
+    if (is_closed && line.size() > 2) closed.push_back(std::move(line));
+  });
   return closed;
 }
 
