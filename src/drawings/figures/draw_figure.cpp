@@ -80,14 +80,6 @@ Occluders occluders_of(const Surfaces& surfaces, const FigureOptions& options, b
       [&surfaces, holes_are_cut_out](PrimitiveId id) { return is_opaque(surfaces, id, holes_are_cut_out); });
 }
 
-/// Near the eye polygons are millions of pixels wide, and all of these would be sampled.
-bool reaches_beyond_picture(const PaintOrder& order) {
-  const glm::dvec2 size(order.view.width, order.view.height);
-  return std::any_of(order.corners.begin(), order.corners.end(), [&](const PaintCorner& corner) {
-    return !(corner.at.x > -1 && corner.at.y > -1 && corner.at.x < size.x + 1 && corner.at.y < size.y + 1);
-  });
-}
-
 VisibleParts parts_of(const Surfaces& surfaces, const View& view, const FigureOptions& options,
                       const Execution& execution) {
   if (options.visible_only) {
@@ -95,7 +87,12 @@ VisibleParts parts_of(const Surfaces& surfaces, const View& view, const FigureOp
     return visible_parts(painter(surfaces, view, {.occluders = occluders}, execution), occluders, execution);
   }
   PaintOrder order = painter(surfaces, view, {}, execution);
-  if (reaches_beyond_picture(order)) return visible_parts(order, Occluders::none(), execution);
+  // Near the eye polygons are millions of pixels wide, and all of these would be sampled.
+  const auto is_outside = [&](const PaintCorner& corner) {
+    return !(corner.at.x > -1 && corner.at.y > -1 && corner.at.x < view.width + 1 && corner.at.y < view.height + 1);
+  };
+  if (std::any_of(order.corners.begin(), order.corners.end(), is_outside))
+    return visible_parts(order, Occluders::none(), execution);
   return {order.view, std::move(order.polygons), std::move(order.corners)};
 }
 

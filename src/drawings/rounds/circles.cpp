@@ -31,10 +31,10 @@ class RunFinder {
 
   void append_to(std::vector<FoundCircle>& found) const {
     if (chain_.is_closed && sides_ >= 18) {
-      if (const auto circle = whole_circle()) {
-        found.push_back({*circle, {{corner(0), corner(0), kWhole}}, triangles_of(0, sides_)});
-        return;
-      }
+      const auto circle = circle_through(corner(0), corner(sides_ / 3), corner(2 * sides_ / 3));
+      const auto turn = circle ? turn_along(*circle, 0, sides_) : std::nullopt;
+      if (turn && std::abs(std::abs(*turn) - kWhole) < 1e-6)
+        return found.push_back({*circle, {{corner(0), corner(0), kWhole}}, triangles_of(0, sides_)});
     }
     // The first vertex of a closed chain may lie in the middle of an arc, whose two parts are united later.
     for (std::size_t at = 0; at + kFewestSides <= sides_;) {
@@ -73,13 +73,6 @@ class RunFinder {
     const auto turn = turn_along(*circle, first, last);
     if (!turn || std::abs(*turn) > 6.2) return std::nullopt;
     return std::pair(*circle, *turn);
-  }
-
-  [[nodiscard]] std::optional<Circle3> whole_circle() const {
-    const auto circle = circle_through(corner(0), corner(sides_ / 3), corner(2 * sides_ / 3));
-    if (!circle) return std::nullopt;
-    const auto turn = turn_along(*circle, 0, sides_);
-    return turn && std::abs(std::abs(*turn) - kWhole) < 1e-6 ? circle : std::nullopt;
   }
 
   [[nodiscard]] std::vector<std::uint32_t> triangles_of(std::size_t first, std::size_t last) const {

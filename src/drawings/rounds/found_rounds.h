@@ -62,7 +62,6 @@ struct Tube {
     const glm::dvec3 u = at - point;
     return u - glm::dot(u, axis) * axis;
   }
-  [[nodiscard]] double distance(const glm::dvec3& at) const { return std::abs(glm::length(outwards(at)) - radius); }
 };
 
 /// Two unit vectors across a third.

@@ -240,17 +240,6 @@ bool lies_in(const Ring& inner, const Ring& outer) {
   return std::abs(inner.area) < std::abs(outer.area);
 }
 
-/// By ring: the rings that contain it.
-std::vector<std::vector<std::uint32_t>> rings_around(const std::vector<Ring>& rings, const Execution& execution) {
-  std::vector<std::vector<std::uint32_t>> around(rings.size());
-  for (std::uint32_t i = 0; i < rings.size(); ++i) {
-    check_cancelled(execution);
-    for (std::uint32_t k = 0; k < rings.size(); ++k)
-      if (k != i && lies_in(rings[i], rings[k])) around[i].push_back(k);
-  }
-  return around;
-}
-
 /// -1: a hole begins within the ring; 1: a filled region; 0: neither.
 int boundary_of(const std::vector<Ring>& rings, const std::vector<std::uint32_t>& around, std::uint32_t ring,
                 bool by_winding) {
@@ -285,10 +274,14 @@ std::vector<Region> regions_of(Outlines outlines, const Execution& execution) {
   std::vector<Ring> rings;
   for (SectionOutline& outline : outlines.closed)
     if (Ring ring = ring_of(std::move(outline)); ring.area != 0) rings.push_back(std::move(ring));
-  const std::vector<std::vector<std::uint32_t>> around = rings_around(rings, execution);
+  std::vector<std::vector<std::uint32_t>> around(rings.size());  // by ring: the rings that contain it
   std::vector<int> boundary;
-  for (std::uint32_t i = 0; i < rings.size(); ++i)
+  for (std::uint32_t i = 0; i < rings.size(); ++i) {
+    check_cancelled(execution);
+    for (std::uint32_t k = 0; k < rings.size(); ++k)
+      if (k != i && lies_in(rings[i], rings[k])) around[i].push_back(k);
     boundary.push_back(boundary_of(rings, around[i], i, outlines.is_wound_alike));
+  }
   std::vector<Region> regions;
   std::vector<std::size_t> region_of(rings.size());
   for (std::uint32_t i = 0; i < rings.size(); ++i) {

@@ -52,7 +52,10 @@ class SheetLayers {
       const glm::dvec2 ends[] = {view.on_page(line.from), view.on_page(line.to)};
       Pen pen = pens_.centre;
       pen.dashes = dashes_on(pen, glm::distance(ends[0], ends[1]));
-      centre_group(pen).add(ends, false);
+      std::vector<PageGroup>& groups = layers_[centre].groups;
+      const auto [known, is_new] = centre_groups_.try_emplace(pen.dashes, groups.size());
+      if (is_new) groups.push_back({"", pen});
+      groups[known->second].add(ends, false);
     }
     for (const Stroke& stroke : view.strokes.strokes) append(stroke, view, group_for(stroke, view, number));
   }
@@ -88,13 +91,6 @@ class SheetLayers {
     std::vector<PageGroup>& groups = layers_[key.layer].groups;
     const auto [known, is_new] = places_.try_emplace(key, groups.size());
     if (is_new) groups.push_back({name_of(view, key.instance), pen});
-    return groups[known->second];
-  }
-
-  PageGroup& centre_group(const Pen& pen) {
-    std::vector<PageGroup>& groups = layers_[centre].groups;
-    const auto [known, is_new] = centre_groups_.try_emplace(pen.dashes, groups.size());
-    if (is_new) groups.push_back({"", pen});
     return groups[known->second];
   }
 

@@ -241,12 +241,6 @@ double angle_of(double half) {
   return 4 * t * sum;
 }
 
-/// The angle between two vectors, at most pi / 2.
-double angle_between(const glm::dvec3& n, const glm::dvec3& m) {
-  const double cosine = glm::dot(n, m);
-  return angle_of(cosine > 0 ? half_tangent(glm::length(glm::cross(n, m)), cosine) : 1);
-}
-
 /// The plane across an edge. A surface normal in that plane is a complex number. Its argument is the angle from the
 /// left side's normal, around the edge.
 struct CrossSection {
@@ -362,7 +356,10 @@ JudgedFold judge_fold(const Neighbours& near, const FeatureEdge& edge) {
   const TurnedTriangle triangles[2] = {{edge.left, false}, {edge.right, !is_alike}};
   const glm::dvec3 normals[2] = {near.surface_normal(triangles[0]), near.surface_normal(triangles[1])};
   const double cosine = glm::dot(normals[0], normals[1]);
-  if (cosine < kSharpCosine) return {FoldGrade::sharp, angle_between(normals[0], normals[1])};
+  if (cosine < kSharpCosine) {
+    const double half = cosine > 0 ? half_tangent(glm::length(glm::cross(normals[0], normals[1])), cosine) : 1;
+    return {FoldGrade::sharp, angle_of(half)};
+  }
   if (cosine > kLeastFoldCosine) return {};
 
   const glm::dvec3 begin = near.place(edge.from);

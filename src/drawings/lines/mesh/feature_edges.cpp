@@ -81,11 +81,6 @@ class Classifier {
   static bool is_one_surface(const Scene& scene) {
     return scene.instances.size() == 1 && scene.meshes[scene.instances[0].mesh].material_ids.empty();
   }
-  [[nodiscard]] bool is_in_plane(const Side& a, const Side& b) const {
-    const glm::uvec3& t = mesh_.triangles[a.triangle];
-    const Positions& at = mesh_.positions;
-    return FacePlane(at[t.x], at[t.y], at[t.z]).height(at[b.opposite]).sign == 0;
-  }
   [[nodiscard]] bool is_crease(const Side& a, const Side& b) const {
     // Neighbours that run along their edge the same way are wound against each other.
     const glm::dvec3 n = normal_of(mesh_, a.triangle), m = normal_of(mesh_, b.triangle);
@@ -93,7 +88,9 @@ class Classifier {
     const double size = std::sqrt(glm::dot(n, n) * glm::dot(m, m));
     if (along > cosine_ * size) return false;
     if (along <= 0) return true;
-    return !is_in_plane(a, b);
+    const glm::uvec3& t = mesh_.triangles[a.triangle];
+    const Positions& at = mesh_.positions;
+    return FacePlane(at[t.x], at[t.y], at[t.z]).height(at[b.opposite]).sign != 0;
   }
 
   const WeldedMesh& mesh_;
@@ -312,18 +309,6 @@ struct OwnedSide {
 /// Sides with the same opposite vertex.
 using SidesOfCopy = std::span<const OwnedSide>;
 
-/// Groups of copies. Precondition: `sides` are sorted by opposite vertex.
-std::vector<SidesOfCopy> copies_of(std::span<const OwnedSide> sides) {
-  std::vector<SidesOfCopy> all;
-  for (auto begin = sides.begin(); begin != sides.end();) {
-    const auto end =
-        std::find_if(begin, sides.end(), [&](const OwnedSide& s) { return s.side.opposite != begin->side.opposite; });
-    all.emplace_back(begin, end);
-    begin = end;
-  }
-  return all;
-}
-
 /// One side of each group: of the same object and material if possible, else the first ones.
 SidePair pair_of(const SidesOfCopy& a, const SidesOfCopy& b) {
   for (const OwnedSide& one : a)
@@ -332,9 +317,14 @@ SidePair pair_of(const SidesOfCopy& a, const SidesOfCopy& b) {
   return {a[0].side, b[0].side};
 }
 
-/// Appends pairs that hold all sides. \returns false, and appends none, where that is impossible.
+/// Appends pairs that hold all sides. \returns false, and appends none, where that is impossible. Precondition: `sides`
+/// are sorted by opposite vertex.
 bool pair_up(std::span<const OwnedSide> sides, std::vector<SidePair>& pairs) {
-  const std::vector<SidesOfCopy> copies = copies_of(sides);
+  std::vector<SidesOfCopy> copies;
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    while (end < sides.size() && sides[end].side.opposite == sides[begin].side.opposite) ++end;
+    copies.push_back(sides.subspan(begin, end - begin));
+  }
   if (copies.size() < 2) return false;
   // With two groups, their sizes do not matter.
   const auto centre = std::find_if(copies.begin(), copies.end(), [&](const SidesOfCopy& c) {
