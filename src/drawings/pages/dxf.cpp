@@ -31,23 +31,6 @@ std::string table_text(const std::string& name) {
   return clean;
 }
 
-/// Distinct names of at most 31 characters.
-class TableNames {
- public:
-  std::string add(const std::string& name) {
-    constexpr std::size_t longest = 26;  // leaves room for _ and a number below `most_layers`
-    const std::string clean = name.empty() ? "LAYER" : name.substr(0, longest);
-    std::string unique = clean;
-    for (int& number = next_.try_emplace(clean, 2).first->second; !taken_.insert(unique).second; ++number)
-      unique = clean + "_" + std::to_string(number);
-    return unique;
-  }
-
- private:
-  std::set<std::string> taken_ = {"0"};  // every drawing has this layer
-  std::map<std::string, int> next_;
-};
-
 /// A longer list of layers helps nobody.
 constexpr std::size_t most_layers = 1000;
 
@@ -85,13 +68,19 @@ struct Layers {
   explicit Layers(const Page& page) {
     std::size_t groups = 0;
     for (const PageLayer& layer : page.layers) groups += layer.groups.size() + 1;
-    TableNames names;
+    std::set<std::string> names = {"0"};  // every drawing has this layer
+    std::map<std::string, int> next;
     for (const PageLayer& layer : page.layers) {
       const std::string of_class = table_text(layer.name);
       of_groups.emplace_back();
       std::optional<std::size_t> common;
       const auto add = [&](const std::string& name, const Pen& pen) {
-        list.push_back({names.add(name), pen, layer_color(layer.name, pen)});
+        // Distinct names of at most 31 characters: there is room for _ and a number below `most_layers`.
+        const std::string clean = name.empty() ? "LAYER" : name.substr(0, 26);
+        std::string unique = clean;
+        for (int& number = next.try_emplace(clean, 2).first->second; !names.insert(unique).second; ++number)
+          unique = clean + "_" + std::to_string(number);
+        list.push_back({unique, pen, layer_color(layer.name, pen)});
         return list.size() - 1;
       };
       if (layer.groups.empty()) add(of_class, {});

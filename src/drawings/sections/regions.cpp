@@ -171,18 +171,6 @@ std::vector<std::uint32_t> partners_of(const std::vector<SectionOutline>& lines,
   return partner;
 }
 
-/// Joins lines across small gaps. \returns the closed ones; `open_count` counts the others.
-std::vector<SectionOutline> close_gaps(const std::vector<SectionOutline>& lines, double gap, std::size_t& open_count) {
-  std::vector<SectionOutline> closed;
-  for_each_chain(partners_of(lines, gap), [&](const std::vector<std::uint32_t>& ends, bool is_closed) {
-    open_count += !is_closed;
-    SectionOutline line;
-    for (const std::uint32_t end : ends) line.insert(line.end(), lines[end / 2].begin(), lines[end / 2].end());
-    if (is_closed && line.size() > 2) closed.push_back(std::move(line));
-  });
-  return closed;
-}
-
 constexpr double area_rounding = 1e-12;  // of the sum of absolute terms
 constexpr double crossed_area = 1e-6;    // likewise, for lines that turn as much one way as the other
 
@@ -265,8 +253,14 @@ Outlines find_outlines(const std::vector<CutSegment>& segments, const Execution&
     low = glm::min(low, glm::dvec2(place));
     high = glm::max(high, glm::dvec2(place));
   }
-  for (SectionOutline& line : close_gaps(walker.open, joined_gap * glm::distance(low, high), all.open_count))
-    all.closed.push_back(std::move(line));
+  const std::vector<SectionOutline>& lines = walker.open;
+  const std::vector<std::uint32_t> partners = partners_of(lines, joined_gap * glm::distance(low, high));
+  for_each_chain(partners, [&](const std::vector<std::uint32_t>& ends, bool is_closed) {
+    all.open_count += !is_closed;
+    SectionOutline line;
+    for (const std::uint32_t end : ends) line.insert(line.end(), lines[end / 2].begin(), lines[end / 2].end());
+    if (is_closed && line.size() > 2) all.closed.push_back(std::move(line));
+  });
   return all;
 }
 

@@ -88,18 +88,6 @@ struct Height {
   }
 };
 
-/// Whether some corners may be above a plane, or below; vertices shared with the plane's triangle are neither.
-struct LaneSides {
-  M above, below;
-
-  HWY_INLINE void Add(const Vector3& corner, const LanePlane& plane, M is_shared) {
-    const Height height(corner, plane);
-    above = hn::Or(above, hn::Not(hn::Or(is_shared, height.is_below)));
-    below = hn::Or(below, hn::Not(hn::Or(is_shared, height.is_above)));
-  }
-  HWY_INLINE M Both() const { return hn::And(above, below); }
-};
-
 HWY_INLINE Vector3 Choose(M mask, const Vector3& yes, const Vector3& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
@@ -218,10 +206,14 @@ struct Lanes {
   /// Lanes for whose planes the probe may have corners on both sides; none that share two vertices with it.
   HWY_INLINE M IsStraddled(const Probe& probe, const M (&has)[3]) const {
     const D d;
-    LaneSides sides{hn::FirstN(d, 0), hn::FirstN(d, 0)};
-    for (int k = 0; k < 3; ++k) sides.Add(probe.Corner(k), plane, has[k]);
+    M above = hn::FirstN(d, 0), below = above;
+    for (int k = 0; k < 3; ++k) {
+      const Height height(probe.Corner(k), plane);  // shared vertices are on neither side
+      above = hn::Or(above, hn::Not(hn::Or(has[k], height.is_below)));
+      below = hn::Or(below, hn::Not(hn::Or(has[k], height.is_above)));
+    }
     const M two = hn::Or(hn::Or(hn::And(has[0], has[1]), hn::And(has[1], has[2])), hn::And(has[2], has[0]));
-    return hn::AndNot(two, sides.Both());
+    return hn::AndNot(two, hn::And(above, below));
   }
   /// Lanes in `asked` that certainly meet the line common to both planes wholly before the probe or wholly behind it:
   /// each edge of one triangle that crosses the other's plane has the same orientation to each of the other's.

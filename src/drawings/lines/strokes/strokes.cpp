@@ -171,11 +171,34 @@ class ShortChains {
   std::vector<std::vector<std::size_t>> touched_by_;  ///< by chain: the short chains that end on it
 };
 
-class PartReader {
+/// The segments of all parts with their ranks, and for each rank a stroke without points.
+class Ranked {
  public:
-  PartReader(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options)
-      : surfaces_(surfaces), drawing_(drawing), options_(options), cosine_(std::cos(options.grazing_angle)) {}
+  Ranked(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options)
+      : surfaces_(surfaces), drawing_(drawing), options_(options), cosine_(std::cos(options.grazing_angle)) {
+    std::map<std::uint64_t, std::pair<std::uint32_t, Stroke>> known;
+    std::vector<std::uint64_t> keys;
+    for (const DrawnPart& part : drawing.parts) {
+      keys.push_back(key_of(part));
+      known.try_emplace(keys.back(), 0, stroke(part));
+    }
+    for (auto& [key, entry] : known) {
+      entry.first = std::uint32_t(strokes.size());
+      strokes.push_back(entry.second);
+    }
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      const DrawnPart& part = drawing.parts[i];
+      if (!is_drawn(part)) continue;
+      const EdgeKind kind = drawing.edges[part.edge].kind;
+      segments.push_back({part.from, part.to, known.find(keys[i])->second.first,
+                          kind == EdgeKind::silhouette || kind == EdgeKind::boundary});
+    }
+  }
 
+  std::vector<LineSegment> segments;
+  std::vector<Stroke> strokes;
+
+ private:
   /// Whether the part gets a stroke.
   [[nodiscard]] bool is_drawn(const DrawnPart& part) const {
     if (part.hidden_by == 0) return true;
@@ -183,7 +206,7 @@ class PartReader {
   }
 
   /// The common properties of a stroke's parts, in the order of ranks: outlines come first, hidden lines last.
-  [[nodiscard]] std::uint64_t key(const DrawnPart& part) const {
+  [[nodiscard]] std::uint64_t key_of(const DrawnPart& part) const {
     const DrawnEdge& edge = drawing_.edges[part.edge];
     std::uint64_t key = part.hidden_by != 0;
     key = key << 1 | (options_.by_outline && !part.is_outline);
@@ -196,7 +219,6 @@ class PartReader {
     return {edge.kind, part.hidden_by != 0, options_.by_outline && part.is_outline, instance_of(edge), 0, 0, false};
   }
 
- private:
   [[nodiscard]] std::uint32_t instance_of(const DrawnEdge& edge) const {
     const PrimitiveId id = edge.left != no_primitive ? edge.left : edge.right;
     return id == no_primitive ? no_index : surfaces_.source(id).instance;
@@ -231,33 +253,6 @@ void check(const StrokeOptions& options) {
   check_range(options.shortest, 0, 1e4, "the shortest stroke must be from 0 to 10000 pixels");
   check_range(options.grazing_angle, 0, std::numbers::pi / 2, "the grazing angle must be from 0 to pi/2");
 }
-
-/// The segments of all parts with their ranks, and for each rank a stroke without points.
-struct Ranked {
-  Ranked(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options) {
-    const PartReader reader(surfaces, drawing, options);
-    std::map<std::uint64_t, std::pair<std::uint32_t, Stroke>> known;
-    std::vector<std::uint64_t> keys;
-    for (const DrawnPart& part : drawing.parts) {
-      keys.push_back(reader.key(part));
-      known.try_emplace(keys.back(), 0, reader.stroke(part));
-    }
-    for (auto& [key, entry] : known) {
-      entry.first = std::uint32_t(strokes.size());
-      strokes.push_back(entry.second);
-    }
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-      const DrawnPart& part = drawing.parts[i];
-      if (!reader.is_drawn(part)) continue;
-      const EdgeKind kind = drawing.edges[part.edge].kind;
-      segments.push_back({part.from, part.to, known.find(keys[i])->second.first,
-                          kind == EdgeKind::silhouette || kind == EdgeKind::boundary});
-    }
-  }
-
-  std::vector<LineSegment> segments;
-  std::vector<Stroke> strokes;
-};
 
 void append(const Chain& chain, const Stroke& like, bool with_arcs, Strokes& all) {
   Stroke stroke = like;
