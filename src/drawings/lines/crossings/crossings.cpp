@@ -41,7 +41,7 @@ std::uint32_t spread(std::uint32_t bits) {
 
 Box box_of(const WeldedMesh& mesh, std::size_t triangle) {
   Box box;
-  for (int k = 0; k < 3; ++k) box.include(mesh.positions.places()[mesh.triangles[triangle][k]]);
+  for (int k = 0; k < 3; ++k) box.include(mesh.positions.places[mesh.triangles[triangle][k]]);
   return box;
 }
 
@@ -50,34 +50,6 @@ int exponent_of(const Box& box) {
   const glm::dvec3 size = glm::dvec3(box.high) - glm::dvec3(box.low);
   const auto bits = bits_as<std::uint64_t>(std::max({size.x, size.y, size.z}));
   return std::clamp(int(bits >> 52) - 1022, -kExponents, kExponents - 1);
-}
-
-/// Classes of triangles by size.
-struct SizeClasses {
-  /// By exponent: 0 for nine tenths of all triangles; each class beyond spans a factor of 4.
-  std::array<std::uint32_t, 2 * kExponents> of{};
-  int usual = 0;  ///< the largest exponent of those nine tenths
-};
-
-/// Determined from every sixteenth triangle.
-SizeClasses size_classes(const WeldedMesh& mesh, const Execution& execution) {
-  const std::size_t asked = (mesh.triangles.size() + 15) / 16;
-  Buffer<std::int16_t> exponents(asked);
-  parallel_for(execution, asked, kPerPart / 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) exponents[i] = std::int16_t(exponent_of(box_of(mesh, 16 * i)));
-  });
-  std::array<std::size_t, 2 * kExponents> counts{};
-  for (const std::int16_t exponent : exponents) ++counts[std::size_t(exponent + kExponents)];
-  SizeClasses classes;
-  std::size_t seen = 0;
-  std::uint32_t above = 0;
-  for (std::size_t e = 0; e < counts.size(); ++e) {
-    if (10 * seen >= 9 * asked) ++above;
-    if (above == 0) classes.usual = int(e) - kExponents;
-    classes.of[e] = std::min(7u, above / 2);
-    seen += counts[e];
-  }
-  return classes;
 }
 
 Box bounds_of(const Buffer<glm::vec3>& places, const Execution& execution) {
@@ -95,8 +67,9 @@ Box bounds_of(const Buffer<glm::vec3>& places, const Execution& execution) {
 /// Keys on D. Hilbert's curve, 30 bits: the class of size, then the place of the box's middle.
 class Curve {
  public:
-  Curve(const WeldedMesh& mesh, const Execution& execution) : classes_(size_classes(mesh, execution)) {
-    const Box all = bounds_of(mesh.positions.places(), execution);
+  Curve(const WeldedMesh& mesh, const Execution& execution) {
+    find_classes(mesh, execution);
+    const Box all = bounds_of(mesh.positions.places, execution);
     low_ = glm::dvec3(all.low);
     const glm::dvec3 extent = glm::dvec3(all.high) - low_;
     scale_ = kSteps / std::max({extent.x, extent.y, extent.z, 1e-300});
@@ -105,17 +78,38 @@ class Curve {
   [[nodiscard]] std::uint32_t place_of(const Box& box) const {
     const glm::dvec3 at = ((glm::dvec3(box.low) + glm::dvec3(box.high)) * 0.5 - low_) * scale_;
     const auto step = [&](double t) { return spread_[std::size_t(std::clamp(t, 0.0, kSteps))]; };
-    const std::uint32_t size = classes_.of[std::size_t(exponent_of(box) + kExponents)];
+    const std::uint32_t size = class_of_[std::size_t(exponent_of(box) + kExponents)];
     return size << 3 * kBitsAnAxis | hilbert_place(step(at.x) | step(at.y) << 1 | step(at.z) << 2, kBitsAnAxis);
   }
   /// A power of two that makes most triangles about 1 in size. The kernels take products of many lengths, and denormal
   /// floats cost hundreds of cycles. The scaling rounds nothing; what becomes infinite is left open by the kernels.
-  [[nodiscard]] float scale() const { return std::ldexp(1.0f, std::clamp(-classes_.usual, 0, kMostScale)); }
+  [[nodiscard]] float scale() const { return std::ldexp(1.0f, std::clamp(-usual_, 0, kMostScale)); }
 
  private:
+  /// Determines classes of size from every sixteenth triangle.
+  void find_classes(const WeldedMesh& mesh, const Execution& execution) {
+    const std::size_t asked = (mesh.triangles.size() + 15) / 16;
+    Buffer<std::int16_t> exponents(asked);
+    parallel_for(execution, asked, kPerPart / 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) exponents[i] = std::int16_t(exponent_of(box_of(mesh, 16 * i)));
+    });
+    std::array<std::size_t, 2 * kExponents> counts{};
+    for (const std::int16_t exponent : exponents) ++counts[std::size_t(exponent + kExponents)];
+    std::size_t seen = 0;
+    std::uint32_t above = 0;
+    for (std::size_t e = 0; e < counts.size(); ++e) {
+      if (10 * seen >= 9 * asked) ++above;
+      if (above == 0) usual_ = int(e) - kExponents;
+      class_of_[e] = std::min(7u, above / 2);
+      seen += counts[e];
+    }
+  }
+
   static constexpr double kSteps = (1 << kBitsAnAxis) - 1;
   static constexpr int kMostScale = 60;
-  SizeClasses classes_;
+  /// By exponent: 0 for nine tenths of all triangles; each class beyond spans a factor of 4.
+  std::array<std::uint32_t, 2 * kExponents> class_of_{};
+  int usual_ = 0;  ///< the largest exponent of those nine tenths
   glm::dvec3 low_{0};
   double scale_ = 0;
   std::array<std::uint32_t, 1 << kBitsAnAxis> spread_;
@@ -152,7 +146,7 @@ class BoxTree {
           triangles_.numbers[i] = number;
           for (int k = 0; k < 3; ++k) {
             const std::uint32_t vertex = (&mesh.triangles[number].x)[k];
-            const glm::vec3 corner = mesh.positions.places()[vertex] * scale;
+            const glm::vec3 corner = mesh.positions.places[vertex] * scale;
             triangles_.vertices[k][i] = knows_spread && features.is_spread[vertex] ? vertex : vertex | kNotSpread;
             triangles_.corners[3 * k][i] = corner.x;
             triangles_.corners[3 * k + 1][i] = corner.y;

@@ -350,7 +350,7 @@ class GridPlan {
       a = low;
     };
     order(v.x, v.y), order(v.y, v.z), order(v.x, v.y);
-    const Buffer<glm::vec3>& at = seen.mesh.positions.places();
+    const Buffer<glm::vec3>& at = seen.mesh.positions.places;
     return {{at[v.x], at[v.y], at[v.z]}, {v.x, v.y, v.z}, turn, footprint.triangle, is_near(footprint)};
   }
 

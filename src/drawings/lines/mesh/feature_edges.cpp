@@ -120,8 +120,8 @@ OpenSide open_side(const WeldedMesh& mesh, const FeatureEdge& edge, std::uint32_
   const glm::dvec3 along = (to - from) / length, normal = normal_of(mesh, edge.left);
   const glm::dvec3 to_tip = mesh.positions[tip] - from, across = to_tip - along * glm::dot(to_tip, along);
   OpenSide side{from, along, normal / glm::length(normal), across / glm::length(across), length, number, edge};
-  side.box.include(mesh.positions.places()[edge.from]);
-  side.box.include(mesh.positions.places()[edge.to]);
+  side.box.include(mesh.positions.places[edge.from]);
+  side.box.include(mesh.positions.places[edge.to]);
   return side;
 }
 

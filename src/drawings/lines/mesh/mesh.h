@@ -17,16 +17,13 @@
 namespace frontmost::lines_detail {
 
 /// Vertex positions in world space, stored as floats, which halves the memory traffic.
-class Positions {
- public:
-  Positions() = default;
-  explicit Positions(Buffer<glm::vec3> places) : places_(std::move(places)) {}
-  [[nodiscard]] std::size_t size() const { return places_.size(); }
-  [[nodiscard]] glm::dvec3 operator[](std::size_t vertex) const { return glm::dvec3(places_[vertex]); }
-  [[nodiscard]] const Buffer<glm::vec3>& places() const { return places_; }
+struct Positions {
+  Buffer<glm::vec3> places;
 
- private:
-  Buffer<glm::vec3> places_;
+  Positions() = default;
+  explicit Positions(Buffer<glm::vec3> its_places) : places(std::move(its_places)) {}
+  [[nodiscard]] std::size_t size() const { return places.size(); }
+  [[nodiscard]] glm::dvec3 operator[](std::size_t vertex) const { return glm::dvec3(places[vertex]); }
 };
 
 struct WeldedMesh {

@@ -39,7 +39,7 @@ HWY_INLINE void Load(const WeldedMesh& mesh, std::size_t begin, std::size_t end,
   for (std::size_t i = 0; i < hn::Lanes(D()); ++i) {
     const glm::uvec3& t = mesh.triangles[begin + i < end ? begin + i : end - 1];
     for (int k = 0; k < 3; ++k) {
-      const glm::vec3& p = mesh.positions.places()[t[k]];
+      const glm::vec3& p = mesh.positions.places[t[k]];
       places[3 * k][i] = p.x, places[3 * k + 1][i] = p.y, places[3 * k + 2][i] = p.z;
     }
   }
