@@ -28,39 +28,34 @@ constexpr double kAcross = 0.5;      // least cosine of the angle between the di
 constexpr std::size_t kVerticesPerPart = 1024;
 constexpr double kWidestGap = 1.0 / 65536;  // of the scene's diagonal: a two hundredth of a millimetre on paper of A4
 
-class Classifier {
- public:
-  Classifier(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options)
-      : mesh_(seen.mesh),
-        seen_(seen),
-        surfaces_(surfaces),
-        options_(options),
-        cosine_(options.crease_angle ? std::cos(*options.crease_angle) : kLeastFoldCosine),
-        has_borders_(options.borders && !is_one_surface(surfaces.scene())) {}
+struct Classifier {
+  Classifier(const SeenMesh& its_seen, const Surfaces& its_surfaces, const LineOptions& its_options)
+      : mesh(its_seen.mesh),
+        seen(its_seen),
+        surfaces(its_surfaces),
+        options(its_options),
+        cosine(options.crease_angle ? std::cos(*options.crease_angle) : kLeastFoldCosine),
+        has_borders(options.borders && !is_one_surface(surfaces.scene())) {}
 
-  [[nodiscard]] const WeldedMesh& mesh() const { return mesh_; }
-  /// The least cosine of the angle by which a continuing surface turns.
-  [[nodiscard]] double cosine() const { return cosine_; }
   /// An edge of two triangles wound and facing alike is no feature if the cosine of their normals is higher.
   [[nodiscard]] float plain_cosine() const {
-    if (has_borders_) return std::numeric_limits<float>::infinity();
-    if (!options_.creases) return -std::numeric_limits<float>::infinity();
+    if (has_borders) return std::numeric_limits<float>::infinity();
+    if (!options.creases) return -std::numeric_limits<float>::infinity();
     // Zero normals mean nothing is known; a limit below 0 would make them look plain.
-    return std::max(float(cosine_), 0.0f) + kNormalRounding;
+    return std::max(float(cosine), 0.0f) + kNormalRounding;
   }
 
-  [[nodiscard]] bool draws_boundaries() const { return options_.boundaries; }
   [[nodiscard]] std::optional<EdgeKind> kind_of(const SidePair& pair) const {
     const int a = side_of(pair.first), b = side_of(pair.second);
-    if (options_.silhouettes && (a * b > 0 || (a == 0) != (b == 0))) return EdgeKind::silhouette;
-    if (has_borders_ && !(surface_of(pair.first.triangle) == surface_of(pair.second.triangle))) return EdgeKind::border;
-    if (options_.creases && is_crease(pair.first, pair.second)) return EdgeKind::crease;
+    if (options.silhouettes && (a * b > 0 || (a == 0) != (b == 0))) return EdgeKind::silhouette;
+    if (has_borders && !(surface_of(pair.first.triangle) == surface_of(pair.second.triangle))) return EdgeKind::border;
+    if (options.creases && is_crease(pair.first, pair.second)) return EdgeKind::crease;
     return std::nullopt;
   }
 
   [[nodiscard]] SurfaceOf surface_of(std::uint32_t triangle) const {
-    const PrimitiveSource source = surfaces_.source(mesh_.ids[triangle]);
-    return {source.instance, surfaces_.scene().meshes[source.mesh].material_of(source.triangle)};
+    const PrimitiveSource source = surfaces.source(mesh.ids[triangle]);
+    return {source.instance, surfaces.scene().meshes[source.mesh].material_of(source.triangle)};
   }
 
   /// The side of the edge on which no triangle lies, as seen; 0 where triangles are on both sides.
@@ -74,33 +69,32 @@ class Classifier {
     return std::int8_t(-inner);
   }
 
- private:
   /// On which side of the plane through the eye and the edge the triangle lies: 1 or -1. Its winding does not matter.
-  [[nodiscard]] int side_of(const Side& side) const { return seen_.facing[side.triangle] * (side.is_forward ? 1 : -1); }
+  [[nodiscard]] int side_of(const Side& side) const { return seen.facing[side.triangle] * (side.is_forward ? 1 : -1); }
 
   static bool is_one_surface(const Scene& scene) {
     return scene.instances.size() == 1 && scene.meshes[scene.instances[0].mesh].material_ids.empty();
   }
   [[nodiscard]] bool is_crease(const Side& a, const Side& b) const {
     // Neighbours that run along their edge the same way are wound against each other.
-    const glm::dvec3 n = normal_of(mesh_, a.triangle), m = normal_of(mesh_, b.triangle);
+    const glm::dvec3 n = normal_of(mesh, a.triangle), m = normal_of(mesh, b.triangle);
     const double along = glm::dot(n, m) * (a.is_forward == b.is_forward ? -1.0 : 1.0);
     const double size = std::sqrt(glm::dot(n, n) * glm::dot(m, m));
-    if (along > cosine_ * size) return false;
+    if (along > cosine * size) return false;
     if (along <= 0) return true;
-    const glm::uvec3& t = mesh_.triangles[a.triangle];
-    const Positions& at = mesh_.positions;
+    const glm::uvec3& t = mesh.triangles[a.triangle];
+    const Positions& at = mesh.positions;
     return FacePlane(at[t.x], at[t.y], at[t.z]).height(at[b.opposite]).sign != 0;
   }
 
-  const WeldedMesh& mesh_;
-  const SeenMesh& seen_;
-  const Surfaces& surfaces_;
-  const LineOptions& options_;
+  const WeldedMesh& mesh;
+  const SeenMesh& seen;
+  const Surfaces& surfaces;
+  const LineOptions& options;
   /// An upper bound on the rounding error of a product of two normals.
   static constexpr float kNormalRounding = 2e-6f;
-  const double cosine_;
-  const bool has_borders_;
+  const double cosine;  ///< the least of the angle by which a continuing surface turns
+  const bool has_borders;
 };
 
 /// A side of one triangle alone.
@@ -237,7 +231,7 @@ struct Gaps {
   [[nodiscard]] bool goes_on(const OpenSide& side, const OpenSide& other) const {
     const double cosine = glm::dot(side.normal, other.normal);
     const std::uint32_t own = side.edge.left, its = other.edge.left;  // triangles
-    return glm::dot(side.ahead, other.ahead) < -kAcross && std::abs(cosine) > classifier.cosine() &&
+    return glm::dot(side.ahead, other.ahead) < -kAcross && std::abs(cosine) > classifier.cosine &&
            seen.facing[own] != 0 && seen.facing[own] == seen.facing[its] * (cosine < 0 ? -1 : 1) &&
            classifier.surface_of(own) == classifier.surface_of(its);
   }
@@ -272,7 +266,7 @@ VertexPairs leave_out_gaps(const SeenMesh& seen, const Classifier& classifier, d
 /// Appends the features among the edges to Corner::last() of the `asked` corners of a paired star.
 void add_features(std::uint32_t vertex, std::span<const Corner> corners, std::uint32_t asked,
                   const Classifier& classifier, std::vector<FeatureEdge>& features) {
-  const WeldedMesh& mesh = classifier.mesh();
+  const WeldedMesh& mesh = classifier.mesh;
   const std::size_t begin = features.size();
   for (; asked != 0; asked &= asked - 1) {
     const Corner& before = corners[std::size_t(std::countr_zero(asked))];
@@ -362,7 +356,7 @@ std::optional<Drawn> drawn_of(std::span<const Side> sides, std::span<const Side>
     const auto surface_of = [&](std::uint32_t triangle) { return classifier.surface_of(triangle); };
     if (const auto pairs = paired_sides(sides, surface_of)) return first_of(*pairs, classifier);
   }
-  if (!classifier.draws_boundaries()) return std::nullopt;
+  if (!classifier.options.boundaries) return std::nullopt;
   return Drawn{EdgeKind::boundary, distinct[0].triangle, distinct.size() > 1 ? distinct[1].triangle : no_index};
 }
 
