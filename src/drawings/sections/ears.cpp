@@ -25,18 +25,16 @@ constexpr std::size_t corners_per_poll = 1 << 10;
 constexpr int most_cells = 1 << 10;  // along an axis
 
 /// Corners in rings. The first ring is the outer line, to which the holes are joined.
-class Rings {
- public:
+struct Rings {
   explicit Rings(const Region& region) {
     add(region.outer);
     for (const SectionOutline& hole : region.holes) add(hole);
   }
 
-  [[nodiscard]] std::size_t size() const { return links_.size(); }
-  [[nodiscard]] const glm::vec2& at(std::uint32_t i) const { return places_[i]; }
-  [[nodiscard]] std::uint32_t next(std::uint32_t i) const { return links_[i].next; }
-  [[nodiscard]] std::uint32_t last(std::uint32_t i) const { return links_[i].last; }
-  [[nodiscard]] const std::vector<std::uint32_t>& firsts() const { return firsts_; }
+  [[nodiscard]] std::size_t size() const { return links.size(); }
+  [[nodiscard]] const glm::vec2& at(std::uint32_t i) const { return places[i]; }
+  [[nodiscard]] std::uint32_t next(std::uint32_t i) const { return links[i].next; }
+  [[nodiscard]] std::uint32_t last(std::uint32_t i) const { return links[i].last; }
 
   /// Appends the corners of the ring of `first`.
   void append_ring(std::uint32_t first, std::vector<std::uint32_t>& corners) const {
@@ -46,28 +44,28 @@ class Rings {
   }
 
   void remove(std::uint32_t i) {
-    links_[links_[i].last].next = links_[i].next;
-    links_[links_[i].next].last = links_[i].last;
+    links[links[i].last].next = links[i].next;
+    links[links[i].next].last = links[i].last;
   }
 
   /// Joins the rings of two corners at one place, where a bridge would have no length.
   void splice(std::uint32_t a, std::uint32_t b) {
-    std::swap(links_[a].next, links_[b].next);
-    links_[links_[a].next].last = a;
-    links_[links_[b].next].last = b;
+    std::swap(links[a].next, links[b].next);
+    links[links[a].next].last = a;
+    links[links[b].next].last = b;
   }
 
   /// Adds a side from corner a to b and back. Both corners are duplicated, with the copies at the end of the list.
   void bridge(std::uint32_t a, std::uint32_t b) {
     const auto a2 = std::uint32_t(size()), b2 = a2 + 1;
-    places_.push_back(places_[a]);
-    places_.push_back(places_[b]);
-    links_.push_back({b2, links_[a].next});
-    links_.push_back({links_[b].last, a2});
-    links_[links_[a2].next].last = a2;
-    links_[links_[b2].last].next = b2;
-    links_[a].next = b;
-    links_[b].last = a;
+    places.push_back(places[a]);
+    places.push_back(places[b]);
+    links.push_back({b2, links[a].next});
+    links.push_back({links[b].last, a2});
+    links[links[a2].next].last = a2;
+    links[links[b2].last].next = b2;
+    links[a].next = b;
+    links[b].last = a;
   }
 
   /// Whether the side from corner i to `to` runs into the polygon at i, and not along its sides.
@@ -79,13 +77,12 @@ class Rings {
   /// The orientation of the corner with its neighbours.
   [[nodiscard]] int turn(std::uint32_t i) const { return orientation(at(last(i)), at(i), at(next(i))); }
 
- private:
   void add(const SectionOutline& outline) {
     const auto first = std::uint32_t(size()), count = std::uint32_t(outline.size());
-    firsts_.push_back(first);
+    firsts.push_back(first);
     for (std::uint32_t i = 0; i < count; ++i) {
-      places_.push_back(outline[i]);
-      links_.push_back({first + (i + count - 1) % count, first + (i + 1) % count});
+      places.push_back(outline[i]);
+      links.push_back({first + (i + count - 1) % count, first + (i + 1) % count});
     }
   }
 
@@ -93,9 +90,9 @@ class Rings {
     std::uint32_t last, next;
   };
 
-  std::vector<glm::vec2> places_;
-  std::vector<Link> links_;  ///< the neighbours of each remaining corner
-  std::vector<std::uint32_t> firsts_;
+  std::vector<glm::vec2> places;
+  std::vector<Link> links;  ///< the neighbours of each remaining corner
+  std::vector<std::uint32_t> firsts;
 };
 
 /// Joins all holes to the outer line.
@@ -105,11 +102,11 @@ class Joiner {
 
   void run() {
     std::vector<std::uint32_t> leftmost;
-    for (std::size_t k = 1; k < rings_.firsts().size(); ++k) leftmost.push_back(leftmost_of(rings_.firsts()[k]));
+    for (std::size_t k = 1; k < rings_.firsts.size(); ++k) leftmost.push_back(leftmost_of(rings_.firsts[k]));
     // From the left, so that each hole sees a part of the outer line or of a joined hole.
     std::sort(leftmost.begin(), leftmost.end(),
               [&](std::uint32_t a, std::uint32_t b) { return is_left_of(rings_.at(a), rings_.at(b)); });
-    rings_.append_ring(rings_.firsts()[0], joined_);
+    rings_.append_ring(rings_.firsts[0], joined_);
     for (const std::uint32_t corner : leftmost) {
       check_cancelled(execution_);
       const std::uint32_t other = nearest_in_sight(corner);
@@ -323,7 +320,7 @@ void fill(const Region& region, std::vector<FlatTriangle>& triangles, const Exec
   Rings rings(region);
   Joiner(rings, execution).run();
   std::vector<std::uint32_t> corners;
-  rings.append_ring(rings.firsts()[0], corners);
+  rings.append_ring(rings.firsts[0], corners);
   EarCutter(rings, corners, triangles).run(corners[0], execution);
 }
 
