@@ -63,16 +63,19 @@ int layer_color(const std::string& page_layer, const Pen& pen) {
   return color == 7 && is_numbered ? of_classes[page_layer[0] - '0'] : color;
 }
 
-/// The DXF layers of a page, and the layer of each group.
-struct Layers {
-  explicit Layers(const Page& page) {
+constexpr int by_layer = 256;
+
+class DxfWriter {
+ public:
+  DxfWriter(const Page& page, OutputFile& file, const Execution& execution)
+      : page_(page), out_(file), progress_(std::span(&page, 1), execution) {
     std::size_t groups = 0;
     for (const PageLayer& layer : page.layers) groups += layer.groups.size() + 1;
     std::set<std::string> names = {"0"};  // every drawing has this layer
     std::map<std::string, int> next;
     for (const PageLayer& layer : page.layers) {
       const std::string of_class = table_text(layer.name);
-      of_groups.emplace_back();
+      layers_of_groups_.emplace_back();
       std::optional<std::size_t> common;
       const auto add = [&](const std::string& name, const Pen& pen) {
         // Distinct names of at most 31 characters: there is room for _ and a number below `most_layers`.
@@ -80,32 +83,19 @@ struct Layers {
         std::string unique = clean;
         for (int& number = next.try_emplace(clean, 2).first->second; !names.insert(unique).second; ++number)
           unique = clean + "_" + std::to_string(number);
-        list.push_back({unique, pen, layer_color(layer.name, pen)});
-        return list.size() - 1;
+        layers_.push_back({unique, pen, layer_color(layer.name, pen)});
+        return layers_.size() - 1;
       };
       if (layer.groups.empty()) add(of_class, {});
       for (const PageGroup& group : layer.groups) {
+        types_.try_emplace(type_name(group.pen), group.pen.dashes);
         const bool is_own = groups <= most_layers && !group.name.empty();
         if (!is_own && !common) common = add(of_class, group.pen);
         // The class is not shortened, so that programs can select all of it.
-        of_groups.back().push_back(is_own ? add(of_class.substr(0, 11) + "-" + table_text(group.name), group.pen)
-                                          : *common);
+        layers_of_groups_.back().push_back(
+            is_own ? add(of_class.substr(0, 11) + "-" + table_text(group.name), group.pen) : *common);
       }
     }
-  }
-
-  std::vector<Layer> list;
-  std::vector<std::vector<std::size_t>> of_groups;  ///< by layer of the page: for each group, its index in `list`
-};
-
-constexpr int by_layer = 256;
-
-class DxfWriter {
- public:
-  DxfWriter(const Page& page, OutputFile& file, const Execution& execution)
-      : page_(page), layers_(page), out_(file), progress_(std::span(&page, 1), execution) {
-    for (const PageLayer& layer : page.layers)
-      for (const PageGroup& group : layer.groups) types_.try_emplace(type_name(group.pen), group.pen.dashes);
   }
 
   void write() {
@@ -117,7 +107,7 @@ class DxfWriter {
     section("ENTITIES");
     for (std::size_t i = 0; i < page_.layers.size(); ++i)
       for (std::size_t k = 0; k < page_.layers[i].groups.size(); ++k)
-        write_group(page_.layers[i], page_.layers[i].groups[k], layers_.list[layers_.of_groups[i][k]]);
+        write_group(page_.layers[i], page_.layers[i].groups[k], layers_[layers_of_groups_[i][k]]);
     end_section();
     text(0, "EOF");
     out_.flush();
@@ -199,8 +189,8 @@ class DxfWriter {
       for (std::size_t i = 0; i < dashes.size(); ++i) number(49, i % 2 == 0 ? dashes[i] : -dashes[i]);
     }
     text(0, "ENDTAB");
-    table("LAYER", layers_.list.size());
-    for (const Layer& layer : layers_.list) {
+    table("LAYER", layers_.size());
+    for (const Layer& layer : layers_) {
       text(0, "LAYER");
       text(2, layer.name);
       integer(70, 0);
@@ -281,7 +271,8 @@ class DxfWriter {
   }
 
   const Page& page_;
-  const Layers layers_;
+  std::vector<Layer> layers_;
+  std::vector<std::vector<std::size_t>> layers_of_groups_;  ///< by layer and group of the page: indices of layers_
   PageText out_;
   WritingProgress progress_;
   std::map<std::string, std::vector<double>> types_{{"CONTINUOUS", {}}};  ///< line types: the dashes of each name
