@@ -166,10 +166,8 @@ std::vector<glm::dvec2> pages_of(const Paper& paper, const SheetOptions& options
   if (!options.title_block) return pages;
   // ISO 5457: A4 is upright, all larger pages lie.
   if (paper.may_turn && paper.size.x > upright_width) std::swap(pages[0], pages[1]);
-  const auto is_small = [](const glm::dvec2& page) {
-    return page.x < least_framed_page.x || page.y < least_framed_page.y;
-  };
-  pages.erase(std::remove_if(pages.begin(), pages.end(), is_small), pages.end());
+  std::erase_if(pages,
+                [](const glm::dvec2& page) { return page.x < least_framed_page.x || page.y < least_framed_page.y; });
   if (pages.empty())
     refuse_page("page", size_text(paper.size) + " mm have no room for a frame and its title block, which need " +
                             size_text(least_framed_page));

@@ -26,6 +26,7 @@ constexpr std::size_t kMostInLeaf = 8, kMostBeside = 64;
 constexpr double kShare = 1.0 / 16;  // the widest gap, as a share of an edge's length
 constexpr double kAcross = 0.5;      // least cosine of the angle between the directions into both triangles
 constexpr std::size_t kVerticesPerPart = 1024;
+constexpr float kNormalRounding = 2e-6f;    // of a product of two normals, at most
 constexpr double kWidestGap = 1.0 / 65536;  // of the scene's diagonal: a two hundredth of a millimetre on paper of A4
 
 struct Classifier {
@@ -91,8 +92,6 @@ struct Classifier {
   const SeenMesh& seen;
   const Surfaces& surfaces;
   const LineOptions& options;
-  /// An upper bound on the rounding error of a product of two normals.
-  static constexpr float kNormalRounding = 2e-6f;
   const double cosine;  ///< the least of the angle by which a continuing surface turns
   const bool has_borders;
 };
@@ -120,30 +119,27 @@ OpenSide open_side(const WeldedMesh& mesh, const FeatureEdge& edge, std::uint32_
 }
 
 /// Open sides in a binary tree of boxes.
-class SideTree {
- public:
-  explicit SideTree(std::vector<OpenSide> sides) : sides_(std::move(sides)), boxes_(1) { build(0, 0, sides_.size()); }
+struct SideTree {
+  explicit SideTree(std::vector<OpenSide> all) : sides(std::move(all)), boxes(1) { build(0, 0, sides.size()); }
 
-  [[nodiscard]] const std::vector<OpenSide>& sides() const { return sides_; }
   /// Visits sides whose boxes touch `box`, until `visit` returns false.
   template <class Visit>
   void visit_near(const Box& box, const Visit& visit) const {
-    (void)visit_node(0, 0, sides_.size(), box, visit);
+    (void)visit_node(0, 0, sides.size(), box, visit);
   }
 
- private:
   void build(std::size_t node, std::size_t begin, std::size_t end) {
-    if (node >= boxes_.size()) boxes_.resize(node + 1);
+    if (node >= boxes.size()) boxes.resize(node + 1);
     Box box;
-    for (std::size_t i = begin; i < end; ++i) box.include(sides_[i].box);
-    boxes_[node] = box;
+    for (std::size_t i = begin; i < end; ++i) box.include(sides[i].box);
+    boxes[node] = box;
     if (end - begin <= kMostInLeaf) return;
     const glm::vec3 size = box.high - box.low;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const auto place = [&](const OpenSide& side) { return side.box.low[axis] + side.box.high[axis]; };
     const std::size_t middle = begin + (end - begin) / 2;
-    std::nth_element(sides_.begin() + std::ptrdiff_t(begin), sides_.begin() + std::ptrdiff_t(middle),
-                     sides_.begin() + std::ptrdiff_t(end), [&](const OpenSide& a, const OpenSide& b) {
+    std::nth_element(sides.begin() + std::ptrdiff_t(begin), sides.begin() + std::ptrdiff_t(middle),
+                     sides.begin() + std::ptrdiff_t(end), [&](const OpenSide& a, const OpenSide& b) {
                        return std::pair(place(a), a.number) < std::pair(place(b), b.number);
                      });
     build(2 * node + 1, begin, middle);
@@ -157,18 +153,18 @@ class SideTree {
   template <class Visit>
   [[nodiscard]] bool visit_node(std::size_t node, std::size_t begin, std::size_t end, const Box& box,
                                 const Visit& visit) const {
-    if (!overlap(boxes_[node], box)) return true;
+    if (!overlap(boxes[node], box)) return true;
     if (end - begin <= kMostInLeaf) {
       for (std::size_t i = begin; i < end; ++i)
-        if (overlap(sides_[i].box, box) && !visit(sides_[i])) return false;
+        if (overlap(sides[i].box, box) && !visit(sides[i])) return false;
       return true;
     }
     const std::size_t middle = begin + (end - begin) / 2;
     return visit_node(2 * node + 1, begin, middle, box, visit) && visit_node(2 * node + 2, middle, end, box, visit);
   }
 
-  std::vector<OpenSide> sides_;
-  std::vector<Box> boxes_;
+  std::vector<OpenSide> sides;
+  std::vector<Box> boxes;
 };
 
 /// Whether stretches cover a length, up to holes of `slack`.
@@ -253,7 +249,7 @@ VertexPairs leave_out_gaps(const SeenMesh& seen, const Classifier& classifier, d
   const Gaps gaps{seen, classifier, widest, tree};
   VertexPairs continued;
   std::vector<bool> is_gap(edges.size(), false);
-  for (const OpenSide& side : tree.sides()) is_gap[side.number] = gaps.is_one(side, continued);
+  for (const OpenSide& side : tree.sides) is_gap[side.number] = gaps.is_one(side, continued);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < edges.size(); ++i)
     if (!is_gap[i]) edges[kept++] = edges[i];
