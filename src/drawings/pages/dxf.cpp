@@ -40,8 +40,9 @@ struct Layer {
   int color = 7;
 };
 
-/// The nearest of the colours with a standard number.
-int color_number(const PageColor& color) {
+/// The colour of a layer's lines: the nearest of those with a standard number. Black lines get a colour by the digit at
+/// which the page layer's name begins, so that programs and lasers can distinguish classes.
+int layer_color(const std::string& page_layer, const PageColor& color) {
   // Number, red, green, blue. Colour 7 is black on white paper and white on a black screen.
   constexpr int all[][4] = {{7, 0, 0, 0},   {1, 255, 0, 0},   {2, 255, 255, 0},   {3, 0, 255, 0},    {4, 0, 255, 255},
                             {5, 0, 0, 255}, {6, 255, 0, 255}, {8, 128, 128, 128}, {9, 192, 192, 192}};
@@ -50,17 +51,10 @@ int color_number(const PageColor& color) {
     const int r = red - color.red, g = green - color.green, b = blue - color.blue;
     if (const int distance = r * r + g * g + b * b; distance < least) nearest = number, least = distance;
   }
-  return nearest;
-}
-
-/// The colour of a layer's lines. Black lines get a colour by the digit at which the page layer's name begins, so that
-/// programs and lasers can distinguish classes.
-int layer_color(const std::string& page_layer, const Pen& pen) {
-  const int color = color_number(pen.color);
   // From 1: hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame, sections.
   constexpr int of_classes[] = {7, 6, 7, 5, 8, 9, 1, 3, 4, 3};
   const bool is_numbered = !page_layer.empty() && page_layer[0] >= '0' && page_layer[0] <= '9';
-  return color == 7 && is_numbered ? of_classes[page_layer[0] - '0'] : color;
+  return nearest == 7 && is_numbered ? of_classes[page_layer[0] - '0'] : nearest;
 }
 
 constexpr int by_layer = 256;
@@ -83,7 +77,7 @@ class DxfWriter {
         std::string unique = clean;
         for (int& number = next.try_emplace(clean, 2).first->second; !names.insert(unique).second; ++number)
           unique = clean + "_" + std::to_string(number);
-        layers_.push_back({unique, pen, layer_color(layer.name, pen)});
+        layers_.push_back({unique, pen, layer_color(layer.name, pen.color)});
         return layers_.size() - 1;
       };
       if (layer.groups.empty()) add(of_class, {});
@@ -205,7 +199,7 @@ class DxfWriter {
     if (group.pen.width == 0 || group.pen.color.opacity == 0) return;
     own_type_ = type_name(group.pen);
     if (own_type_ == type_name(layer.pen)) own_type_.clear();
-    own_color_ = layer_color(of_page.name, group.pen);
+    own_color_ = layer_color(of_page.name, group.pen.color);
     if (own_color_ == layer.color) own_color_ = by_layer;
     for (const PagePath& path : group.paths) {
       progress_.step();

@@ -162,18 +162,6 @@ class RevolvedFinder {
   std::vector<std::uint32_t> region_of_;  ///< by vertex: the last region that it was in
 };
 
-std::vector<FoundRound> find_revolved(const SmoothMesh& mesh, const Execution& execution) {
-  std::vector<FoundRound> found;
-  std::vector<bool> is_taken(mesh.mesh.triangles.size());
-  RevolvedFinder finder(mesh);
-  for (std::uint32_t t = 0; t < mesh.mesh.triangles.size(); ++t) {
-    if (t % 4096 == 0) check_cancelled(execution);
-    if (is_taken[t]) continue;
-    if (auto revolved = finder.find(region_from(t, mesh, is_taken))) found.push_back(std::move(*revolved));
-  }
-  return found;
-}
-
 constexpr std::size_t kFewestPrismSides = 7, kMostPrismSides = 17;
 constexpr double kWidestPrismTurn = 0.91;  // radians, a little more than the turn between two of seven sides
 constexpr double kSamePrism = 1e-3;        // of the radius
@@ -266,7 +254,13 @@ Rounds find_rounds(const Surfaces& surfaces, const Execution& execution) {
            mesh.mesh, all);
   }
   for (const FoundRound& wall : find_walls(mesh, circles, execution)) append(wall, mesh.mesh, all);
-  for (const FoundRound& found : find_revolved(mesh, execution)) append(found, mesh.mesh, all);
+  std::vector<bool> is_taken(mesh.mesh.triangles.size());
+  RevolvedFinder finder(mesh);
+  for (std::uint32_t t = 0; t < is_taken.size(); ++t) {
+    if (t % 4096 == 0) check_cancelled(execution);
+    if (is_taken[t]) continue;
+    if (const auto revolved = finder.find(region_from(t, mesh, is_taken))) append(*revolved, mesh.mesh, all);
+  }
   all.prisms = find_prisms(mesh, execution);
   return all;
 }

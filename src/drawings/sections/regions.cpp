@@ -228,17 +228,6 @@ bool lies_in(const Ring& inner, const Ring& outer) {
   return std::abs(inner.area) < std::abs(outer.area);
 }
 
-/// -1: a hole begins within the ring; 1: a filled region; 0: neither.
-int boundary_of(const std::vector<Ring>& rings, const std::vector<std::uint32_t>& around, std::uint32_t ring,
-                bool by_winding) {
-  const auto turn = [&](std::uint32_t k) { return rings[k].area > 0 ? 1 : -1; };
-  int winding = 0;
-  for (const std::uint32_t k : around) winding += turn(k);
-  const int within = winding + turn(ring);
-  const auto is_filled = [&](int number) { return by_winding ? number != 0 : number % 2 != 0; };
-  return int(is_filled(within)) - int(is_filled(winding));
-}
-
 }  // namespace
 
 Outlines find_outlines(const std::vector<CutSegment>& segments, const Execution& execution) {
@@ -269,12 +258,16 @@ std::vector<Region> regions_of(Outlines outlines, const Execution& execution) {
   for (SectionOutline& outline : outlines.closed)
     if (Ring ring = ring_of(std::move(outline)); ring.area != 0) rings.push_back(std::move(ring));
   std::vector<std::vector<std::uint32_t>> around(rings.size());  // by ring: the rings that contain it
-  std::vector<int> boundary;
+  std::vector<int> boundary;  // -1: a hole begins within the ring; 1: a filled region; 0: neither
+  const auto turn = [&](std::uint32_t k) { return rings[k].area > 0 ? 1 : -1; };
+  const auto is_filled = [&](int winding) { return outlines.is_wound_alike ? winding != 0 : winding % 2 != 0; };
   for (std::uint32_t i = 0; i < rings.size(); ++i) {
     check_cancelled(execution);
     for (std::uint32_t k = 0; k < rings.size(); ++k)
       if (k != i && lies_in(rings[i], rings[k])) around[i].push_back(k);
-    boundary.push_back(boundary_of(rings, around[i], i, outlines.is_wound_alike));
+    int winding = 0;
+    for (const std::uint32_t k : around[i]) winding += turn(k);
+    boundary.push_back(int(is_filled(winding + turn(i))) - int(is_filled(winding)));
   }
   std::vector<Region> regions;
   std::vector<std::size_t> region_of(rings.size());

@@ -279,18 +279,6 @@ void add_features(std::uint32_t vertex, std::span<const Corner> corners, std::ui
             [](const FeatureEdge& a, const FeatureEdge& b) { return a.to < b.to; });
 }
 
-/// The sides of the edges from a vertex to higher ones, sorted by edge, then by opposite vertex.
-void find_sides(const WeldedMesh& mesh, std::uint32_t vertex, std::span<const Corner> corners,
-                std::vector<Side>& sides) {
-  sides.clear();
-  for (const Corner& corner : corners) {
-    const std::uint32_t next = corner.next(mesh), last = corner.last(mesh);
-    if (next > vertex) sides.push_back({next, corner.triangle(), last, true});
-    if (last > vertex) sides.push_back({last, corner.triangle(), next, false});
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key() < b.key(); });
-}
-
 struct OwnedSide {
   Side side;
   SurfaceOf surface;
@@ -356,7 +344,16 @@ std::optional<Drawn> drawn_of(std::span<const Side> sides, std::span<const Side>
   return Drawn{EdgeKind::boundary, distinct[0].triangle, distinct.size() > 1 ? distinct[1].triangle : no_index};
 }
 
-void add_features(std::span<const Side> sides, std::uint32_t v, const Classifier& classifier, Features& features) {
+/// Appends the features among the edges from a vertex to higher ones. `sides` is memory.
+void add_features(std::uint32_t v, std::span<const Corner> corners, const Classifier& classifier,
+                  std::vector<Side>& sides, Features& features) {
+  sides.clear();
+  for (const Corner& corner : corners) {
+    const std::uint32_t next = corner.next(classifier.mesh), last = corner.last(classifier.mesh);
+    if (next > v) sides.push_back({next, corner.triangle(), last, true});
+    if (last > v) sides.push_back({last, corner.triangle(), next, false});
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key() < b.key(); });
   std::vector<Side> distinct;
   for (auto begin = sides.begin(); begin != sides.end();) {
     const auto end = std::find_if(begin, sides.end(), [&](const Side& s) { return s.upper != begin->upper; });
@@ -367,7 +364,7 @@ void add_features(std::span<const Side> sides, std::uint32_t v, const Classifier
       else if (side->opposite > side->upper)  // each triangle counts at one of its three edges only
         features.twins.push_back(side->triangle);
     }
-    if (const std::optional<Drawn> drawn = drawn_of({begin, end}, distinct, classifier))
+    if (const std::optional<Drawn> drawn = drawn_of({&*begin, std::size_t(end - begin)}, distinct, classifier))
       features.edges.push_back(
           {v, begin->upper, drawn->left, drawn->right, drawn->kind, classifier.outer_side(distinct)});
     begin = end;
@@ -429,8 +426,7 @@ Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const Lin
       if (star.is_paired) {
         add_features(v, table[v], star.asked, classifier, found.edges);
       } else {
-        find_sides(seen.mesh, v, table[v], sides);
-        add_features(sides, v, classifier, found);
+        add_features(v, table[v], classifier, sides, found);
       }
     }
     edges[begin / kVerticesPerPart] = std::move(found.edges);

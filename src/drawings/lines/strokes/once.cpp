@@ -24,7 +24,16 @@ class OverlapRemover {
 
   /// Appends the uncovered stretches of `line` to `fresh`. \returns how many lines were compared with it.
   std::size_t lay(const Line& line, std::vector<LineSegment>& fresh) {
-    const std::size_t compared = find_covered(line);
+    covered_.clear();
+    ++asking_;
+    const std::size_t compared = index_.for_each(line, [&](std::span<const std::uint32_t> numbers) {
+      for (const std::uint32_t other : numbers) {
+        if (asked_[other] == asking_) continue;
+        asked_[other] = asking_;
+        const Stretch there = near_.overlap(line, laid_[other]);
+        if (there.end > there.begin) covered_.push_back(there);
+      }
+    });
     if (covered_.empty()) {
       add(line, fresh);
       return compared;
@@ -46,19 +55,6 @@ class OverlapRemover {
   }
 
  private:
-  std::size_t find_covered(const Line& line) {
-    covered_.clear();
-    ++asking_;
-    return index_.for_each(line, [&](std::span<const std::uint32_t> numbers) {
-      for (const std::uint32_t other : numbers) {
-        if (asked_[other] == asking_) continue;
-        asked_[other] = asking_;
-        const Stretch there = near_.overlap(line, laid_[other]);
-        if (there.end > there.begin) covered_.push_back(there);
-      }
-    });
-  }
-
   void add(const Line& line, std::vector<LineSegment>& fresh) {
     fresh.push_back(line);
     index_.add(std::uint32_t(laid_.size()), line);
