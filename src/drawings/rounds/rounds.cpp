@@ -84,7 +84,14 @@ class RevolvedFinder {
     for (const glm::dvec3& p : corners) moments += glm::outerProduct(p - middle, p - middle);
     const auto axis = odd_direction(moments);
     if (!axis) return std::nullopt;
-    std::vector<Polar> polar = seen_from({middle, *axis, 0}, corners);
+    const Tube tube{middle, *axis, 0};
+    const Across across(*axis);
+    std::vector<Polar> polar;
+    for (const glm::dvec3& p : corners) {
+      const glm::dvec3 out = tube.outwards(p);
+      polar.push_back({glm::dot(p - middle, *axis), glm::length(out),
+                       std::atan2(glm::dot(out, across.v), glm::dot(out, across.u))});
+    }
     const auto by_radius = [](const Polar& a, const Polar& b) { return a.radius < b.radius; };
     const auto by_height = [](const Polar& a, const Polar& b) { return a.height < b.height; };
     const auto [thinnest, widest] = std::minmax_element(polar.begin(), polar.end(), by_radius);
@@ -116,17 +123,6 @@ class RevolvedFinder {
     const double radius = glm::distance(middle, corners[0]);
     return std::all_of(corners.begin(), corners.end(),
                        [&](const glm::dvec3& p) { return std::abs(glm::distance(middle, p) - radius) <= slack_; });
-  }
-
-  [[nodiscard]] static std::vector<Polar> seen_from(const Tube& tube, const std::vector<glm::dvec3>& corners) {
-    const Across across(tube.axis);
-    std::vector<Polar> polar;
-    for (const glm::dvec3& p : corners) {
-      const glm::dvec3 out = tube.outwards(p);
-      polar.push_back({glm::dot(p - tube.point, tube.axis), glm::length(out),
-                       std::atan2(glm::dot(out, across.v), glm::dot(out, across.u))});
-    }
-    return polar;
   }
 
   /// Calls use(begin, end) for each run of vertices whose sorted values are within a ring's tolerance of each other.

@@ -51,8 +51,17 @@ class Chainer {
         least_cosine_(least_cosine) {}
 
   void run(const Execution& execution) {
-    join_all(execution);
+    std::vector<std::pair<std::uint32_t, ChainEnd>> all(2 * edges_.size());
+    for (ChainEnd end = 0; end < all.size(); ++end) all[end] = {vertex(end), end};
+    std::sort(all.begin(), all.end());
     std::size_t steps = 0;
+    for (auto begin = all.begin(); begin != all.end();) {
+      if (++steps % 65536 == 0) check_cancelled(execution);
+      const auto end = std::find_if(begin, all.end(), [&](const auto& e) { return e.first != begin->first; });
+      const auto count = std::size_t(end - begin);
+      if (count <= kMostAtVertex) join({&*begin, count});
+      begin = end;
+    }
     for_each_chain(next_, [&](const std::vector<ChainEnd>& ends, bool is_closed) {
       if (++steps % 65536 == 0) check_cancelled(execution);
       if (ends.size() < kFewestSides) return;
@@ -74,20 +83,6 @@ class Chainer {
   /// The unit direction of the edge, away from this end.
   [[nodiscard]] glm::dvec3 direction(ChainEnd end) const {
     return unit_of(mesh_.mesh.positions[vertex(end ^ 1)] - mesh_.mesh.positions[vertex(end)]);
-  }
-
-  void join_all(const Execution& execution) {
-    std::vector<std::pair<std::uint32_t, ChainEnd>> ends(2 * edges_.size());
-    for (ChainEnd end = 0; end < ends.size(); ++end) ends[end] = {vertex(end), end};
-    std::sort(ends.begin(), ends.end());
-    std::size_t steps = 0;
-    for (auto begin = ends.begin(); begin != ends.end();) {
-      if (++steps % 65536 == 0) check_cancelled(execution);
-      const auto end = std::find_if(begin, ends.end(), [&](const auto& e) { return e.first != begin->first; });
-      const auto count = std::size_t(end - begin);
-      if (count <= kMostAtVertex) join({&*begin, count});
-      begin = end;
-    }
   }
 
   /// Joins the straightest pairs first.

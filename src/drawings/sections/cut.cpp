@@ -140,13 +140,6 @@ constexpr int style_count = 6;
 constexpr std::size_t most_compared = 2048;
 constexpr double spacings[] = {1, 0.7, 1.4};  // two angles of each
 
-Box box_of(const CutFace& face) {
-  Box box;
-  for (const std::vector<glm::vec3>& outline : face.outlines)
-    for (const glm::vec3& p : outline) box.include(p);
-  return box;
-}
-
 bool may_touch(const Box& a, const Box& b) {
   return glm::all(glm::lessThanEqual(a.low, b.high)) && glm::all(glm::lessThanEqual(b.low, a.high));
 }
@@ -202,7 +195,11 @@ std::vector<std::uint8_t> hatch_styles(std::span<const Section* const> sections)
   for (const Section* const section : sections) styles.resize(std::max(styles.size(), section->scene.instances.size()));
   std::vector<PlacedFace> faces;
   for (std::size_t i = 0; i < sections.size(); ++i)
-    for (const CutFace& face : sections[i]->faces) faces.push_back({face.instance, i, box_of(face)});
+    for (const CutFace& face : sections[i]->faces) {
+      faces.push_back({face.instance, i, {}});
+      for (const std::vector<glm::vec3>& outline : face.outlines)
+        for (const glm::vec3& p : outline) faces.back().box.include(p);
+    }
   std::stable_sort(faces.begin(), faces.end(),
                    [](const PlacedFace& a, const PlacedFace& b) { return a.instance < b.instance; });
   for (std::size_t begin = 0, end = 0; begin < faces.size(); begin = end) {

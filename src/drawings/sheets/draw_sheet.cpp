@@ -303,13 +303,6 @@ void place_tones(PlannedView& view, const SheetOptions& options, const Execution
   }
 }
 
-void place_centre_lines(PlannedView& view, const SheetOptions& options) {
-  if (!view.rounds || !wants_centre_lines(options)) return;
-  const double overshoot = std::min(centre_overshoot / view.placed.millimetres_per_pixel, 1e6);
-  view.placed.centre_lines =
-      centre_lines_of(*view.rounds, view.drawing, view.placed.strokes, {view.shows_hidden, overshoot});
-}
-
 std::vector<DimensionedView> dimensioned_views(const std::vector<PlannedView>& views) {
   std::vector<DimensionedView> all;
   for (const PlannedView& planned : views) {
@@ -391,7 +384,10 @@ Sheet finish(std::vector<PlannedView> views, const Surfaces& surfaces, const She
   hatch_sections(views, options, execution);
   for (PlannedView& view : views) {
     place_tones(view, options, execution);
-    place_centre_lines(view, options);
+    if (!view.rounds || !wants_centre_lines(options)) continue;
+    const double overshoot = std::min(centre_overshoot / view.placed.millimetres_per_pixel, 1e6);
+    view.placed.centre_lines =
+        centre_lines_of(*view.rounds, view.drawing, view.placed.strokes, {view.shows_hidden, overshoot});
   }
   report_progress(execution, "page", 0);
   const LinePens pens = pens_of(options);

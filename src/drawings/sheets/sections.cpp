@@ -27,14 +27,6 @@ constexpr int first_own_column = 3;                      // behind those of all 
               reason);
 }
 
-/// The axis whose direction is nearest to `direction`.
-Axis axis_towards(const glm::dvec3& direction) {
-  int axis = 0;
-  for (int k = 1; k < 3; ++k)
-    if (std::abs(direction[k]) > std::abs(direction[axis])) axis = k;
-  return Axis(direction[axis] > 0 ? axis : axis + 3);
-}
-
 /// By section, the view that marks its cutting plane: the first view, or other section, that sees the plane edge-on.
 std::vector<std::size_t> hosts_of(const std::vector<PlannedView>& views) {
   std::vector<std::size_t> hosts(views.size(), views.size());
@@ -89,8 +81,11 @@ std::shared_ptr<const Surfaces> surfaces_of(std::shared_ptr<const Scene> scene, 
 }
 
 void cut_surfaces(PlannedView& view, const SectionView& wanted, const View& camera, const Execution& execution) {
-  view.plane.towards = axis_towards(-camera.forward());
-  const int axis = int(view.plane.towards) % 3;
+  const glm::dvec3 towards = -camera.forward();
+  int axis = 0;  // the one that is nearest to this direction
+  for (int k = 1; k < 3; ++k)
+    if (std::abs(towards[k]) > std::abs(towards[axis])) axis = k;
+  view.plane.towards = Axis(towards[axis] > 0 ? axis : axis + 3);
   const Box& box = view.surfaces->bounds();
   const double origin = view.surfaces->scene().origin[axis], low = box.low[axis], high = box.high[axis];
   view.plane.at = wanted.at ? *wanted.at - origin : (low + high) / 2;

@@ -383,15 +383,6 @@ auto order(const Crossing& c) {
   return std::make_tuple(a.x, a.y, a.z, b.x, b.y, b.z, c.left, c.right);
 }
 
-/// Puts the lesser end first, and drops segments whose ends were rounded to one place.
-void order_ends(std::vector<Crossing>& crossings) {
-  for (Crossing& c : crossings) {
-    const glm::dvec3 &p = c.from.place, &q = c.to.place;
-    if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(c.from, c.to);
-  }
-  std::erase_if(crossings, [](const Crossing& c) { return c.from.place == c.to.place; });
-}
-
 }  // namespace
 
 std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features, const Execution& execution) {
@@ -432,7 +423,12 @@ std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& fea
   });
   std::vector<Crossing> all = joined(crossings, execution);
   add_contacts(mesh, features, joined(contacts, execution), all);
-  order_ends(all);
+  for (Crossing& c : all) {  // the lesser end is the first
+    const glm::dvec3 &p = c.from.place, &q = c.to.place;
+    if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(c.from, c.to);
+  }
+  // The ends of some were rounded to one place.
+  std::erase_if(all, [](const Crossing& c) { return c.from.place == c.to.place; });
   sort_in_parts(
       all, [](const Crossing& a, const Crossing& b) { return order(a) < order(b); }, execution);
   const auto is_same_line = [](const Crossing& a, const Crossing& b) {

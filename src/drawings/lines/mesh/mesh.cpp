@@ -135,18 +135,6 @@ bool is_straight(const Positions& at, const glm::uvec3& t) {
   return normal[0].sign() == 0 && normal[1].sign() == 0 && normal[2].sign() == 0;
 }
 
-/// The numbers of the triangles without area, ascending.
-std::vector<std::uint32_t> fillers_of(const WeldedMesh& mesh, const Buffer<std::int8_t>& facing,
-                                      const Execution& execution) {
-  std::vector<std::uint32_t> fillers;
-  for (std::uint32_t i = 0; i < facing.size(); ++i) {
-    if (i % kSeamsPerPoll == 0) check_cancelled(execution);
-    // A triangle without area is seen edge-on from every eye.
-    if (facing[i] == 0 && is_straight(mesh.positions, mesh.triangles[i])) fillers.push_back(i);
-  }
-  return fillers;
-}
-
 /// The lines of fillers, and the fillers' sides on them.
 class Seams {
  public:
@@ -352,7 +340,12 @@ WeldedMesh weld(const Surfaces& surfaces, const Execution& execution) {
 }
 
 bool close_seams(WeldedMesh& mesh, const Buffer<std::int8_t>& facing, const Execution& execution) {
-  const std::vector<std::uint32_t> fillers = fillers_of(mesh, facing, execution);
+  std::vector<std::uint32_t> fillers;
+  for (std::uint32_t i = 0; i < facing.size(); ++i) {
+    if (i % kSeamsPerPoll == 0) check_cancelled(execution);
+    // A triangle without area is seen edge-on from every eye.
+    if (facing[i] == 0 && is_straight(mesh.positions, mesh.triangles[i])) fillers.push_back(i);
+  }
   if (fillers.empty()) return false;
   Seams seams(mesh, fillers, execution);
   leave_out(mesh, fillers);
