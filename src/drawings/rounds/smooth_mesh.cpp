@@ -22,22 +22,6 @@ constexpr double kSixDigits = 2e-6;  // of the largest coordinate
 /// More edges at one vertex belong to no circle, and would take the square of their number.
 constexpr std::size_t kMostAtVertex = 16;
 
-std::vector<SharpEdge> sharp_edges(const SmoothMesh& mesh, const Execution& execution) {
-  const std::size_t triangles = mesh.mesh.triangles.size();
-  std::vector<std::vector<SharpEdge>> lists((triangles + kTrianglesPerPart - 1) / kTrianglesPerPart);
-  parallel_for(execution, triangles, kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
-    std::vector<SharpEdge>& list = lists[begin / kTrianglesPerPart];
-    for (auto t = std::uint32_t(begin); t < end; ++t)
-      for (int k = 0; k < 3; ++k) {
-        const std::uint32_t other = mesh.across(t, k);
-        if ((other != no_index && other < t) || mesh.is_smooth(t, k)) continue;
-        const glm::uvec3& corners = mesh.mesh.triangles[t];
-        list.push_back({corners[k], corners[(k + 1) % 3], t, other});
-      }
-  });
-  return joined(lists, execution);
-}
-
 /// An end of an edge: edge i has the ends 2 i and 2 i + 1.
 using ChainEnd = std::uint32_t;
 
@@ -146,8 +130,18 @@ SmoothMesh smooth_mesh(const Surfaces& surfaces, const Execution& execution) {
 }
 
 SharpChains sharp_chains(const SmoothMesh& mesh, const Execution& execution, double least_cosine) {
-  SharpChains all;
-  all.edges = sharp_edges(mesh, execution);
+  const std::size_t triangles = mesh.mesh.triangles.size();
+  std::vector<std::vector<SharpEdge>> lists((triangles + kTrianglesPerPart - 1) / kTrianglesPerPart);
+  parallel_for(execution, triangles, kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
+    for (auto t = std::uint32_t(begin); t < end; ++t)
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t other = mesh.across(t, k);
+        if ((other != no_index && other < t) || mesh.is_smooth(t, k)) continue;
+        const glm::uvec3& corners = mesh.mesh.triangles[t];
+        lists[begin / kTrianglesPerPart].push_back({corners[k], corners[(k + 1) % 3], t, other});
+      }
+  });
+  SharpChains all{joined(lists, execution), {}};
   if (all.edges.size() >= std::size_t(1) << 31)
     throw Error(ErrorCode::limit_exceeded, "rounds", "more than 2147483647 sharp edges");
   Chainer(mesh, all, least_cosine).run(execution);

@@ -122,20 +122,6 @@ CutFace close(const std::vector<CutSegment>& segments, const PlaneAxes& plane, s
   return face;
 }
 
-/// The scene without objects. Materials lose their textures, for which the face has no coordinates.
-Scene without_objects(const Scene& from) {
-  Scene scene;
-  scene.name = from.name;
-  scene.up = from.up;
-  scene.origin = from.origin;
-  scene.cameras = from.cameras;
-  for (Material material : from.materials) {
-    for (TextureUse* const use : texture_uses_of(material)) *use = {};
-    scene.materials.push_back(std::move(material));
-  }
-  return scene;
-}
-
 constexpr int style_count = 6;
 constexpr std::size_t most_compared = 2048;
 constexpr double spacings[] = {1, 0.7, 1.4};  // two angles of each
@@ -168,14 +154,22 @@ Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution
   const IeeeScope ieee;
   const Scene& whole = surfaces.scene();
   const PlaneAxes axes(plane);
-  Section section{without_objects(whole), {}};
+  Section section;
+  Scene& scene = section.scene;
+  scene.name = whole.name;
+  scene.up = whole.up;
+  scene.origin = whole.origin;
+  scene.cameras = whole.cameras;
+  scene.materials = whole.materials;
+  for (Material& material : scene.materials)  // the face has no coordinates of textures
+    for (TextureUse* const use : texture_uses_of(material)) *use = {};
   for (std::uint32_t i = 0; i < whole.instances.size(); ++i) {
     const Instance& instance = whole.instances[i];
     const Mesh& mesh = whole.meshes[instance.mesh];
     ObjectCutter cutter(axes, mesh, surfaces.is_mirrored(i));
     cutter.run(ToWorld(instance.world_from_mesh), execution);
     if (!cutter.segments.empty()) {
-      std::vector<Material>& materials = section.scene.materials;
+      std::vector<Material>& materials = scene.materials;
       section.faces.push_back(close(cutter.segments, axes, std::uint32_t(materials.size()), cutter.left, execution));
       section.faces.back().instance = i;
       // The material of the object's other triangles, under the object's name.
@@ -183,8 +177,8 @@ Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution
       materials.push_back(own != no_index ? Material(materials[own]) : Material());
       materials.back().name = instance.name;
     }
-    section.scene.instances.push_back({instance.name, i, glm::dmat4(1)});
-    section.scene.meshes.push_back(std::move(cutter.left));
+    scene.instances.push_back({instance.name, i, glm::dmat4(1)});
+    scene.meshes.push_back(std::move(cutter.left));
     report_progress(execution, "cut", double(i + 1) / double(whole.instances.size()));
   }
   return section;

@@ -314,22 +314,18 @@ std::vector<DimensionedView> dimensioned_views(const std::vector<PlannedView>& v
   return all;
 }
 
-/// Reserves room in the cells for the overall sizes of their views.
-void keep_room_for_sizes(std::vector<ViewCell>& cells, const std::vector<PlannedView>& views) {
-  const std::vector<OverallSizes> sizes = overall_sizes_of(dimensioned_views(views));
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const glm::dvec2 room = room_for(sizes[i], DimensionOptions().text_height);
-    if (room.x > 0) cells[i].room_before.x = std::max(cells[i].room_before.x, views[i].taken.x + room.x);
-    if (room.y > 0) cells[i].room_behind.y = std::max(cells[i].room_behind.y, views[i].taken.y + room.y);
-  }
-}
-
 /// Sets the places of the views. \returns the plan.
 SheetPlan place_views(std::vector<PlannedView>& views, const Surfaces& surfaces, const SheetOptions& options) {
   std::vector<ViewCell> cells = cells_of(views, surfaces, options);
   place_sections(cells, views);
   keep_section_room(cells, views);
-  if (options.dimensions) keep_room_for_sizes(cells, views);
+  std::vector<OverallSizes> sizes(views.size());
+  if (options.dimensions) sizes = overall_sizes_of(dimensioned_views(views));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const glm::dvec2 room = room_for(sizes[i], DimensionOptions().text_height);
+    if (room.x > 0) cells[i].room_before.x = std::max(cells[i].room_before.x, views[i].taken.x + room.x);
+    if (room.y > 0) cells[i].room_behind.y = std::max(cells[i].room_behind.y, views[i].taken.y + room.y);
+  }
   const bool has_scale = views[0].drawing.view.projection.orthographic;
   SheetPlan plan = plan_sheet(SheetLayout(cells, glm::dvec2(gap_between_views)), options, has_scale);
   for (std::size_t i = 0; i < views.size(); ++i) {

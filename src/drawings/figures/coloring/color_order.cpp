@@ -126,7 +126,18 @@ class PolygonColors {
       shade_samples();
       for (Piece& piece : looked_at_) divide(piece);
     }
-    for (const Polygon& polygon : polygons_) emit(polygon, into);
+    for (const Polygon& polygon : polygons_) {
+      listed_.clear();
+      for (std::uint32_t i = polygon.first_slot; i != no_index; i = slots_[i].next)
+        if (slots_[i].kept != no_index) listed_.push_back(&kept_[slots_[i].kept]);
+      for (std::uint32_t i = 0; i < listed_.size(); ++i) listed_[i]->group = i;
+      if (polygon.is_grouped) group_listed();
+      for (std::size_t i = 0; i < listed_.size(); ++i) {
+        const Kept& piece = *listed_[i];
+        if (i == 0 || listed_[i - 1]->group != piece.group) into.begin_shape(rounded(piece.color));
+        into.add_polygon(polygon.outline.id, piece.corners);
+      }
+    }
   }
 
  private:
@@ -346,21 +357,8 @@ class PolygonColors {
     return lines;
   }
 
-  void emit(const Polygon& polygon, ColoredOrder& into) {
-    listed_.clear();
-    for (std::uint32_t i = polygon.first_slot; i != no_index; i = slots_[i].next)
-      if (slots_[i].kept != no_index) listed_.push_back(&kept_[slots_[i].kept]);
-    for (std::uint32_t i = 0; i < listed_.size(); ++i) listed_[i]->group = i;
-    if (polygon.is_grouped) group_kept();
-    for (std::size_t i = 0; i < listed_.size(); ++i) {
-      const Kept& piece = *listed_[i];
-      if (i == 0 || listed_[i - 1]->group != piece.group) into.begin_shape(rounded(piece.color));
-      into.add_polygon(polygon.outline.id, piece.corners);
-    }
-  }
-
   /// Replaces nearly equal colours by the first of them, so that pieces can be merged.
-  void group_kept() {
+  void group_listed() {
     ColorGroups groups(options_.tolerance * (1 - kWithin));
     for (Kept* const piece : listed_) piece->group = groups.find_or_add(piece->color);
     for (Kept* const piece : listed_) piece->color = groups.colors()[piece->group];
