@@ -24,22 +24,18 @@ constexpr double kSmallestRadius = 50;  // in units of noise: smaller circles ca
 constexpr double kSameCircle = 64;      // in units of noise: the uncertainty of the centres of short arcs
 constexpr std::size_t kLargestStep = std::size_t(1) << 20;
 
-class RunFinder {
- public:
-  RunFinder(const SmoothMesh& mesh, const SharpChains& all, const SharpChain& chain)
-      : mesh_(mesh), all_(all), chain_(chain), sides_(chain.edges.size()) {}
-
+struct RunFinder {
   void append_to(std::vector<FoundCircle>& found) const {
-    if (chain_.is_closed && sides_ >= 18) {
-      const auto circle = circle_through(corner(0), corner(sides_ / 3), corner(2 * sides_ / 3));
-      const auto turn = circle ? turn_along(*circle, 0, sides_) : std::nullopt;
+    if (chain.is_closed && sides >= 18) {
+      const auto circle = circle_through(corner(0), corner(sides / 3), corner(2 * sides / 3));
+      const auto turn = circle ? turn_along(*circle, 0, sides) : std::nullopt;
       if (turn && std::abs(std::abs(*turn) - kWhole) < 1e-6)
-        return found.push_back({*circle, {{corner(0), corner(0), kWhole}}, triangles_of(0, sides_)});
+        return found.push_back({*circle, {{corner(0), corner(0), kWhole}}, triangles_of(0, sides)});
     }
     // The first vertex of a closed chain may lie in the middle of an arc, whose two parts are united later.
-    for (std::size_t at = 0; at + kFewestSides <= sides_;) {
+    for (std::size_t at = 0; at + kFewestSides <= sides;) {
       const std::size_t end = longest_run(
-          at, kFewestSides, sides_, [&](std::size_t last) { return fit(at, last).has_value(); }, kLargestStep);
+          at, kFewestSides, sides, [&](std::size_t last) { return fit(at, last).has_value(); }, kLargestStep);
       // A circle through three points has their orientation.
       if (const auto arc = end > at ? fit(at, end) : std::nullopt; arc && arc->second >= kShortestArc)
         found.push_back({arc->first, {{corner(at), corner(end), arc->second}}, triangles_of(at, end)});
@@ -47,21 +43,20 @@ class RunFinder {
     }
   }
 
- private:
   [[nodiscard]] glm::dvec3 corner(std::size_t i) const {
-    return mesh_.mesh.positions[chain_.vertices[i % chain_.vertices.size()]];
+    return mesh.mesh.positions[chain.vertices[i % chain.vertices.size()]];
   }
 
   /// The angle around the circle of the sides from `first` to `last`; none if they are not chords of it.
   [[nodiscard]] std::optional<double> turn_along(const Circle3& circle, std::size_t first, std::size_t last) const {
-    if (!(circle.radius >= kSmallestRadius * mesh_.noise)) return std::nullopt;
+    if (!(circle.radius >= kSmallestRadius * mesh.noise)) return std::nullopt;
     double turn = 0;
     for (std::size_t i = first; i < last; ++i) {
       const double by = circle.turn_between(corner(i), corner(i + 1));
       if (!(std::abs(by) <= kWidestStep && by * turn >= 0)) return std::nullopt;
       turn += by;
     }
-    const double slack = std::max(mesh_.noise, sagitta(circle.radius, turn / double(last - first)) / 4);
+    const double slack = std::max(mesh.noise, sagitta(circle.radius, turn / double(last - first)) / 4);
     for (std::size_t i = first; i <= last; ++i)
       if (!(circle.distance(corner(i)) <= slack)) return std::nullopt;
     return turn;
@@ -78,17 +73,17 @@ class RunFinder {
   [[nodiscard]] std::vector<std::uint32_t> triangles_of(std::size_t first, std::size_t last) const {
     std::vector<std::uint32_t> triangles;
     for (std::size_t i = first; i < last; ++i) {
-      const SharpEdge& edge = all_.edges[chain_.edges[i]];
+      const SharpEdge& edge = all.edges[chain.edges[i]];
       triangles.push_back(edge.left);
       if (edge.right != no_index) triangles.push_back(edge.right);
     }
     return triangles;
   }
 
-  const SmoothMesh& mesh_;
-  const SharpChains& all_;
-  const SharpChain& chain_;
-  const std::size_t sides_;
+  const SmoothMesh& mesh;
+  const SharpChains& all;
+  const SharpChain& chain;
+  const std::size_t sides = chain.edges.size();
 };
 
 /// Unites arcs that lie on one circle.
@@ -410,7 +405,7 @@ std::vector<FoundCircle> find_circles(const SmoothMesh& mesh, const Execution& e
   std::vector<std::vector<FoundCircle>> lists((all.chains.size() + chains_per_part - 1) / chains_per_part);
   parallel_for(execution, all.chains.size(), chains_per_part, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      RunFinder(mesh, all, all.chains[i]).append_to(lists[begin / chains_per_part]);
+      RunFinder{mesh, all, all.chains[i]}.append_to(lists[begin / chains_per_part]);
   });
   std::vector<FoundCircle> circles;
   ArcJoiner joiner(mesh.noise, circles);

@@ -20,9 +20,7 @@ namespace frontmost::detail {
 inline constexpr std::string_view clear_letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";
 
 /// A rectangle of the page, in millimetres.
-struct PageBox {
-  glm::dvec2 low{0}, high{0};
-};
+using PageBox = DrawingBounds;
 
 /// An arrowhead, three pen widths wide and `length` millimetres long: two triangles so slender that the pen fills them.
 inline void add_arrowhead(PageGroup& group, const glm::dvec2& tip, const glm::dvec2& pointing, double length) {

@@ -74,16 +74,12 @@ class Wedges {
   std::vector<Wedge> wedges_;
 };
 
-class Contacts {
- public:
-  Contacts(const WeldedMesh& mesh, const Features& features, const std::vector<EdgeContact>& contacts)
-      : mesh_(mesh), features_(features), wedges_(mesh, contacts) {}
-
+struct Contacts {
   [[nodiscard]] std::optional<Crossing> crossing(const EdgeContact& contact) const {
     const Edge edge{contact.from, contact.to};
-    const Wedge& wedge = wedges_.of(edge);
+    const Wedge& wedge = wedges.of(edge);
     if (wedge.count != 2 || is_drawn(edge)) return std::nullopt;
-    const glm::uvec3& t = mesh_.triangles[contact.triangle];
+    const glm::uvec3& t = mesh.triangles[contact.triangle];
     const int above = turn(t.x, t.y, t.z, wedge.apexes[0]), below = turn(t.x, t.y, t.z, wedge.apexes[1]);
     if (above == 0 && below == 0) return std::nullopt;
     // An apex in the triangle's plane puts all corners of its own triangle in one plane with the edge.
@@ -97,18 +93,17 @@ class Contacts {
     return std::nullopt;
   }
 
- private:
   [[nodiscard]] bool is_drawn(const Edge& edge) const {
-    const auto it = std::lower_bound(features_.edges.begin(), features_.edges.end(), edge,
+    const auto it = std::lower_bound(features.edges.begin(), features.edges.end(), edge,
                                      [](const FeatureEdge& feature, const Edge& wanted) {
                                        return Edge{feature.from, feature.to} < wanted;
                                      });
-    return it != features_.edges.end() && Edge{it->from, it->to} == edge;
+    return it != features.edges.end() && Edge{it->from, it->to} == edge;
   }
 
   [[nodiscard]] Signed height(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t x) const {
     if (x == a || x == b || x == c) return {};
-    const Positions& at = mesh_.positions;
+    const Positions& at = mesh.positions;
     return FacePlane(at[a], at[b], at[c]).height(at[x]);
   }
   [[nodiscard]] int turn(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t x) const {
@@ -116,15 +111,15 @@ class Contacts {
   }
   /// Order along a line. Precondition: both points are on that line.
   [[nodiscard]] bool is_before(std::uint32_t a, std::uint32_t b) const {
-    const glm::dvec3 p = mesh_.positions[a], q = mesh_.positions[b];
+    const glm::dvec3 p = mesh.positions[a], q = mesh.positions[b];
     return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
   }
-  [[nodiscard]] CrossingEnd end_at(std::uint32_t vertex) const { return {mesh_.positions[vertex], {vertex, vertex}}; }
+  [[nodiscard]] CrossingEnd end_at(std::uint32_t vertex) const { return {mesh.positions[vertex], {vertex, vertex}}; }
 
   /// The part of the edge that lies in a triangle with corners on both sides of it.
   [[nodiscard]] std::optional<Crossing> within(const Edge& edge, const Wedge& wedge, std::uint32_t triangle,
                                                const int (&sides)[3]) const {
-    const glm::uvec3& t = mesh_.triangles[triangle];
+    const glm::uvec3& t = mesh.triangles[triangle];
     const std::uint32_t apex = wedge.apexes[0];
     std::vector<CrossingEnd> ends;
     for (const std::uint32_t vertex : {edge.from, edge.to}) {
@@ -140,7 +135,7 @@ class Contacts {
       const std::uint32_t p = std::min(t[k], t[(k + 1) % 3]), q = std::max(t[k], t[(k + 1) % 3]);
       const Signed from = height(p, q, apex, edge.from), to = height(p, q, apex, edge.to);
       if (sides[k] * sides[(k + 1) % 3] < 0 && from.sign * to.sign < 0)
-        ends.push_back({place_between(mesh_.positions[edge.from], mesh_.positions[edge.to], root_between(from, to)),
+        ends.push_back({place_between(mesh.positions[edge.from], mesh.positions[edge.to], root_between(from, to)),
                         {edge.from, edge.to}});
     }
     if (ends.size() != 2) return std::nullopt;
@@ -150,7 +145,7 @@ class Contacts {
   /// The common part of two edges of one line, if their triangles alternate around it.
   [[nodiscard]] std::optional<Crossing> along(const Edge& one, std::uint32_t p, std::uint32_t q) const {
     const Edge other{std::min(p, q), std::max(p, q)};
-    const Wedge &own = wedges_.of(one), &wedge = wedges_.of(other);
+    const Wedge &own = wedges.of(one), &wedge = wedges.of(other);
     if (wedge.count != 2 || is_drawn(other)) return std::nullopt;
     if (place_in(one, wedge, 0) * place_in(one, wedge, 1) >= 0) return std::nullopt;
     const auto ordered = [&](Edge e) { return is_before(e.from, e.to) ? e : Edge{e.to, e.from}; };
@@ -164,7 +159,7 @@ class Contacts {
   /// Where a triangle of `other` lies around an edge: 1 between its two triangles in one sense of rotation, -1 between
   /// them in the other sense, 0 on one of them.
   [[nodiscard]] int place_in(const Edge& edge, const Wedge& other, int which) const {
-    const Wedge& own = wedges_.of(edge);
+    const Wedge& own = wedges.of(edge);
     const std::uint32_t first = own.apexes[0], second = own.apexes[1], x = other.apexes[which];
     const auto around = [&](std::uint32_t a, std::uint32_t b) { return turn(edge.from, edge.to, a, b); };
     // A point beside the first triangle's plane distinguishes that triangle's half plane from the opposite one.
@@ -184,9 +179,9 @@ class Contacts {
     return at == 2 ? 0 : around(x, second);
   }
 
-  const WeldedMesh& mesh_;
-  const Features& features_;
-  const Wedges wedges_;
+  const WeldedMesh& mesh;
+  const Features& features;
+  const Wedges wedges;
 };
 
 }  // namespace
@@ -196,7 +191,7 @@ void add_contacts(const WeldedMesh& mesh, const Features& features, std::vector<
   if (contacts.empty()) return;
   std::sort(contacts.begin(), contacts.end());
   contacts.erase(std::unique(contacts.begin(), contacts.end()), contacts.end());
-  const Contacts all(mesh, features, contacts);
+  const Contacts all{mesh, features, Wedges(mesh, contacts)};
   for (const EdgeContact& contact : contacts)
     if (const std::optional<Crossing> found = all.crossing(contact)) crossings.push_back(*found);
 }

@@ -40,7 +40,6 @@ struct Extent {
 };
 
 struct MeasuredView {
-  bool is_empty = true;
   PageBox box;                        ///< the box of all drawn lines
   std::vector<SeenCircle> circles;    ///< seen along their axes, and drawn to at least a fifth
   std::vector<const Round*> undrawn;  ///< cylinders that are seen along their axes, but drawn less
@@ -51,8 +50,7 @@ struct MeasuredView {
     const Projection& p = camera.projection;
     millimetres_ = camera.width / (p.right - p.left) * view.sheet->millimetres_per_pixel;
     const DrawingBounds drawn = bounds_of(*view.drawing, true);
-    is_empty = drawn.is_empty();
-    if (is_empty) return;
+    if (drawn.is_empty()) return;
     box = {view.sheet->on_page(drawn.low), view.sheet->on_page(drawn.high)};
     if (view.rounds == nullptr) return;
     for (const Round& prism : view.rounds->prisms)
@@ -441,7 +439,7 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
   DimensionPen pen(options, obstacles);
   Diameters diameters(options, pen, obstacles);
   for (std::size_t i = 0; i < views.size(); ++i) {
-    if (measured[i].is_empty) continue;
+    if (measured[i].box.is_empty()) continue;
     for (const int axis : {0, 1}) {
       if (!(axis == 0 ? shares[i].width : shares[i].height)) continue;
       const Extent extent = measured[i].extent(axis);
