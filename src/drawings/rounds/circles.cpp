@@ -249,14 +249,11 @@ struct Seeds {
   }
 };
 
-class WallGrower {
- public:
-  explicit WallGrower(const SmoothMesh& mesh) : mesh_(mesh), is_used_(mesh.mesh.triangles.size()) {}
-
+struct WallGrower {
   /// None if the seed's surface is no cylinder, or already part of one.
   [[nodiscard]] std::optional<FoundRound> grow(const Seed& seed) {
-    const std::uint32_t other = mesh_.across(seed.triangle, seed.side);
-    if (is_used_[seed.triangle] || is_used_[other] || !start(seed, other)) return std::nullopt;
+    const std::uint32_t other = mesh.across(seed.triangle, seed.side);
+    if (is_used[seed.triangle] || is_used[other] || !start(seed, other)) return std::nullopt;
     return grown(true);
   }
 
@@ -264,120 +261,119 @@ class WallGrower {
   /// chords, inside of the radius, where something else cuts the wall; a circle is precise enough to allow that.
   [[nodiscard]] std::optional<FoundRound> grow(const Circle3& circle, double step, std::uint32_t triangle,
                                                bool may_be_cut) {
-    if (is_used_[triangle]) return std::nullopt;
-    tube_ = {circle.centre, circle.axis, circle.radius};
-    slack_ = std::max(mesh_.noise, sagitta(circle.radius, step) / 4);
-    within_ = may_be_cut ? std::max(slack_, kWholeSagitta * sagitta(circle.radius, step)) : slack_;
-    outside_ = glm::dot(mesh_.normals[triangle], tube_.outwards(mesh_.corner(triangle, 0))) > 0 ? 1 : -1;
+    if (is_used[triangle]) return std::nullopt;
+    current = {circle.centre, circle.axis, circle.radius};
+    slack = std::max(mesh.noise, sagitta(circle.radius, step) / 4);
+    within = may_be_cut ? std::max(slack, kWholeSagitta * sagitta(circle.radius, step)) : slack;
+    outside = glm::dot(mesh.normals[triangle], current.outwards(mesh.corner(triangle, 0))) > 0 ? 1 : -1;
     if (!holds(triangle)) return std::nullopt;
-    triangles_.clear();
+    triangles.clear();
     take(triangle);
     return grown(false);
   }
 
- private:
   /// Grows the current triangles. The axis of a circle is not fitted.
   std::optional<FoundRound> grown(bool fits) {
-    std::size_t fitted = std::max(triangles_.size(), kFewestTriangles / 2);
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    std::size_t fitted = std::max(triangles.size(), kFewestTriangles / 2);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
       for (int k = 0; k < 3; ++k) {
-        if (!mesh_.is_smooth(triangles_[i], k)) continue;
-        const std::uint32_t next = mesh_.across(triangles_[i], k);
-        if (!is_used_[next] && holds(next)) take(next);
+        if (!mesh.is_smooth(triangles[i], k)) continue;
+        const std::uint32_t next = mesh.across(triangles[i], k);
+        if (!is_used[next] && holds(next)) take(next);
       }
-      if (!fits || triangles_.size() < 2 * fitted) continue;
-      fitted = triangles_.size();
+      if (!fits || triangles.size() < 2 * fitted) continue;
+      fitted = triangles.size();
       if (!fit()) break;
     }
-    if (triangles_.size() >= kFewestTriangles) {
+    if (triangles.size() >= kFewestTriangles) {
       if (!fits || (fit() && holds_all())) return measured();
       return std::nullopt;
     }
     // A short run of triangles may belong to a wall that begins with a better axis.
-    for (const std::uint32_t t : triangles_) is_used_[t] = false;
+    for (const std::uint32_t t : triangles) is_used[t] = false;
     return std::nullopt;
   }
 
   bool start(const Seed& seed, std::uint32_t other) {
-    const glm::dvec3 from = mesh_.corner(seed.triangle, seed.side);
-    const glm::dvec3 to = mesh_.corner(seed.triangle, (seed.side + 1) % 3);
-    const glm::dvec3 left = mesh_.corner(seed.triangle, (seed.side + 2) % 3);
+    const glm::dvec3 from = mesh.corner(seed.triangle, seed.side);
+    const glm::dvec3 to = mesh.corner(seed.triangle, (seed.side + 1) % 3);
+    const glm::dvec3 left = mesh.corner(seed.triangle, (seed.side + 2) % 3);
     glm::dvec3 right = from;
     for (int k = 0; k < 3; ++k)
-      if (const glm::dvec3 at = mesh_.corner(other, k); at != from && at != to) right = at;
+      if (const glm::dvec3 at = mesh.corner(other, k); at != from && at != to) right = at;
     const glm::dvec3 points[] = {from, left, right};
     const auto tube = tube_through(points, glm::normalize(to - from));
-    if (!tube || !(tube->radius >= kSmallestTube * mesh_.noise)) return false;
-    tube_ = *tube;
-    const double step = std::acos(std::min(1.0, glm::dot(mesh_.normals[seed.triangle], mesh_.normals[other])));
-    slack_ = within_ = std::max(mesh_.noise, sagitta(tube_.radius, step) / 4);
-    outside_ = glm::dot(mesh_.normals[seed.triangle], tube_.outwards(from)) > 0 ? 1 : -1;
-    triangles_.clear();
+    if (!tube || !(tube->radius >= kSmallestTube * mesh.noise)) return false;
+    current = *tube;
+    const double step = std::acos(std::min(1.0, glm::dot(mesh.normals[seed.triangle], mesh.normals[other])));
+    slack = within = std::max(mesh.noise, sagitta(current.radius, step) / 4);
+    outside = glm::dot(mesh.normals[seed.triangle], current.outwards(from)) > 0 ? 1 : -1;
+    triangles.clear();
     take(seed.triangle);
     take(other);
     return true;
   }
 
   void take(std::uint32_t triangle) {
-    is_used_[triangle] = true;
-    triangles_.push_back(triangle);
+    is_used[triangle] = true;
+    triangles.push_back(triangle);
   }
 
   [[nodiscard]] bool holds(std::uint32_t triangle) const {
-    const glm::dvec3& normal = mesh_.normals[triangle];
-    if (std::abs(glm::dot(normal, tube_.axis)) > kRoughlyUpright) return false;
+    const glm::dvec3& normal = mesh.normals[triangle];
+    if (std::abs(glm::dot(normal, current.axis)) > kRoughlyUpright) return false;
     for (int k = 0; k < 3; ++k) {
-      const glm::dvec3 at = mesh_.corner(triangle, k), out = tube_.outwards(at);
+      const glm::dvec3 at = mesh.corner(triangle, k), out = current.outwards(at);
       const double length = glm::length(out);
-      if (!(length - tube_.radius <= slack_ && tube_.radius - length <= within_ &&
-            outside_ * glm::dot(normal, out) >= kFacesOut * length))
+      if (!(length - current.radius <= slack && current.radius - length <= within &&
+            outside * glm::dot(normal, out) >= kFacesOut * length))
         return false;
     }
     return true;
   }
   [[nodiscard]] bool holds_all() const {
-    return std::all_of(triangles_.begin(), triangles_.end(), [&](std::uint32_t t) { return holds(t); });
+    return std::all_of(triangles.begin(), triangles.end(), [&](std::uint32_t t) { return holds(t); });
   }
 
   bool fit() {
     std::vector<glm::dvec3> normals, points;
-    for (const std::uint32_t t : triangles_) {
+    for (const std::uint32_t t : triangles) {
       // The first ring of a fillet may lie within the tolerance of the radius, but is not part of the wall.
-      if (std::abs(glm::dot(mesh_.normals[t], tube_.axis)) > kUpright) continue;
-      normals.push_back(mesh_.normals[t]);
-      for (int k = 0; k < 3; ++k) points.push_back(mesh_.corner(t, k));
+      if (std::abs(glm::dot(mesh.normals[t], current.axis)) > kUpright) continue;
+      normals.push_back(mesh.normals[t]);
+      for (int k = 0; k < 3; ++k) points.push_back(mesh.corner(t, k));
     }
     const auto tube = tube_through(points, common_perpendicular(normals));
-    if (tube) tube_ = *tube;
+    if (tube) current = *tube;
     return tube.has_value();
   }
 
   [[nodiscard]] FoundRound measured() {
-    const Across across(tube_.axis);
+    const Across across(current.axis);
     std::vector<double> angles;
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const std::uint32_t t : triangles_)
+    for (const std::uint32_t t : triangles)
       for (int k = 0; k < 3; ++k) {
-        const glm::dvec3 at = mesh_.corner(t, k), out = tube_.outwards(at);
+        const glm::dvec3 at = mesh.corner(t, k), out = current.outwards(at);
         angles.push_back(std::atan2(glm::dot(out, across.v), glm::dot(out, across.u)));
-        low = std::min(low, glm::dot(at - tube_.point, tube_.axis));
-        high = std::max(high, glm::dot(at - tube_.point, tube_.axis));
+        low = std::min(low, glm::dot(at - current.point, current.axis));
+        high = std::max(high, glm::dot(at - current.point, current.axis));
       }
     std::sort(angles.begin(), angles.end());
     double gap = angles.front() + kWhole - angles.back();
     for (std::size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
-    std::sort(triangles_.begin(), triangles_.end());
+    std::sort(triangles.begin(), triangles.end());
     const double turn = gap <= kWidestStep ? kWhole : kWhole - gap;
-    return {{RoundKind::cylinder, tube_.point + low * tube_.axis, tube_.point + high * tube_.axis, tube_.axis,
-             tube_.radius, turn, outside_ < 0},
-            triangles_};
+    return {{RoundKind::cylinder, current.point + low * current.axis, current.point + high * current.axis, current.axis,
+             current.radius, turn, outside < 0},
+            triangles};
   }
 
-  const SmoothMesh& mesh_;
-  std::vector<bool> is_used_;
-  Tube tube_{};
-  double slack_ = 0, within_ = 0, outside_ = 1;  ///< how far vertices may be outside of the radius, and inside
-  std::vector<std::uint32_t> triangles_;
+  const SmoothMesh& mesh;
+  std::vector<bool> is_used = std::vector<bool>(mesh.mesh.triangles.size());
+  Tube current{};
+  double slack = 0, within = 0, outside = 1;  ///< how far vertices may be outside of the radius, and inside
+  std::vector<std::uint32_t> triangles{};
 };
 
 }  // namespace
@@ -417,7 +413,7 @@ std::vector<FoundCircle> find_circles(const SmoothMesh& mesh, const Execution& e
 std::vector<FoundRound> find_walls(const SmoothMesh& mesh, const std::vector<FoundCircle>& circles,
                                    const Execution& execution) {
   std::vector<FoundRound> walls;
-  WallGrower grower(mesh);
+  WallGrower grower{mesh};
   const auto keep = [&](std::optional<FoundRound> wall) {
     if (wall) walls.push_back(std::move(*wall));
   };

@@ -69,11 +69,7 @@ std::optional<glm::dvec3> odd_direction(const glm::dmat3& moments) {
   return std::nullopt;
 }
 
-class RevolvedFinder {
- public:
-  explicit RevolvedFinder(const SmoothMesh& mesh)
-      : mesh_(mesh), slack_(kSameRing * mesh.noise), region_of_(mesh.mesh.positions.size(), no_index) {}
-
+struct RevolvedFinder {
   [[nodiscard]] std::optional<FoundRound> find(std::vector<std::uint32_t> region) {
     const std::vector<glm::dvec3> corners = corners_of(region);
     if (corners.size() < kFewestCorners) return std::nullopt;
@@ -98,23 +94,22 @@ class RevolvedFinder {
     const auto [lowest, highest] = std::minmax_element(polar.begin(), polar.end(), by_height);
     const double radius = widest->radius, low = lowest->height, high = highest->height;
     // Discs need no axis, walls are cylinders, and whole spheres are round about any axis.
-    if (high - low <= slack_ || radius - thinnest->radius <= slack_ || is_sphere(middle, corners)) return std::nullopt;
-    if (radius < kSmallestRevolved * mesh_.noise || !is_in_rings(polar)) return std::nullopt;
+    if (high - low <= slack || radius - thinnest->radius <= slack || is_sphere(middle, corners)) return std::nullopt;
+    if (radius < kSmallestRevolved * mesh.noise || !is_in_rings(polar)) return std::nullopt;
     return FoundRound{{RoundKind::revolved, middle + low * *axis, middle + high * *axis, *axis, radius, kWhole},
                       std::move(region)};
   }
 
- private:
   /// The vertices of the region, each once.
   [[nodiscard]] std::vector<glm::dvec3> corners_of(const std::vector<std::uint32_t>& region) {
     std::vector<glm::dvec3> corners;
     for (const std::uint32_t t : region)
       for (int k = 0; k < 3; ++k) {
-        const std::uint32_t vertex = mesh_.mesh.triangles[t][k];
+        const std::uint32_t vertex = mesh.mesh.triangles[t][k];
         // A region is identified by its first triangle.
-        if (region_of_[vertex] == region.front()) continue;
-        region_of_[vertex] = region.front();
-        corners.push_back(mesh_.mesh.positions[vertex]);
+        if (region_of[vertex] == region.front()) continue;
+        region_of[vertex] = region.front();
+        corners.push_back(mesh.mesh.positions[vertex]);
       }
     return corners;
   }
@@ -122,7 +117,7 @@ class RevolvedFinder {
   [[nodiscard]] bool is_sphere(const glm::dvec3& middle, const std::vector<glm::dvec3>& corners) const {
     const double radius = glm::distance(middle, corners[0]);
     return std::all_of(corners.begin(), corners.end(),
-                       [&](const glm::dvec3& p) { return std::abs(glm::distance(middle, p) - radius) <= slack_; });
+                       [&](const glm::dvec3& p) { return std::abs(glm::distance(middle, p) - radius) <= slack; });
   }
 
   /// Calls use(begin, end) for each run of vertices whose sorted values are within a ring's tolerance of each other.
@@ -130,8 +125,8 @@ class RevolvedFinder {
   [[nodiscard]] bool all_runs(std::span<Polar> polar, const Value& value, const Use& use) const {
     std::sort(polar.begin(), polar.end(), [&](const Polar& a, const Polar& b) { return value(a) < value(b); });
     for (std::size_t begin = 0, end = 0; begin < polar.size(); begin = end) {
-      for (end = begin + 1; end < polar.size() && value(polar[end]) - value(polar[end - 1]) <= slack_;) ++end;
-      if (value(polar[end - 1]) - value(polar[begin]) > slack_ || !use(polar.subspan(begin, end - begin))) return false;
+      for (end = begin + 1; end < polar.size() && value(polar[end]) - value(polar[end - 1]) <= slack;) ++end;
+      if (value(polar[end - 1]) - value(polar[begin]) > slack || !use(polar.subspan(begin, end - begin))) return false;
     }
     return true;
   }
@@ -139,7 +134,7 @@ class RevolvedFinder {
   /// Whether every vertex lies on the axis, or in a ring that is closed around it.
   [[nodiscard]] bool is_in_rings(std::vector<Polar>& polar) const {
     const auto is_ring = [&](std::span<Polar> ring) {
-      if (ring.front().radius <= slack_) return true;
+      if (ring.front().radius <= slack) return true;
       std::sort(ring.begin(), ring.end(), [](const Polar& a, const Polar& b) { return a.angle < b.angle; });
       double gap = ring.front().angle + kWhole - ring.back().angle;
       for (std::size_t i = 1; i < ring.size(); ++i) gap = std::max(gap, ring[i].angle - ring[i - 1].angle);
@@ -153,9 +148,10 @@ class RevolvedFinder {
         });
   }
 
-  const SmoothMesh& mesh_;
-  const double slack_;
-  std::vector<std::uint32_t> region_of_;  ///< by vertex: the last region that it was in
+  const SmoothMesh& mesh;
+  const double slack = kSameRing * mesh.noise;
+  /// By vertex: the last region that it was in.
+  std::vector<std::uint32_t> region_of = std::vector<std::uint32_t>(mesh.mesh.positions.size(), no_index);
 };
 
 constexpr std::size_t kFewestPrismSides = 7, kMostPrismSides = 17;
@@ -251,7 +247,7 @@ Rounds find_rounds(const Surfaces& surfaces, const Execution& execution) {
   }
   for (const FoundRound& wall : find_walls(mesh, circles, execution)) append(wall, mesh.mesh, all);
   std::vector<bool> is_taken(mesh.mesh.triangles.size());
-  RevolvedFinder finder(mesh);
+  RevolvedFinder finder{mesh};
   for (std::uint32_t t = 0; t < is_taken.size(); ++t) {
     if (t % 4096 == 0) check_cancelled(execution);
     if (is_taken[t]) continue;

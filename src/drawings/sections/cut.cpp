@@ -33,42 +33,34 @@ glm::vec3 meeting(const PlaneAxes& plane, glm::vec3 p, glm::vec3 q) {
 }
 
 /// One object: the remaining part, and the segments of the cut.
-class ObjectCutter {
- public:
-  ObjectCutter(const PlaneAxes& plane, const Mesh& mesh, bool is_mirrored)
-      : plane_(plane), mesh_(mesh), is_mirrored_(is_mirrored) {}
-
+struct ObjectCutter {
   void run(const ToWorld& to_world, const Execution& execution) {
-    left.name = mesh_.name;
-    left.positions.reserve(mesh_.positions.size());
-    for (const glm::vec3& p : mesh_.positions) left.positions.push_back(to_world(p) + 0.0f);
-    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+    left.name = mesh.name;
+    left.positions.reserve(mesh.positions.size());
+    for (const glm::vec3& p : mesh.positions) left.positions.push_back(to_world(p) + 0.0f);
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       if (t % triangles_per_poll == 0) check_cancelled(execution);
       add(t);
     }
   }
 
-  Mesh left;
-  std::vector<CutSegment> segments;
-
- private:
   void add(std::uint32_t number) {
-    glm::uvec3 corners = mesh_.triangles[number];
-    if (is_mirrored_) std::swap(corners.y, corners.z);
+    glm::uvec3 corners = mesh.triangles[number];
+    if (is_mirrored) std::swap(corners.y, corners.z);
     int behind = 0, odd = 0;  // odd: the corner that is alone on its side
     bool is_behind[3];
     for (int k = 0; k < 3; ++k) {
       if (!is_finite(left.positions[corners[k]])) return;
-      is_behind[k] = plane_.is_behind(left.positions[corners[k]]);
+      is_behind[k] = plane.is_behind(left.positions[corners[k]]);
       behind += is_behind[k];
     }
     if (behind == 0) return;
-    const std::uint32_t material = mesh_.material_of(number);
+    const std::uint32_t material = mesh.material_of(number);
     if (behind == 3) return add(corners, material);
     while (is_behind[odd] != (behind == 1)) ++odd;
     const std::uint32_t a = corners[odd], b = corners[odd == 2 ? 0 : odd + 1], c = corners[odd == 0 ? 2 : odd - 1];
-    const glm::vec3 on_b = meeting(plane_, left.positions[a], left.positions[b]);
-    const glm::vec3 on_c = meeting(plane_, left.positions[a], left.positions[c]);
+    const glm::vec3 on_b = meeting(plane, left.positions[a], left.positions[b]);
+    const glm::vec3 on_c = meeting(plane, left.positions[a], left.positions[c]);
     const auto first = std::uint32_t(left.positions.size());
     left.positions.push_back(on_b);
     left.positions.push_back(on_c);
@@ -88,12 +80,14 @@ class ObjectCutter {
   }
 
   void add_segment(const glm::vec3& from, const glm::vec3& to) {
-    if (from != to) segments.push_back({plane_.in_plane(from), plane_.in_plane(to)});
+    if (from != to) segments.push_back({plane.in_plane(from), plane.in_plane(to)});
   }
 
-  const PlaneAxes& plane_;
-  const Mesh& mesh_;
-  const bool is_mirrored_;
+  const PlaneAxes& plane;
+  const Mesh& mesh;
+  const bool is_mirrored;
+  Mesh left{};
+  std::vector<CutSegment> segments{};
 };
 
 /// Fills the cut of an object with triangles of the face's material.
@@ -166,7 +160,7 @@ Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution
   for (std::uint32_t i = 0; i < whole.instances.size(); ++i) {
     const Instance& instance = whole.instances[i];
     const Mesh& mesh = whole.meshes[instance.mesh];
-    ObjectCutter cutter(axes, mesh, surfaces.is_mirrored(i));
+    ObjectCutter cutter{axes, mesh, surfaces.is_mirrored(i)};
     cutter.run(ToWorld(instance.world_from_mesh), execution);
     if (!cutter.segments.empty()) {
       std::vector<Material>& materials = scene.materials;

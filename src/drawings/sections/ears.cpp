@@ -96,49 +96,45 @@ struct Rings {
 };
 
 /// Joins all holes to the outer line.
-class Joiner {
- public:
-  Joiner(Rings& rings, const Execution& execution) : rings_(rings), execution_(execution), count_(rings.size()) {}
-
+struct Joiner {
   void run() {
     std::vector<std::uint32_t> leftmost;
-    for (std::size_t k = 1; k < rings_.firsts.size(); ++k) leftmost.push_back(leftmost_of(rings_.firsts[k]));
+    for (std::size_t k = 1; k < rings.firsts.size(); ++k) leftmost.push_back(leftmost_of(rings.firsts[k]));
     // From the left, so that each hole sees a part of the outer line or of a joined hole.
     std::sort(leftmost.begin(), leftmost.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return is_left_of(rings_.at(a), rings_.at(b)); });
-    rings_.append_ring(rings_.firsts[0], joined_);
+              [&](std::uint32_t a, std::uint32_t b) { return is_left_of(rings.at(a), rings.at(b)); });
+    rings.append_ring(rings.firsts[0], joined);
     for (const std::uint32_t corner : leftmost) {
-      check_cancelled(execution_);
+      check_cancelled(execution);
       const std::uint32_t other = nearest_in_sight(corner);
-      rings_.append_ring(corner, joined_);
+      rings.append_ring(corner, joined);
       if (other == no_index) continue;  // the outlines cross; the hole is filled as if it were not there
-      if (rings_.at(other) == rings_.at(corner)) {
-        rings_.splice(other, corner);
+      if (rings.at(other) == rings.at(corner)) {
+        rings.splice(other, corner);
         continue;
       }
-      for (const std::size_t copy : {rings_.size(), rings_.size() + 1}) joined_.push_back(std::uint32_t(copy));
-      rings_.bridge(other, corner);
+      for (const std::size_t copy : {rings.size(), rings.size() + 1}) joined.push_back(std::uint32_t(copy));
+      rings.bridge(other, corner);
     }
   }
 
- private:
   [[nodiscard]] std::uint32_t leftmost_of(std::uint32_t first) const {
     std::uint32_t best = first;
-    for (std::uint32_t i = rings_.next(first); i != first; i = rings_.next(i))
-      if (is_left_of(rings_.at(i), rings_.at(best))) best = i;
+    for (std::uint32_t i = rings.next(first); i != first; i = rings.next(i))
+      if (is_left_of(rings.at(i), rings.at(best))) best = i;
     return best;
   }
 
   [[nodiscard]] std::uint32_t nearest_in_sight(std::uint32_t corner) {
-    const glm::vec2 from = rings_.at(corner);
+    const glm::vec2 from = rings.at(corner);
     const auto distance = [&](std::uint32_t i) {
-      const glm::dvec2 off = glm::dvec2(rings_.at(i)) - glm::dvec2(from);
+      const glm::dvec2 off = glm::dvec2(rings.at(i)) - glm::dvec2(from);
       return glm::dot(off, off);
     };
     using Near = std::pair<double, std::uint32_t>;
     std::vector<Near> near;
-    for (const std::uint32_t i : joined_)
-      if (!is_left_of(from, rings_.at(i))) near.emplace_back(distance(i), i);
+    for (const std::uint32_t i : joined)
+      if (!is_left_of(from, rings.at(i))) near.emplace_back(distance(i), i);
     // The first is nearly always in sight.
     std::priority_queue<Near, std::vector<Near>, std::greater<>> nearest(std::greater<>(), std::move(near));
     for (; !nearest.empty(); nearest.pop())
@@ -147,11 +143,11 @@ class Joiner {
   }
 
   [[nodiscard]] bool sees(std::uint32_t corner, std::uint32_t other) const {
-    const glm::vec2 &a = rings_.at(corner), &b = rings_.at(other);
-    if (!rings_.runs_inside(other, a != b ? a : rings_.at(rings_.next(corner)))) return false;
+    const glm::vec2 &a = rings.at(corner), &b = rings.at(other);
+    if (!rings.runs_inside(other, a != b ? a : rings.at(rings.next(corner)))) return false;
     // Tests sides of outlines only: bridges connect corners of these and cross nothing that is in sight.
-    for (std::uint32_t i = 0; i < rings_.size(); ++i) {
-      const glm::vec2 &p = rings_.at(i), &q = rings_.at(rings_.next(i));
+    for (std::uint32_t i = 0; i < rings.size(); ++i) {
+      const glm::vec2 &p = rings.at(i), &q = rings.at(rings.next(i));
       if (p == a || q == a || p == b || q == b) continue;
       const int p_side = orientation(a, b, p), q_side = orientation(a, b, q);
       if (p_side * q_side > 0) continue;
@@ -170,17 +166,17 @@ class Joiner {
   }
 
   [[nodiscard]] bool has_place_between(const glm::vec2& a, const glm::vec2& b) const {
-    for (std::uint32_t i = 0; i < count_; ++i) {
-      const glm::vec2& p = rings_.at(i);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const glm::vec2& p = rings.at(i);
       if (p != a && p != b && orientation(a, b, p) == 0 && is_left_of(a, p) != is_left_of(b, p)) return true;
     }
     return false;
   }
 
-  Rings& rings_;
-  const Execution& execution_;
-  const std::size_t count_;  ///< number of corners without bridges
-  std::vector<std::uint32_t> joined_;
+  Rings& rings;
+  const Execution& execution;
+  const std::size_t count = rings.size();  ///< number of corners without bridges
+  std::vector<std::uint32_t> joined{};
 };
 
 /// Reflex corners in the cells of a grid: only these may lie in an ear.
@@ -228,100 +224,96 @@ class ReflexGrid {
   std::vector<std::vector<std::uint32_t>> cells_;
 };
 
-class EarCutter {
- public:
-  EarCutter(Rings& rings, const std::vector<std::uint32_t>& corners, std::vector<FlatTriangle>& triangles)
-      : rings_(rings), grid_(rings, corners), is_cut_(rings.size()), left_(corners.size()), triangles_(triangles) {}
-
+struct EarCutter {
   void run(std::uint32_t corner, const Execution& execution) {
     std::size_t looked_at = 0, since_cut = 0;
     Patience patience = Patience::ears;
-    while (left_ > 2) {
+    while (left > 2) {
       if (++looked_at % corners_per_poll == 0) check_cancelled(execution);
-      const std::uint32_t next = rings_.next(corner);
+      const std::uint32_t next = rings.next(corner);
       if (may_go(corner, patience)) {
         cut(corner);
         since_cut = 0;
         patience = Patience::ears;
-        corner = rings_.next(next);  // not the next one: its triangle would be as narrow again
-        while (is_cut_[corner]) corner = rings_.next(corner);
+        corner = rings.next(next);  // not the next one: its triangle would be as narrow again
+        while (is_cut[corner]) corner = rings.next(corner);
         continue;
       }
       corner = next;
-      if (++since_cut < left_) continue;
+      if (++since_cut < left) continue;
       patience = Patience(int(patience) + 1);
       since_cut = 0;
     }
   }
 
- private:
   /// The kind of corner that may be cut off; later kinds are used when there are no earlier ones.
   enum class Patience : std::uint8_t { ears, flat, crossing, any };
 
   [[nodiscard]] bool may_go(std::uint32_t i, Patience patience) const {
-    const int turn = rings_.turn(i);
+    const int turn = rings.turn(i);
     if (turn > 0) return patience >= Patience::crossing || is_ear(i);
     return patience == Patience::any || (turn == 0 && patience >= Patience::flat);
   }
 
   [[nodiscard]] bool is_ear(std::uint32_t i) const {
-    const glm::vec2 &a = rings_.at(rings_.last(i)), &b = rings_.at(i), &c = rings_.at(rings_.next(i));
+    const glm::vec2 &a = rings.at(rings.last(i)), &b = rings.at(i), &c = rings.at(rings.next(i));
     const auto stands_in = [&](std::uint32_t k) {
-      if (is_cut_[k] || k == i || k == rings_.last(i) || k == rings_.next(i)) return false;
-      const glm::vec2& p = rings_.at(k);
+      if (is_cut[k] || k == i || k == rings.last(i) || k == rings.next(i)) return false;
+      const glm::vec2& p = rings.at(k);
       if (p == a || p == c) return false;
       // Another corner at the same place blocks the ear if one of its sides leads into it.
-      if (p == b) return leads_into(i, rings_.at(rings_.last(k))) || leads_into(i, rings_.at(rings_.next(k)));
+      if (p == b) return leads_into(i, rings.at(rings.last(k))) || leads_into(i, rings.at(rings.next(k)));
       return orientation(a, b, p) >= 0 && orientation(b, c, p) >= 0 && orientation(c, a, p) >= 0;
     };
-    return !grid_.any(glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c)), stands_in);
+    return !grid.any(glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c)), stands_in);
   }
 
   [[nodiscard]] bool leads_into(std::uint32_t ear, const glm::vec2& p) const {
-    const glm::vec2 &a = rings_.at(rings_.last(ear)), &b = rings_.at(ear), &c = rings_.at(rings_.next(ear));
+    const glm::vec2 &a = rings.at(rings.last(ear)), &b = rings.at(ear), &c = rings.at(rings.next(ear));
     return orientation(a, b, p) > 0 && orientation(b, c, p) > 0;
   }
 
   /// Cuts an ear, and spikes that it leaves, which would hide the direction of the sides beside them.
   void cut(std::uint32_t i) {
-    std::uint32_t ends[] = {rings_.last(i), rings_.next(i)};
+    std::uint32_t ends[] = {rings.last(i), rings.next(i)};
     take(i);
     for (std::uint32_t& end : ends)
-      while (left_ > 2 && !is_cut_[end] && is_spike(end)) {
-        const std::uint32_t before = rings_.last(end);
+      while (left > 2 && !is_cut[end] && is_spike(end)) {
+        const std::uint32_t before = rings.last(end);
         take(end);
         end = before;
       }
   }
 
   [[nodiscard]] bool is_spike(std::uint32_t i) const {
-    const glm::vec2 &a = rings_.at(rings_.last(i)), &b = rings_.at(i), &c = rings_.at(rings_.next(i));
+    const glm::vec2 &a = rings.at(rings.last(i)), &b = rings.at(i), &c = rings.at(rings.next(i));
     return a == b || b == c || (orientation(a, b, c) == 0 && is_left_of(a, b) == is_left_of(c, b));
   }
 
   void take(std::uint32_t i) {
-    const glm::vec2 &a = rings_.at(rings_.last(i)), &b = rings_.at(i), &c = rings_.at(rings_.next(i));
-    if (a != b && b != c && c != a) triangles_.push_back({a, b, c});
-    rings_.remove(i);
-    is_cut_[i] = 1;
-    --left_;
+    const glm::vec2 &a = rings.at(rings.last(i)), &b = rings.at(i), &c = rings.at(rings.next(i));
+    if (a != b && b != c && c != a) triangles.push_back({a, b, c});
+    rings.remove(i);
+    is_cut[i] = 1;
+    --left;
   }
 
-  Rings& rings_;
-  const ReflexGrid grid_;
-  std::vector<std::uint8_t> is_cut_;
-  std::size_t left_;
-  std::vector<FlatTriangle>& triangles_;
+  Rings& rings;
+  const std::vector<std::uint32_t>& corners;
+  std::vector<FlatTriangle>& triangles;
+  const ReflexGrid grid{rings, corners};
+  std::vector<std::uint8_t> is_cut = std::vector<std::uint8_t>(rings.size());
+  std::size_t left = corners.size();
 };
 
 }  // namespace
 
 void fill(const Region& region, std::vector<FlatTriangle>& triangles, const Execution& execution) {
   Rings rings(region);
-  Joiner(rings, execution).run();
+  Joiner{rings, execution}.run();
   std::vector<std::uint32_t> corners;
   rings.append_ring(rings.firsts[0], corners);
-  EarCutter(rings, corners, triangles).run(corners[0], execution);
+  EarCutter{rings, corners, triangles}.run(corners[0], execution);
 }
 
 }  // namespace frontmost::lines_detail

@@ -63,88 +63,79 @@ Buckets<std::uint32_t> steps_at(const std::vector<Step>& steps, std::size_t plac
 }
 
 /// Walks along steps until none is left.
-class Walker {
- public:
-  Walker(const std::vector<glm::vec2>& places, const std::vector<Step>& steps, const Execution& execution)
-      : places_(places),
-        steps_(steps),
-        execution_(execution),
-        out_(steps_at(steps, places.size(), &Step::from, execution)),
-        in_(steps_at(steps, places.size(), &Step::to, execution)),
-        is_used_(steps.size()),
-        at_(places.size(), no_index) {}
-
+struct Walker {
   void run() {
     // Open lines begin at places with more steps out than in.
-    for (std::uint32_t i = 0; i < steps_.size(); ++i)
-      if (out_[steps_[i].from].size() > in_[steps_[i].from].size()) walk(i);
-    for (std::uint32_t i = 0; i < steps_.size(); ++i) walk(i);
+    for (std::uint32_t i = 0; i < steps.size(); ++i)
+      if (out[steps[i].from].size() > in[steps[i].from].size()) walk(i);
+    for (std::uint32_t i = 0; i < steps.size(); ++i) walk(i);
   }
 
-  std::vector<SectionOutline> closed, open;
-  bool is_wound_alike = true;
-
- private:
   void walk(std::uint32_t first) {
-    if (is_used_[first]) return;
-    path_ = {steps_[first].from};
-    at_[path_[0]] = 0;
+    if (is_used[first]) return;
+    path = {steps[first].from};
+    at[path[0]] = 0;
     for (std::uint32_t to = take(first, false); to != no_index; to = next()) {
-      if (at_[to] == no_index) {
-        at_[to] = std::uint32_t(path_.size());
-        path_.push_back(to);
+      if (at[to] == no_index) {
+        at[to] = std::uint32_t(path.size());
+        path.push_back(to);
         continue;
       }
-      const std::size_t begin = at_[to];  // the path closes a loop from there
-      if (path_.size() - begin > 2) closed.push_back(points_from(begin));
-      for (std::size_t i = begin + 1; i < path_.size(); ++i) at_[path_[i]] = no_index;
-      path_.resize(begin + 1);
+      const std::size_t begin = at[to];  // the path closes a loop from there
+      if (path.size() - begin > 2) closed.push_back(points_from(begin));
+      for (std::size_t i = begin + 1; i < path.size(); ++i) at[path[i]] = no_index;
+      path.resize(begin + 1);
     }
-    if (path_.size() > 1) open.push_back(points_from(0));
-    for (const std::uint32_t place : path_) at_[place] = no_index;
+    if (path.size() > 1) open.push_back(points_from(0));
+    for (const std::uint32_t place : path) at[place] = no_index;
   }
 
   [[nodiscard]] SectionOutline points_from(std::size_t begin) const {
     SectionOutline points;
-    for (std::size_t i = begin; i < path_.size(); ++i) points.push_back(places_[path_[i]]);
+    for (std::size_t i = begin; i < path.size(); ++i) points.push_back(places[path[i]]);
     return points;
   }
 
   std::uint32_t take(std::uint32_t step, bool is_turned) {
-    if (++taken_ % steps_per_poll == 0) check_cancelled(execution_);
-    is_used_[step] = 1;
+    if (++taken % steps_per_poll == 0) check_cancelled(execution);
+    is_used[step] = 1;
     if (is_turned) is_wound_alike = false;
-    return is_turned ? steps_[step].from : steps_[step].to;
+    return is_turned ? steps[step].from : steps[step].to;
   }
 
   /// \returns the place to which the leftmost step from the path's end leads; no_index if there is none.
   std::uint32_t next() {
-    const std::uint32_t end = path_.back();
+    const std::uint32_t end = path.back();
     std::uint32_t best = no_index;
-    for (const std::uint32_t step : out_[end])
-      if (!is_used_[step] && (best == no_index || is_before(steps_[step].to, steps_[best].to))) best = step;
+    for (const std::uint32_t step : out[end])
+      if (!is_used[step] && (best == no_index || is_before(steps[step].to, steps[best].to))) best = step;
     if (best != no_index) return take(best, false);
-    for (const std::uint32_t step : in_[end])
-      if (!is_used_[step]) return take(step, true);
+    for (const std::uint32_t step : in[end])
+      if (!is_used[step]) return take(step, true);
     return no_index;
   }
 
   /// Whether place a comes before place b, clockwise around the path's end from the direction the path came from.
   [[nodiscard]] bool is_before(std::uint32_t a, std::uint32_t b) const {
-    if (path_.size() < 2) return false;
-    const glm::vec2 &from = places_[path_[path_.size() - 2]], &end = places_[path_.back()];
-    const int side_a = orientation(from, end, places_[a]), side_b = orientation(from, end, places_[b]);
+    if (path.size() < 2) return false;
+    const glm::vec2 &from = places[path[path.size() - 2]], &end = places[path.back()];
+    const int side_a = orientation(from, end, places[a]), side_b = orientation(from, end, places[b]);
     if (side_a != side_b) return side_a > side_b;
-    return orientation(end, places_[b], places_[a]) > 0;
+    return orientation(end, places[b], places[a]) > 0;
   }
 
-  const std::vector<glm::vec2>& places_;
-  const std::vector<Step>& steps_;
-  const Execution& execution_;
-  const Buckets<std::uint32_t> out_, in_;
-  std::vector<std::uint8_t> is_used_;
-  std::vector<std::uint32_t> path_, at_;  ///< at_: by place, its number in the path
-  std::size_t taken_ = 0;
+  const std::vector<glm::vec2>& places;
+  const std::vector<Step>& steps;
+  const Execution& execution;
+  const Buckets<std::uint32_t> out = steps_at(steps, places.size(), &Step::from, execution);
+  const Buckets<std::uint32_t> in = steps_at(steps, places.size(), &Step::to, execution);
+  std::vector<std::uint8_t> is_used = std::vector<std::uint8_t>(steps.size());
+  std::vector<std::uint32_t> path{};
+  std::vector<std::uint32_t> at =
+      std::vector<std::uint32_t>(places.size(), no_index);  ///< by place: its number in the path
+  std::size_t taken = 0;
+  std::vector<SectionOutline> closed{}, open{};
+  bool is_wound_alike = true;
 };
 
 /// The partners of lines' ends, as for for_each_chain(): the last point of a line is joined to the nearest first point,
@@ -233,7 +224,7 @@ bool lies_in(const Ring& inner, const Ring& outer) {
 Outlines find_outlines(const std::vector<CutSegment>& segments, const Execution& execution) {
   std::vector<glm::vec2> places;
   const std::vector<Step> steps = steps_of(segments, places);
-  Walker walker(places, steps, execution);
+  Walker walker{places, steps, execution};
   walker.run();
   Outlines all{std::move(walker.closed), 0, walker.is_wound_alike};
   if (walker.open.empty()) return all;

@@ -179,23 +179,19 @@ std::vector<double> zone_ends(double side, double low, double high) {
   return ends;
 }
 
-class FrameDrawing {
- public:
-  explicit FrameDrawing(const glm::dvec2& page)
-      : page_(page), space_(drawing_space(page)), is_narrow_(std::min(page.x, page.y) <= narrow_page) {}
-
+struct FrameDrawing {
   void draw(PageLayer& layer) const {
     PageGroup trimming{"trimming marks", {frame_width, {}}};
     for (const glm::dvec2 corner : {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(1, 1), glm::dvec2(0, 1)})
       trimming_mark(trimming, corner);
     PageGroup frame{"frame", {frame_width, {}}};
-    frame.add(rectangle(space_.low, space_.high), true);
+    frame.add(rectangle(space.low, space.high), true);
     centring_marks(frame);
     PageGroup zones{"zones", {zone_width, {}}};
     // The border around the frame, or above it and on its right.
-    const glm::dvec2 low = space_.low - strip, high = space_.high + strip;
-    if (is_narrow_)
-      zones.add(std::vector<glm::dvec2>{{space_.low.x, low.y}, {high.x, low.y}, {high.x, space_.high.y}}, false);
+    const glm::dvec2 low = space.low - strip, high = space.high + strip;
+    if (is_narrow)
+      zones.add(std::vector<glm::dvec2>{{space.low.x, low.y}, {high.x, low.y}, {high.x, space.high.y}}, false);
     else
       zones.add(rectangle(low, high), true);
     PageGroup names{"zones: text", text_pen(zone_text)};
@@ -203,7 +199,6 @@ class FrameDrawing {
     for (PageGroup* const group : {&trimming, &zones, &names, &frame}) layer.groups.push_back(std::move(*group));
   }
 
- private:
   /// Two rectangles of 10 x 5 mm in an L shape, filled by rounds of the pen, because DXF has no fills.
   void trimming_mark(PageGroup& group, const glm::dvec2& corner) const {
     constexpr double length = 10, width = 5;
@@ -212,19 +207,19 @@ class FrameDrawing {
     for (double in = frame_width / 2; in < width / 2; in += 0.6 * frame_width) {
       const double far = length - in, near = width - in;
       std::vector<glm::dvec2> points = {{in, in}, {far, in}, {far, near}, {near, near}, {near, far}, {in, far}};
-      for (glm::dvec2& p : points) p = corner * page_ + inwards * p;
+      for (glm::dvec2& p : points) p = corner * page + inwards * p;
       group.add(points, true);
     }
   }
 
   /// Marks from the zones' border into the drawing, but not into the title block.
   void centring_marks(PageGroup& group) const {
-    const glm::dvec2 middle = page_ * 0.5;
+    const glm::dvec2 middle = page * 0.5;
     for (const int axis : {0, 1})
       for (const bool at_end : {false, true}) {
-        const double outwards = at_end ? 1 : -1, edge = at_end ? space_.high[axis] : space_.low[axis];
+        const double outwards = at_end ? 1 : -1, edge = at_end ? space.high[axis] : space.low[axis];
         const int across = 1 - axis;
-        const bool meets_block = at_end && middle[across] >= space_.block[across];
+        const bool meets_block = at_end && middle[across] >= space.block[across];
         glm::dvec2 from(0), to(0);
         from[across] = to[across] = middle[across];
         from[axis] = edge + outwards * strip;
@@ -236,16 +231,15 @@ class FrameDrawing {
   /// Numbers from left to right, and letters downwards.
   void zones_along(int axis, PageGroup& lines, PageGroup& names) const {
     const int across = 1 - axis;
-    const std::vector<double> ends = zone_ends(page_[axis], space_.low[axis], space_.high[axis]);
+    const std::vector<double> ends = zone_ends(page[axis], space.low[axis], space.high[axis]);
     for (const bool at_end : {false, true}) {
-      if (is_narrow_ && at_end != (axis == 1)) continue;  // only above, and on the right
-      const double edge = at_end ? space_.high[across] : space_.low[across],
-                   outer = at_end ? edge + strip : edge - strip;
+      if (is_narrow && at_end != (axis == 1)) continue;  // only above, and on the right
+      const double edge = at_end ? space.high[across] : space.low[across], outer = at_end ? edge + strip : edge - strip;
       const auto point = [&](double along, double beside) {
         return axis == 0 ? glm::dvec2(along, beside) : glm::dvec2(beside, along);
       };
       for (const double at : ends)  // centring marks are lines already
-        if (at != page_[axis] / 2) lines.add(std::vector<glm::dvec2>{point(at, edge), point(at, outer)}, false);
+        if (at != page[axis] / 2) lines.add(std::vector<glm::dvec2>{point(at, edge), point(at, outer)}, false);
       for (std::size_t i = 0; i + 1 < ends.size(); ++i)
         add_text(names, axis == 0 ? std::to_string(i + 1) : zone_letter(int(i)),
                  point((ends[i] + ends[i + 1]) / 2, (edge + outer) / 2),
@@ -253,9 +247,9 @@ class FrameDrawing {
     }
   }
 
-  const glm::dvec2 page_;
-  const DrawingSpace space_;
-  const bool is_narrow_;
+  const glm::dvec2 page;
+  const DrawingSpace space = drawing_space(page);
+  const bool is_narrow = std::min(page.x, page.y) <= narrow_page;
 };
 
 }  // namespace
@@ -271,7 +265,7 @@ DrawingSpace drawing_space(const glm::dvec2& page) {
 
 PageLayer draw_frame(const glm::dvec2& page, const TitleBlock& block) {
   PageLayer layer{"8 frame"};
-  FrameDrawing(page).draw(layer);
+  FrameDrawing{page}.draw(layer);
   BlockDrawing drawing(drawing_space(page).block);
   drawing.add({"Legal owner", {0, 0}, {69, 18}, 3.5, 2}, block.owner);
   drawing.add({"Scale", {0, 18}, {45, 27}, 2.5, 1}, block.scale);

@@ -74,29 +74,25 @@ void begin_at_corner(std::vector<glm::dvec2>& points) {
 }
 
 /// The directions from `tip` that pass all points so far at less than the tolerance.
-class Cone {
- public:
-  explicit Cone(const glm::dvec2& tip) : tip_(tip) {}
-
+struct Cone {
   [[nodiscard]] bool holds(const glm::dvec2& p) const {
-    const glm::dvec2 d = p - tip_;
-    return is_open_ || (cross(right_, d) >= 0 && cross(d, left_) >= 0 && glm::dot(d, d) >= farthest_);
+    const glm::dvec2 d = p - tip;
+    return is_open || (cross(right, d) >= 0 && cross(d, left) >= 0 && glm::dot(d, d) >= farthest);
   }
   void narrow(const glm::dvec2& p, double tolerance) {
-    const glm::dvec2 d = p - tip_;
+    const glm::dvec2 d = p - tip;
     const double length = glm::length(d);
     if (length <= tolerance) return;
     const glm::dvec2 side = glm::dvec2(-d.y, d.x) * (tolerance / length);
-    if (is_open_ || cross(right_, d - side) > 0) right_ = d - side;
-    if (is_open_ || cross(d + side, left_) > 0) left_ = d + side;
-    farthest_ = length * length;  // a line that turns back keeps its corner
-    is_open_ = false;
+    if (is_open || cross(right, d - side) > 0) right = d - side;
+    if (is_open || cross(d + side, left) > 0) left = d + side;
+    farthest = length * length;  // a line that turns back keeps its corner
+    is_open = false;
   }
 
- private:
-  glm::dvec2 tip_, left_{0}, right_{0};
-  double farthest_ = 0;
-  bool is_open_ = true;
+  glm::dvec2 tip, left{0}, right{0};
+  double farthest = 0;
+  bool is_open = true;
 };
 
 constexpr std::size_t fewest_joins = 4;
@@ -128,32 +124,28 @@ std::optional<Circle> circle_through(const glm::dvec2& a, const glm::dvec2& b, c
   return Circle{a + to_centre, glm::length(to_centre)};
 }
 
-class ArcFinder {
- public:
-  ArcFinder(Chain& chain, double tolerance) : chain_(chain), points_(chain.points), tolerance_(tolerance) {}
-
+struct ArcFinder {
   void run() {
-    if (chain_.is_closed && make_circle()) return;
-    if (chain_.is_closed) points_.push_back(points_.front());
+    if (chain.is_closed && make_circle()) return;
+    if (chain.is_closed) points.push_back(points.front());
     std::vector<glm::dvec2> kept;
     std::size_t at = 0;
-    while (at + 1 < points_.size()) {
-      const std::size_t end = longest_run(at, fewest_joins, points_.size() - 1,
-                                          [&](std::size_t last) { return fit(at, last).has_value(); });
-      kept.push_back(points_[at]);
-      bulges_.push_back(0);
+    while (at + 1 < points.size()) {
+      const std::size_t end =
+          longest_run(at, fewest_joins, points.size() - 1, [&](std::size_t last) { return fit(at, last).has_value(); });
+      kept.push_back(points[at]);
+      bulges.push_back(0);
       if (end > at) add_arc(at, end, kept);
       at = std::max(at + 1, end);
     }
-    if (!chain_.is_closed) {
-      kept.push_back(points_.back());
-      bulges_.push_back(0);
+    if (!chain.is_closed) {
+      kept.push_back(points.back());
+      bulges.push_back(0);
     }
-    points_ = std::move(kept);
-    chain_.bulges = std::move(bulges_);
+    points = std::move(kept);
+    chain.bulges = std::move(bulges);
   }
 
- private:
   struct Fit {
     Circle circle;
     double turn;
@@ -161,7 +153,7 @@ class ArcFinder {
 
   /// The arc through the corners from `first` to `last`, if they fit.
   [[nodiscard]] std::optional<Fit> fit(std::size_t first, std::size_t last) const {
-    const std::optional<Circle> circle = circle_through(points_[first], points_[(first + last) / 2], points_[last]);
+    const std::optional<Circle> circle = circle_through(points[first], points[(first + last) / 2], points[last]);
     if (!circle) return std::nullopt;
     const std::optional<double> turn = turn_along(*circle, first, last);
     if (!turn || std::abs(*turn) < least_turn || std::abs(*turn) > 6.2) return std::nullopt;
@@ -173,8 +165,8 @@ class ArcFinder {
   [[nodiscard]] std::optional<double> turn_along(const Circle& circle, std::size_t first, std::size_t last) const {
     double turn = 0;
     for (std::size_t i = first; i < last; ++i) {
-      if (std::abs(glm::distance(points_[i], circle.centre) - circle.radius) > tolerance_) return std::nullopt;
-      const double by = circle.turn_between(points_[i], points_[i + 1 == points_.size() ? 0 : i + 1]);
+      if (std::abs(glm::distance(points[i], circle.centre) - circle.radius) > tolerance) return std::nullopt;
+      const double by = circle.turn_between(points[i], points[i + 1 == points.size() ? 0 : i + 1]);
       if (std::abs(by) > widest_join || by * turn < 0) return std::nullopt;
       turn += by;
     }
@@ -184,12 +176,12 @@ class ArcFinder {
   /// Whether each of the chords from corner `first` on lies within the tolerance of the arc, or has a length like its
   /// neighbours. The circle runs through all corners within the tolerance. All chords of the chain are a ring.
   [[nodiscard]] bool follow(const Circle& circle, std::size_t first, std::size_t chords) const {
-    const bool is_ring = chords == points_.size();
-    const auto corner = [&](std::size_t i) { return points_[(first + i) % points_.size()]; };
+    const bool is_ring = chords == points.size();
+    const auto corner = [&](std::size_t i) { return points[(first + i) % points.size()]; };
     const auto length = [&](std::size_t chord) { return glm::distance(corner(chord), corner(chord + 1)); };
     for (std::size_t i = 0; i < chords; ++i) {
       const double to_middle = glm::distance((corner(i) + corner(i + 1)) / 2.0, circle.centre);
-      if (!(circle.radius - to_middle > tolerance_)) continue;
+      if (!(circle.radius - to_middle > tolerance)) continue;
       const double least = alike * length(i);
       int found = 0;
       for (std::size_t k = 1; k <= reach; ++k) {
@@ -205,34 +197,34 @@ class ArcFinder {
   void add_arc(std::size_t first, std::size_t last, std::vector<glm::dvec2>& kept) {
     const Fit arc = *fit(first, last);
     if (std::abs(arc.turn) <= std::numbers::pi) {
-      bulges_.back() = std::tan(arc.turn / 4);
+      bulges.back() = std::tan(arc.turn / 4);
       return;
     }
-    const glm::dvec2 begin = points_[first] - arc.circle.centre;
+    const glm::dvec2 begin = points[first] - arc.circle.centre;
     const double c = std::cos(arc.turn / 2), s = std::sin(arc.turn / 2);
-    bulges_.back() = std::tan(arc.turn / 8);
+    bulges.back() = std::tan(arc.turn / 8);
     kept.push_back(arc.circle.centre + glm::dvec2(begin.x * c - begin.y * s, begin.x * s + begin.y * c));
-    bulges_.push_back(std::tan(arc.turn / 8));
+    bulges.push_back(std::tan(arc.turn / 8));
   }
 
   bool make_circle() {
-    const std::size_t n = points_.size();
+    const std::size_t n = points.size();
     if (n < 18) return false;
-    const std::optional<Circle> circle = circle_through(points_[0], points_[n / 3], points_[2 * n / 3]);
+    const std::optional<Circle> circle = circle_through(points[0], points[n / 3], points[2 * n / 3]);
     if (!circle) return false;
     const std::optional<double> turn = turn_along(*circle, 0, n);
     if (!turn || std::abs(std::abs(*turn) - 2 * std::numbers::pi) > 1e-6) return false;
     if (!follow(*circle, 0, n)) return false;
     const double bulge = *turn > 0 ? 1 : -1;
-    points_ = {points_[0], 2.0 * circle->centre - points_[0]};
-    chain_.bulges = {bulge, bulge};
+    points = {points[0], 2.0 * circle->centre - points[0]};
+    chain.bulges = {bulge, bulge};
     return true;
   }
 
-  Chain& chain_;
-  std::vector<glm::dvec2>& points_;
-  const double tolerance_;
-  std::vector<double> bulges_;
+  Chain& chain;
+  const double tolerance;
+  std::vector<glm::dvec2>& points = chain.points;
+  std::vector<double> bulges{};
 };
 
 }  // namespace
@@ -263,11 +255,11 @@ void straighten(Chain& chain, double tolerance) {
     points.push_back(points.front());
   }
   std::vector<glm::dvec2> kept = {points.front()};
-  Cone cone(kept.back());
+  Cone cone{kept.back()};
   for (std::size_t i = 1; i < points.size(); ++i) {
     if (!cone.holds(points[i])) {
       kept.push_back(points[i - 1]);
-      cone = Cone(kept.back());
+      cone = {kept.back()};
     }
     cone.narrow(points[i], tolerance);
   }
@@ -278,7 +270,7 @@ void straighten(Chain& chain, double tolerance) {
 }
 
 void find_arcs(Chain& chain, double tolerance) {
-  if (chain.points.size() > fewest_joins) ArcFinder(chain, tolerance).run();
+  if (chain.points.size() > fewest_joins) ArcFinder{chain, tolerance}.run();
 }
 
 }  // namespace frontmost::lines_detail

@@ -223,17 +223,13 @@ bool is_rim(const SeenCircle& circle, const std::vector<SeenCircle>& all) {
 const std::string diameter_sign = "\u2300";
 
 /// The diameters of a sheet, each once.
-class Diameters {
- public:
-  Diameters(const DimensionOptions& options, DimensionPen& pen, const Obstacles& obstacles)
-      : options_(options), pen_(pen), obstacles_(obstacles) {}
-
+struct Diameters {
   /// Marks a cylinder and its continuations as dimensioned. \returns false if it was already.
   bool take(const Round& round) {
-    const bool is_new = std::none_of(taken_.begin(), taken_.end(), [&](const Round& other) {
+    const bool is_new = std::none_of(taken.begin(), taken.end(), [&](const Round& other) {
       return is_same_radius(other, round) && is_coaxial(other, round);
     });
-    if (is_new) taken_.push_back(round);
+    if (is_new) taken.push_back(round);
     return is_new;
   }
 
@@ -244,18 +240,18 @@ class Diameters {
       const std::size_t count = group.circles.size();
       const std::string text = count > 1 ? std::to_string(count) + "\u00d7" + group.text : group.text;
       std::optional<Leader> leader;
-      if (placed_ < most_diameters) leader = best_leader(group, text);
+      if (placed < most_diameters) leader = best_leader(group, text);
       if (!leader) {
         ++all.left_out;
         continue;
       }
-      ++placed_;
+      ++placed;
       ++all.count;
-      pen_.line(leader->tip, leader->knee);
-      pen_.line(leader->knee, leader->end);
-      pen_.arrow(leader->tip, glm::normalize(leader->tip - leader->knee));
+      pen.line(leader->tip, leader->knee);
+      pen.line(leader->knee, leader->end);
+      pen.arrow(leader->tip, glm::normalize(leader->tip - leader->knee));
       const double side = leader->align == TextAlign::left ? 1 : -1;
-      pen_.text(text, leader->knee + glm::dvec2(side * text_distance, 0), leader->align);
+      pen.text(text, leader->knee + glm::dvec2(side * text_distance, 0), leader->align);
     }
   }
 
@@ -270,7 +266,6 @@ class Diameters {
     count(view.prisms, all.prisms);
   }
 
- private:
   struct Group {
     std::string text;
     std::vector<SeenCircle> circles;  ///< at different places
@@ -292,8 +287,8 @@ class Diameters {
       auto group = std::find_if(groups.begin(), groups.end(),
                                 [&](const Group& g) { return is_same_radius(*g.circles[0].round, *circle.round); });
       if (group == groups.end()) {
-        const double number = 2 * circle.round->radius * options_.numbers_per_unit;
-        groups.push_back({diameter_sign + dimension_text(number, options_.decimals), {circle}});
+        const double number = 2 * circle.round->radius * options.numbers_per_unit;
+        groups.push_back({diameter_sign + dimension_text(number, options.decimals), {circle}});
         continue;
       }
       const bool is_there = std::any_of(group->circles.begin(), group->circles.end(), [&](const SeenCircle& c) {
@@ -311,7 +306,7 @@ class Diameters {
   [[nodiscard]] std::optional<Leader> best_leader(const Group& group, std::string_view text) const {
     constexpr int degrees[] = {45, 135, 315, 225, 60, 120, 300, 240, 30, 150, 330, 210};
     std::optional<Leader> best;
-    const double shelf = pen_.width_of(text) + 2 * text_distance;
+    const double shelf = pen.width_of(text) + 2 * text_distance;
     for (std::size_t i = 0; i < std::min(group.circles.size(), most_tried); ++i) {
       const SeenCircle& circle = group.circles[i];
       for (const int angle : degrees) {
@@ -319,27 +314,27 @@ class Diameters {
         const glm::dvec2 out(std::cos(radians), -std::sin(radians));
         const glm::dvec2 tip = circle.centre + circle.radius * out;
         const double side = out.x > 0 ? 1 : -1;
-        int crossed = obstacles_.crossings({tip + 0.1 * out, tip + nearest_knee * out});
+        int crossed = obstacles.crossings({tip + 0.1 * out, tip + nearest_knee * out});
         for (double way = nearest_knee; way <= farthest_knee; way += knee_step) {
           const double cost = way + cost_of_crossing * crossed;
           if (crossed > most_crossed || (best && cost >= best->cost)) break;
           const glm::dvec2 knee = tip + way * out, end = knee + glm::dvec2(side * shelf, 0);
           const TextAlign align = side > 0 ? TextAlign::left : TextAlign::right;
-          PageBox box = pen_.box_of(text, knee + glm::dvec2(side * text_distance, 0), align);
+          PageBox box = pen.box_of(text, knee + glm::dvec2(side * text_distance, 0), align);
           box.high.y += 2 * text_distance;  // the shelf, and room below it
-          if (obstacles_.is_free(box)) best = Leader{tip, knee, end, align, cost};
-          crossed += obstacles_.crossings({knee, knee + knee_step * out});
+          if (obstacles.is_free(box)) best = Leader{tip, knee, end, align, cost};
+          crossed += obstacles.crossings({knee, knee + knee_step * out});
         }
       }
     }
     return best;
   }
 
-  const DimensionOptions& options_;
-  DimensionPen& pen_;
-  const Obstacles& obstacles_;
-  std::vector<Round> taken_;
-  std::size_t placed_ = 0;
+  const DimensionOptions& options;
+  DimensionPen& pen;
+  const Obstacles& obstacles;
+  std::vector<Round> taken{};
+  std::size_t placed = 0;
 };
 
 constexpr double same_direction = 0.9999;  // cosine
@@ -437,7 +432,7 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
   const std::vector<OverallSizes> shares = overall_sizes_of(views);
   Dimensions all;
   DimensionPen pen(options, obstacles);
-  Diameters diameters(options, pen, obstacles);
+  Diameters diameters{options, pen, obstacles};
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (measured[i].box.is_empty()) continue;
     for (const int axis : {0, 1}) {
