@@ -13,7 +13,6 @@
 #include "base/orientation.h"
 #include "base/parallel.h"
 #include "geometry/buckets.h"
-#include "lines/strokes/parts.h"
 
 namespace frontmost::lines_detail {
 namespace {
@@ -138,28 +137,27 @@ struct Walker {
   bool is_wound_alike = true;
 };
 
-/// The partners of lines' ends, as for for_each_chain(): the last point of a line is joined to the nearest first point,
-/// within `gap`, that is not joined yet.
-std::vector<std::uint32_t> partners_of(const std::vector<SectionOutline>& lines, double gap) {
-  std::vector<std::uint32_t> order(lines.size()), partner(2 * lines.size(), no_index);
+/// For each line, the line that begins nearest to its end, within `gap`. No line succeeds two others.
+std::vector<std::uint32_t> successors(const std::vector<SectionOutline>& lines, double gap) {
+  std::vector<std::uint32_t> order(lines.size()), next(lines.size(), no_index);
   std::iota(order.begin(), order.end(), 0u);
   const auto start_x = [&](std::uint32_t i) { return lines[i].front().x; };
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return start_x(a) < start_x(b); });
-  for (std::uint32_t i = 0; i < lines.size(); ++i) {
+  std::vector<std::uint8_t> is_taken(lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) {
     const glm::dvec2 end = lines[i].back();
-    std::uint32_t& begins = partner[2 * i + 1];
     double nearest = gap;
     const auto begin = std::lower_bound(order.begin(), order.end(), end.x - gap,
                                         [&](std::uint32_t k, double x) { return start_x(k) < x; });
     for (auto k = begin; k != order.end() && start_x(*k) <= end.x + gap; ++k) {
       const double off = glm::distance(glm::dvec2(lines[*k].front()), end);
-      if (partner[2 * *k] != no_index || !(off < nearest)) continue;
+      if (is_taken[*k] || !(off < nearest)) continue;
       nearest = off;
-      begins = 2 * *k;
+      next[i] = *k;
     }
-    if (begins != no_index) partner[begins] = 2 * i + 1;
+    if (next[i] != no_index) is_taken[next[i]] = 1;
   }
-  return partner;
+  return next;
 }
 
 constexpr double area_rounding = 1e-12;  // of the sum of absolute terms
@@ -234,13 +232,18 @@ Outlines find_outlines(const std::vector<CutSegment>& segments, const Execution&
     high = glm::max(high, glm::dvec2(place));
   }
   const std::vector<SectionOutline>& lines = walker.open;
-  const std::vector<std::uint32_t> partners = partners_of(lines, joined_gap * glm::distance(low, high));
-  for_each_chain(partners, [&](const std::vector<std::uint32_t>& ends, bool is_closed) {
-    all.open_count += !is_closed;
+  const std::vector<std::uint32_t> next = successors(lines, joined_gap * glm::distance(low, high));
+  std::vector<bool> is_done(lines.size());
+  for (std::uint32_t i = 0; i < lines.size(); ++i) {
     SectionOutline line;
-    for (const std::uint32_t end : ends) line.insert(line.end(), lines[end / 2].begin(), lines[end / 2].end());
-    if (is_closed && line.size() > 2) all.closed.push_back(std::move(line));
-  });
+    std::uint32_t k = i;
+    for (; k != no_index && !is_done[k]; k = next[k]) {
+      is_done[k] = true;
+      line.insert(line.end(), lines[k].begin(), lines[k].end());
+    }
+    all.open_count += k == no_index;
+    if (k == i && line.size() > 2) all.closed.push_back(std::move(line));
+  }
   return all;
 }
 
