@@ -21,7 +21,7 @@ namespace frontmost {
 
 /// Why an edge is drawn. If several reasons hold, the first one counts.
 enum class EdgeKind : std::uint8_t {
-  boundary,      ///< belongs to one triangle, or to more than two that do not continue each other
+  boundary,      ///< belongs to one triangle, or to more than two, of which no two continue each other
   silhouette,    ///< one of its triangles faces the eye, the other does not
   border,        ///< its triangles belong to different instances, or have different materials
   crease,        ///< its triangles meet at an angle
@@ -34,12 +34,12 @@ struct LineOptions {
   /// are coplanar. None: an edge is a crease if it bends by at least 18 degrees more than half of what each surface
   /// bends by at its next edge; 12 degrees suffice if both surfaces bend evenly and by at most half as much as the
   /// edge, 9 degrees if a crease continues along the edge. Triangles at more than 34 degrees always form a crease,
-  /// those at less than 15 never. One or two edges that end in the air are no crease, unless they are longer than a
-  /// twentieth of the scene's diagonal.
+  /// those at less than 15 never. A crease of one or two edges that ends in the air is dropped, unless it is longer
+  /// than a twentieth of the scene's diagonal.
   std::optional<double> crease_angle = std::nullopt;
-  /// True: DrawnPart::hidden_by counts surfaces. False: it is 0 or 1, which costs less.
+  /// True: DrawnPart::hidden_by counts surfaces. False: hidden_by is 0 or 1, which takes less time.
   bool counts_hidden = false;
-  /// The kinds that are found. Leaving out intersections saves a third to a half of the time.
+  /// The kinds of edges that are found. Leaving out intersections saves a third to a half of the time.
   bool boundaries = true, silhouettes = true, borders = true, creases = true, intersections = true;
   bool outlines = false;  ///< true: finds DrawnPart::is_outline
 };
@@ -48,7 +48,7 @@ struct LineOptions {
 struct DrawnEdge {
   glm::dvec3 from{0}, to{0};
   EdgeKind kind = EdgeKind::boundary;
-  PrimitiveId left = no_primitive, right = no_primitive;  ///< two of its triangles; a boundary may have only one
+  PrimitiveId left = no_primitive, right = no_primitive;  ///< two triangles of the edge; a boundary may have only one
 };
 
 /// A part of an edge that is seen, or hidden, from end to end: from + t * (to - from) for t from `begin` to `end`. Each
@@ -69,34 +69,30 @@ struct Drawing {
   std::vector<DrawnPart> parts;  ///< in the order of their edges; nothing outside the view
 };
 
-// The rules of draw_lines():
-//
-// - Hiding. A triangle hides a point if the line of sight passes through the triangle, its edges included, in front of
-//   the point. Signs of determinants of the vertices' floats decide this, without tolerance. An edge is therefore not
-//   hidden by its own triangles, nor by others in their planes, and nothing is seen through the seam between two
-//   triangles. Only the ends of parts are rounded, to doubles. Triangles between the eye and the near plane hide
-//   nothing. Triangles with holes (alpha mode MASK) hide as if they had none. View::culling is ignored.
-// - Vertices at one place count as one, which closes open seams of files without shared vertices.
-// - Intersections. Two triangles intersect if each has vertices strictly on both sides of the other's plane. An edge
-//   is an intersection, too, if it lies in the plane of a triangle between its own two, and is not drawn for another
-//   reason. An object that only stands on a surface does not intersect it. Ends of intersections are rounded, so a
-//   plane counts as containing an end if rounding leaves that open. Lines of surfaces that cross have no gaps: segments
-//   share their ends to the bit.
-// - Degenerate triangles, with vertices exactly on one line, are left out. If they fill a T-junction between a long
-//   edge and the short edges that meet it, the long edge's triangle counts as split at the vertices on that edge. The
-//   seam is then drawn like any other edge, or not at all if the surface continues. An unfilled T-junction is open: its
-//   edges are boundaries.
-// - Duplicates. A triangle that occurs again, with its vertices in any order, counts once. Objects may share triangles
-//   and then part, such as a housing and its cover; surfaces of one object may do so, too. Each of them then continues
-//   by itself, and their common edge is drawn once, with the kind that comes first in EdgeKind. So no line is drawn
-//   where two objects, each smooth, pass through each other exactly along a common edge.
+// The rules of draw_lines(): - Hiding. A triangle hides a point if the line of sight passes through the triangle, its
+// edges included, in front of the point. Signs of determinants of the vertices' floats decide this, without tolerance.
+// An edge is therefore not hidden by its own triangles, nor by others in their planes, and nothing is seen through the
+// seam between two triangles. Only the ends of parts are rounded, to doubles. Triangles between the eye and the near
+// plane hide nothing. Triangles with holes (alpha mode MASK) hide as if they had none. View::culling is ignored. -
+// Vertices at one place count as one, which closes open seams of files without shared vertices. - Intersections. Two
+// triangles intersect if each has vertices strictly on both sides of the other's plane. An edge is an intersection,
+// too, if it lies in the plane of a triangle between its own two, and is not drawn for another reason. An object that
+// only stands on a surface does not intersect it. Ends of intersections are rounded, so a plane counts as containing an
+// end if rounding leaves that open. Lines of surfaces that cross have no gaps: segments share their ends to the bit. -
+// Degenerate triangles, with vertices exactly on one line, are left out. If they fill a T-junction between a long edge
+// and the short edges that meet it, the long edge's triangle counts as split at the vertices on that edge. The seam is
+// then drawn like any other edge, or not at all if the surface continues. An unfilled T-junction is open: its edges are
+// boundaries. - Duplicates. A triangle that occurs again, with its vertices in any order, counts once. Two objects,
+// such as a housing and its cover, may share triangles up to an edge and part there; so may two surfaces of one object.
+// Each of the two then continues by itself, and their common edge is drawn once, with the kind that comes first in
+// EdgeKind. So no line is drawn where two objects, each smooth, pass through each other exactly along a common edge.
 
 /// Finds the feature edges of `surfaces` and cuts each into seen and hidden parts. The result is the same to the bit
 /// for any number of threads and every instruction set. Near-linear; quadratic with `counts_hidden`, or if thousands of
-/// edges and triangles lie in one place of the screen, as at a vertex of thousands of slivers: 20,000 take 11 s.
-/// (A. Appel. The Notion of Quantitative Invisibility and the Machine Rendering of Solids. 1967.)
-/// \throws Error as validate(view) does; bad_argument for an angle out of range; limit_exceeded for more than 2^20
-/// segments of intersections and 16 for each triangle, 2^21 parts and 4 for each edge, or about 20 s of work.
+/// edges and triangles lie in one place of the screen, as at a vertex of thousands of slivers: 20,000 take 11 s. (A.
+/// Appel. The Notion of Quantitative Invisibility and the Machine Rendering of Solids. 1967.) \throws Error as
+/// validate(view) does; bad_argument for an angle out of range; limit_exceeded for more than 2^20 segments of
+/// intersections plus 16 per triangle, 2^21 parts plus 4 per edge, or about 20 s of work.
 [[nodiscard]] Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions& options = {},
                                  const Execution& execution = {});
 
@@ -126,11 +122,11 @@ struct StrokeOptions {
   /// a circle, at most 20 degrees apart: polygons of up to 17 sides stay polygons. The arc also stays within this
   /// distance of each part, unless two of the three parts before it and after it are at least half as long.
   double arc_tolerance = 0;
-  /// Pixels, 0 to 10000: a shorter stroke is left out if it ends in the air, or lies between lines that continue
-  /// without it. Pieces of silhouettes and boundaries that close an outline stay.
+  /// Pixels, 0 to 10000: a shorter stroke is left out if it ends in the air, or joins lines that continue without it.
+  /// Pieces of silhouettes and boundaries that close an outline are kept.
   double shortest = 0;
-  /// True: each stroke begins as near as possible to the end of the one before, and continues it if they touch: for
-  /// plotters. False: strokes come in the order of their parts.
+  /// True, for plotters: each stroke begins as near as possible to the end of the stroke before, and continues that
+  /// stroke if the two touch. False: strokes come in the order of their parts.
   bool nearest_first = false;
 };
 
@@ -146,17 +142,17 @@ struct Stroke {
 
 struct Strokes {
   std::vector<glm::dvec2> points;  ///< pixels, as in DrawnPart
-  /// Empty without arcs. Otherwise one for each point, for the join that begins there: the tangent of a quarter of the
-  /// arc's angle, positive from +x towards +y, at most about 1; 0: straight.
+  /// Empty if no stroke has arcs. Otherwise one value for each point, for the join from that point to the next: the
+  /// tangent of a quarter of the arc's angle, positive from +x towards +y, at most about 1; 0: straight.
   std::vector<double> bulges;
-  /// Hidden strokes first; then by outline, kind and instance.
+  /// Sorted: hidden strokes first; then by outline, kind and instance.
   std::vector<Stroke> strokes;
 };
 
 /// Joins parts of one class (seen or hidden, outline, kind, instance) into strokes wherever exactly two of them meet.
-/// Every line is drawn once: of parts that coincide, as edges behind each other in parallel projection, one is kept, a
-/// seen one before a hidden one. Edges that are seen as points are left out. Near-linear in the parts; more if
-/// thousands crowd within a pixel. \throws Error bad_argument for tolerances out of range.
+/// Every line is drawn once: of coinciding parts, such as edges behind each other in parallel projection, one is kept,
+/// and a seen part is preferred to a hidden one. Edges that are seen as points are left out. Near-linear in the parts;
+/// more if thousands crowd within a pixel. \throws Error bad_argument for tolerances out of range.
 [[nodiscard]] Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options = {},
                                     const Execution& execution = {});
 
@@ -192,8 +188,8 @@ struct HatchSet {
   std::vector<std::uint32_t> materials{};
 };
 
-/// Three sets that give four tones: paper; lines `spacing` apart where it is half dark; twice as many where it is
-/// darker; crossed by other lines in shadow.
+/// Three sets that give four tones: bare paper where surfaces are bright; lines `spacing` apart where they are half
+/// dark; twice as many lines where they are darker; in shadow, other lines that cross these.
 [[nodiscard]] std::vector<HatchSet> hatch_sets(double spacing, double angle);
 
 struct HatchOptions {
@@ -212,13 +208,13 @@ struct HatchLine {
   std::uint32_t instance = no_index;  ///< no_index without by_instance
 };
 
-/// The pieces of hatch lines that lie on visible, dark parts of `surfaces`: by set, then by line, from one end to the
-/// other. Nothing is sampled. The result is the same to the bit for any number of threads and every instruction set.
-/// O(segments), one for each triangle and line over it, beside the grids of occluders of draw_lines().
-/// (G. Winkenbach, D. Salesin. Computer-Generated Pen-and-Ink Illustration. 1994; E. Praun, H. Hoppe, M. Webb, A.
-/// Finkelstein. Real-Time Hatching. 2001: sets that stay where darker ones are added.)
-/// \throws Error as validate(view) does; bad_argument for options out of range; limit_exceeded for more than 2^26
-/// pieces before joining, or lines tested against more than 2^33 boxes and 16,384 for each triangle.
+/// The pieces of hatch lines that lie on visible, dark parts of `surfaces`, sorted by set, then by line, then along the
+/// line. Nothing is sampled. The result is the same to the bit for any number of threads and every instruction set.
+/// O(segments), one for each triangle and line over it, beside the grids of occluders of draw_lines(). (G. Winkenbach,
+/// D. Salesin. Computer-Generated Pen-and-Ink Illustration. 1994; E. Praun, H. Hoppe, M. Webb, A. Finkelstein.
+/// Real-Time Hatching. 2001: sets that stay where darker ones are added.) \throws Error as validate(view) does;
+/// bad_argument for options out of range; limit_exceeded for more than 2^26 pieces before joining, or lines tested
+/// against more than 2^33 boxes and 16,384 for each triangle.
 [[nodiscard]] std::vector<HatchLine> hatch(const Surfaces& surfaces, const View& view, const HatchOptions& options,
                                            const Execution& execution = {});
 
@@ -235,11 +231,11 @@ struct Stipple {
   std::uint32_t instance = no_index;  ///< no_index without by_instance
 };
 
-/// Dots on visible parts of `surfaces`: none where the brightness is above 0.95, one to a square of `spacing` in
-/// shadow, more where it is darker in between. Dots are spread evenly, in a pattern that depends on the picture alone.
-/// The signs of hatch() decide whether a dot is seen and lit. By row, from the left. Cost, threads and errors as for
-/// hatch(); limit_exceeded if the picture has room for more than 20 million dots.
-/// (R. Ulichney. The Void-and-Cluster Method for Dither Array Generation. 1993.)
+/// Dots on visible parts of `surfaces`: none where the brightness is above 0.95, one per square of side length
+/// `spacing` in shadow, and in between the more, the darker the surface is. Dots are spread evenly, in a pattern that
+/// depends on the picture alone. The same exact signs as in hatch() decide whether a dot is seen and lit. Dots are
+/// sorted by row, then from the left. Cost, threads and errors as for hatch(); limit_exceeded if the picture has room
+/// for more than 20 million dots. (R. Ulichney. The Void-and-Cluster Method for Dither Array Generation. 1993.)
 [[nodiscard]] std::vector<Stipple> stipple(const Surfaces& surfaces, const View& view, const StippleOptions& options,
                                            const Execution& execution = {});
 
@@ -263,16 +259,16 @@ struct CuttingPlane {
 struct CutFace {
   std::uint32_t instance = no_index;
   std::uint32_t material = no_index;  ///< the material of this face alone, in Section::scene
-  /// Closed lines in the plane, counter-clockwise around the cut material as seen from the side that is taken away, and
-  /// clockwise around holes. They cross only if the object intersects itself.
+  /// Closed lines in the plane. Seen from the side that is taken away, they run counter-clockwise around the cut
+  /// material and clockwise around holes. Lines cross only if the object intersects itself.
   std::vector<std::vector<glm::vec3>> outlines{};
-  double area = 0;             ///< without the holes
-  std::size_t open_count = 0;  ///< number of lines that do not close, as of meshes with holes; they bound nothing
+  double area = 0;             ///< area of the cut without its holes
+  std::size_t open_count = 0;  ///< number of lines that a hole of the mesh leaves open; they bound nothing
 };
 
 struct Section {
   /// The part of the scene behind the plane. Instances keep their numbers and names; each has its own mesh in world
-  /// space. Materials keep their numbers but lose their textures; materials of the faces follow.
+  /// space. Materials keep their numbers but lose their textures; the materials of the faces come after them.
   Scene scene;
   std::vector<CutFace> faces;  ///< by instance; only objects that the plane cuts
 };
@@ -288,14 +284,14 @@ struct Section {
 
 /// Cuts every object by the plane. The remains of a closed object are closed: triangles that lie exactly in the plane
 /// fill the cut, and share their vertices with the cut triangles, to the bit. Normals, texture coordinates and colours
-/// of vertices are lost. Triangles with non-finite vertices are left out.
-/// O(triangles); the vertices of a cut take n log n if it looks like a machine part, n * n for combs and mazes.
-/// (G. Meisters. Polygons Have Ears. 1975.) \throws Error bad_argument for a plane that is not finite as a float.
+/// of vertices are lost. Triangles with non-finite vertices are left out. O(triangles); the n vertices of a cut take n
+/// log n if the cut looks like one of a machine part, n * n for combs and mazes. (G. Meisters. Polygons Have Ears.
+/// 1975.) \throws Error bad_argument for a plane that is not finite as a float.
 [[nodiscard]] Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution& execution = {});
 
-/// By instance, which of six styles hatches an object in all of these sections; 0 if it is not cut. An object's style
-/// differs from those of earlier objects that it may touch, judged by boxes around the faces, as far as six styles
-/// suffice. Each face is compared with at most 2048 earlier ones.
+/// \returns for each instance the number of the style, 0 to 5, that hatches the object in all of these sections; 0 also
+/// if the object is not cut. An object's style differs from those of earlier objects that it may touch, judged by boxes
+/// around the faces, as far as six styles suffice. Each face is compared with at most 2048 earlier ones.
 [[nodiscard]] std::vector<std::uint8_t> hatch_styles(std::span<const Section* const> sections);
 
 struct SectionHatching {
@@ -304,9 +300,9 @@ struct SectionHatching {
   double thinnest = 0;       ///< scene units: faces with a smaller mean thickness are solid
 };
 
-/// Sets of hatch() for the faces of a section: continuous lines at 45 degrees to either side, at the given spacing, or
-/// 0.7 or 1.4 times that, by `styles` from hatch_styles() (ISO 128-50). Use them with section_tone(), so that faces are
-/// hatched wherever they are seen. O(faces).
+/// \returns sets for hatch() that hatch the faces of a section. Lines are continuous, at 45 degrees to either side;
+/// their spacing is the given one, or 0.7 or 1.4 times that, by `styles` from hatch_styles() (ISO 128-50). Use them
+/// with section_tone(), so that faces are hatched wherever they are seen. O(faces).
 [[nodiscard]] std::vector<HatchSet> section_hatch_sets(const Section& section, std::span<const std::uint8_t> styles,
                                                        const SectionHatching& options = {});
 /// A light in the plane of the cut, without shadows: all of the cut counts as dark.
@@ -354,8 +350,8 @@ struct Rounds {
 // - Surfaces of revolution are smooth, go all the way round, and have their vertices in rings of 18 or more: tori,
 //   domes, cones. Cylinders are separate, and whole spheres, which have no axis of their own, are left out.
 
-/// Finds the circles and cylinders of which at least 160 degrees exist, and other surfaces of revolution. Near-linear.
-/// \throws Error limit_exceeded for more than 2^29 triangles.
+/// Finds the circles and cylinders of which at least 160 degrees exist, and other surfaces of revolution. The time is
+/// near-linear. \throws Error limit_exceeded for more than 2^29 triangles.
 [[nodiscard]] Rounds find_rounds(const Surfaces& surfaces, const Execution& execution = {});
 
 struct CentreLineOptions {
@@ -370,11 +366,11 @@ struct CentreLine {
 };
 
 /// Centre lines after ISO 128. Circles and cylinders seen along their axes, and circles in `strokes`, have a cross;
-/// those seen from the side have their axis. Coinciding ones share a cross or an axis. There is none in perspective,
-/// nor for a circle or cylinder that is seen at an angle, is smaller than a third of the overshoot, or has less than a
-/// fifth of its outline drawn. Crosses of small circles overshoot by the radius, at least by a third of `overshoot`.
-/// `rounds` are the circles and cylinders of the drawing's surfaces. Lines are sorted by direction, then by position.
-/// \throws Error bad_argument for an overshoot out of range.
+/// circles and cylinders seen from the side have an axis line. Coinciding ones share a cross or an axis line. There are
+/// no centre lines in perspective, nor for a circle or cylinder that is seen at an angle, is smaller than a third of
+/// the overshoot, or has less than a fifth of its outline drawn. Crosses of small circles overshoot by the radius, at
+/// least by a third of `overshoot`. `rounds` are the circles and cylinders of the drawing's surfaces. Lines are sorted
+/// by direction, then by position. \throws Error bad_argument for an overshoot out of range.
 [[nodiscard]] std::vector<CentreLine> centre_lines_of(const Rounds& rounds, const Drawing& drawing,
                                                       const Strokes& strokes, const CentreLineOptions& options = {});
 

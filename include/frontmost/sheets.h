@@ -53,10 +53,10 @@ struct Figure {
 };
 
 struct FigureOptions {
-  /// Shading, shadows, opacity and background count. Layers do not: figures are translucent where the scene is.
+  /// Shading, shadows, opacity and background are used. Layers are ignored: figures are translucent where the scene is.
   ShadeOptions shade;
   /// Steps of 8-bit sRGB, 0 to 255: greatest difference between the colour of a polygon and the surface's. Polygons are
-  /// cut until it holds. 255: a triangle has the colour of its middle and is never cut.
+  /// cut until they keep to this difference. 255: a triangle has the colour of its middle and is never cut.
   double tolerance = 6;
   /// True: hidden polygons are left out. False: all polygons are kept, in painting order.
   bool visible_only = true;
@@ -66,14 +66,14 @@ struct FigureOptions {
   std::size_t most_polygons = 2'000'000;
 };
 
-/// A picture of polygons with the colours of shade() for the same view, including textures, shadows and smooth normals;
-/// holes of alpha mode MASK are cut out. Polygons are in painting order, exact where surfaces pass through each other.
-/// Each polygon extends up to 4 pixels under those painted over it (trapping, as printers call it), so viewers show no
-/// hairlines between neighbours. `visible` has one sample a pixel.
-/// O(n log n) in the number of polygons, and the pixels that they cover. The same for any number of threads.
-/// (M. Newell, R. Newell, T. Sancha. A Solution to the Hidden Surface Problem. 1972.)
-/// \throws Error bad_argument for several samples a pixel or options out of range; unsupported for a shown environment;
-/// limit_exceeded for more than FigureOptions::most_polygons, or too many intersections or overlaps of triangles.
+/// \returns a picture of polygons with the colours of shade() for the same view, including textures, shadows and smooth
+/// normals; holes of alpha mode MASK are cut out. Polygons are in painting order, exact where surfaces pass through
+/// each other. Each polygon extends up to 4 pixels under those painted over it (trapping, as printers call it), so
+/// viewers show no hairlines between neighbours. `visible` has one sample a pixel. O(n log n) in the number of
+/// polygons, and the pixels that they cover. The same for any number of threads. (M. Newell, R. Newell, T. Sancha. A
+/// Solution to the Hidden Surface Problem. 1972.) \throws Error bad_argument for several samples a pixel or options out
+/// of range; unsupported for a shown environment; limit_exceeded for more than FigureOptions::most_polygons, or too
+/// many intersections or overlaps of triangles.
 [[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const ShadeInput& input, const FigureOptions& options = {},
                                  const Execution& execution = {});
 [[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const Visible& visible, const FigureOptions& options = {},
@@ -81,7 +81,7 @@ struct FigureOptions {
 /// Draws a view, with any number of samples. \throws Error also as validate(view) does.
 [[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const View& view, const FigureOptions& options = {},
                                  const Execution& execution = {});
-/// Draws a figure with what a shader has prepared for its surfaces.
+/// Draws a figure, reusing data that a shader has prepared for its surfaces.
 [[nodiscard]] Figure draw_figure(Shader& shader, const ShadeInput& input, const FigureOptions& options = {},
                                  const Execution& execution = {});
 
@@ -115,8 +115,8 @@ struct PageGroup {
   std::string name;  ///< name of the object, any text
   Pen pen;
   std::vector<glm::dvec2> points{};  ///< millimetres
-  /// Empty: all joins are straight. Otherwise one for each point, for the join that begins there: the tangent of a
-  /// quarter of the arc's angle, positive from +x towards +y; 0: straight, 1: a half circle.
+  /// Empty: all joins are straight. Otherwise one value for each point, for the join from that point to the next: the
+  /// tangent of a quarter of the arc's angle, positive from +x towards +y; 0: straight, 1: a half circle.
   std::vector<double> bulges{};
   std::vector<PagePath> paths{};
   std::vector<PageColor> fills{};  ///< empty: nothing is filled; otherwise one for each path (nonzero winding rule)
@@ -138,9 +138,10 @@ struct Page {
   std::vector<PageLayer> layers{};
 };
 
-/// Turns each dash of a page into a path of its own, for plotters, which know no dashes. Patterns run along whole
-/// paths. Between corners of 25 degrees or more they are stretched so that both ends are drawn (ISO 128-2). Fills are
-/// unchanged. O(points + dashes). \throws Error as validate() does; limit_exceeded for more than 20 million dashes.
+/// Turns each dash of a page into a path of its own, for plotters, which cannot draw dashes by themselves. Patterns run
+/// along whole paths. Between corners of 25 degrees or more, a pattern is stretched so that both ends are drawn (ISO
+/// 128-2). Fills are unchanged. O(points + dashes). \throws Error as validate() does; limit_exceeded for more than 20
+/// million dashes.
 [[nodiscard]] Page with_real_dashes(Page page, const Execution& execution = {});
 
 enum class PageFormat : std::uint8_t { svg, pdf, dxf, json };
@@ -168,7 +169,7 @@ void validate(const Page& page);
 
 /// Writes a page, whole or not at all. Coordinates are rounded to 0.001 mm, so paths that share a point share it in the
 /// file. Names lose characters that the format does not allow. The bytes depend on the page alone (in PDF also on the
-/// version of zlib). Memory is constant beside the page's. \throws Error as validate() does; bad_argument without a
+/// version of zlib). Takes constant memory beside the page. \throws Error as validate() does; bad_argument without a
 /// format; unsupported for fills in DXF; file_unwritable.
 void save(const Page& page, const std::string& path, std::optional<PageFormat> format = std::nullopt,
           const Execution& execution = {});
@@ -208,7 +209,7 @@ enum class TextAlign : std::uint8_t { left, centre, right };
 enum class TextLine : std::uint8_t { bottom, middle, top };
 
 struct TextStyle {
-  double height = 3.5;  ///< millimetres, of capitals and digits with their pen: 1.8, 2.5, 3.5, 5, 7, 10, 14 or 20
+  double height = 3.5;  ///< millimetres, of capitals and digits with the pen's width: 1.8, 2.5, 3.5, 5, 7, 10, 14, 20
   double angle = 0;     ///< radians by which the text is turned about its place, counter-clockwise for the reader
   TextAlign align = TextAlign::left;
   TextLine line = TextLine::bottom;
@@ -241,8 +242,8 @@ struct LinePens {
   Pen hidden{0.25, {}, {3, 0.75}};
   Pen hatching{0.18, {}};
   Pen stippling{0.3, {}};  ///< its width is the diameter of dots
-  /// Long dashes and dots. A line has an odd number of long dashes, stretched so that it begins, ends and has its
-  /// middle in one. A short line is solid.
+  /// Long dashes and dots. A line has an odd number of long dashes, stretched so that its beginning, its middle and its
+  /// end each lie in one of them. A short line is solid.
   Pen centre{0.25, {}, {6, 1, 0.1, 1}};
 };
 /// Pens of ISO 128: seen lines 0.5 mm; hidden lines 0.25 mm in dashes of 3 mm with gaps of 0.75 mm; centre lines 0.25
@@ -296,7 +297,7 @@ struct Paper {
   bool fits_drawing = false;  ///< true: as large as the drawing and its margins; `size` is ignored
 };
 
-/// The paper of a name: "a0" to "a6", "letter", "legal" or "tabloid", in small letters or capitals. The suffix
+/// The paper with this name: "a0" to "a6", "letter", "legal" or "tabloid", in small letters or capitals. The suffix
 /// "-portrait" or "-landscape" fixes its orientation. \throws Error bad_argument for any other name.
 [[nodiscard]] Paper named_paper(std::string_view name);
 /// The name of paper of that size in millimetres, in either orientation: "A3"; "420 x 200" if it has none.
@@ -344,10 +345,11 @@ struct SectionView {
 struct SheetOptions {
   // The views of the sheet, in parallel projection at one scale. Views are aligned with their neighbours.
   std::vector<NamedView> views{};  ///< each at most once; at most one of iso and three_quarter, which share a place
-  /// At most 24, named A-A, B-B and so on in their order. The first view that sees a plane edge-on marks it.
+  /// At most 24 sections, named A-A, B-B and so on in their order. The first view that sees a cutting plane edge-on
+  /// marks the plane.
   std::vector<SectionView> sections{};
   ProjectionMethod projection = ProjectionMethod::first_angle;  ///< where views stand around the front view
-  /// True: overall sizes, and diameters, after ISO 129; needs views.
+  /// True: the sheet shows overall sizes and diameters, after ISO 129. Needs views.
   bool dimensions = false;
 
   // How lines are drawn.
@@ -392,7 +394,7 @@ struct SheetOptions {
   std::optional<double> tessellation_error = std::nullopt;
   /// For named views: clipping planes in place of those that enclose the model.
   std::optional<double> near = std::nullopt, far = std::nullopt;
-  /// For a given view. True: the page shows the view's whole picture. False: it is fitted to the lines.
+  /// For a given view. True: the page shows the view's whole picture. False: the page fits the lines.
   bool keeps_picture = false;
 };
 

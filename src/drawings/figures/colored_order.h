@@ -20,8 +20,8 @@ namespace shading {
 struct PreparedScene;
 }
 
-/// Polygons of one colour that can form a single path: they are neighbours, and none is painted over another. They are
-/// `polygon_count` of ColoredOrder::polygons, from `first_polygon` on.
+/// Polygons of one colour that can form a single path: they are neighbours, and none is painted over another. A shape
+/// has `polygon_count` polygons, which begin at index `first_polygon` of ColoredOrder::polygons.
 struct ColoredShape {
   glm::u8vec4 color{0};  ///< sRGB, not premultiplied, as in files
   std::uint32_t polygon_count = 0;
@@ -44,7 +44,7 @@ struct ColoredOrder {
   [[nodiscard]] std::span<const glm::dvec2> corners_of(const PaintPolygon& polygon) const {
     return {corners.data() + polygon.first_corner, polygon.corner_count};
   }
-  /// By polygon, the number of its shape.
+  /// For each polygon, the number of its shape.
   [[nodiscard]] std::vector<std::uint32_t> shapes_of_polygons() const {
     std::vector<std::uint32_t> numbers;
     numbers.reserve(polygons.size());
@@ -72,31 +72,34 @@ struct ColoredOrder {
   return !m.is_see_through() && (m.alpha == Material::Alpha::opaque || holes_are_cut_out);
 }
 
-/// Colours polygons as the picture of `input`, which is of the parts' view, with all that `scene` has prepared.
-/// Polygons of varying colour are cut in place, along texture coordinates or lines of equal light, into pieces as large
-/// as the tolerance allows. Details and MASK holes narrower than about 1.5 pixels are left out. Each shape is a blend
-/// group by itself. Before merge_neighbours(), pieces of a polygon with nearly equal colours become one shape, for a
-/// third of the tolerance; else each piece of an opaque polygon is a shape. Threads do not change the result. O(pixels
-/// that polygons cover, visible or not). \throws Error bad_argument for an opacity out of range; limit_exceeded for
-/// more polygons and pieces than FigureOptions::most_polygons.
+/// Colours polygons like the picture of `input`, which has the same view as `parts`. Uses the data that `scene` has
+/// prepared. Polygons of varying colour are cut in place, along texture coordinates or lines of equal light, into
+/// pieces as large as the tolerance allows. Details and MASK holes narrower than about 1.5 pixels are left out. Each
+/// shape is a blend group by itself. If neighbours will be merged, pieces of a polygon with nearly equal colours become
+/// one shape, which uses up a third of the tolerance; otherwise each piece of an opaque polygon is a shape. Threads do
+/// not change the result. O(pixels that polygons cover, visible or not). \throws Error bad_argument for an opacity out
+/// of range; limit_exceeded for more polygons and pieces than FigureOptions::most_polygons.
 [[nodiscard]] ColoredOrder color_order(shading::PreparedScene& scene, const ShadeInput& input,
                                        const VisibleParts& parts, const FigureOptions& options,
                                        const Execution& execution);
 
-/// Merges polygons of one colour that share a part of a side, if no later polygon covers any of them: then their place
-/// in the painting order does not matter, and the place of the last is taken. The picture stays the same. Each shape is
-/// a blend group by itself. O(n log n) in the number of polygons of bounded overlap, on one thread.
+/// Merges polygons of one colour that share a part of a side, if no later polygon covers any of them. Their place in
+/// the painting order then does not matter, so they are painted in the place of the last one. The picture stays the
+/// same. Each shape is a blend group by itself. O(n log n) in the number of polygons if their overlap is bounded, on
+/// one thread.
 [[nodiscard]] ColoredOrder merge_neighbours(const ColoredOrder& colored, const Execution& execution = {});
 
-/// Gathers translucent neighbours of one opacity in blend groups, against hairlines between them. The picture stays the
-/// same: shapes change places only where neither is over the other. A surface that winds over and under itself has
-/// several groups, with hairlines between these. O(n log n) in polygons and overlapping pairs, on one thread. With more
-/// than 16 million pairs that have translucent shapes between or below them, the figure stays unchanged.
+/// Gathers translucent neighbours of one opacity in blend groups, so that no hairlines show between them. The picture
+/// stays the same: shapes change places only where neither is over the other. A surface that winds over and under
+/// itself has several groups, with hairlines between these. O(n log n) in polygons and overlapping pairs, on one
+/// thread. With more than 16 million overlapping pairs of shapes at or above translucent ones, the figure stays
+/// unchanged.
 [[nodiscard]] ColoredOrder gather_blend_groups(ColoredOrder colored, const Execution& execution = {});
 
 /// The outlines of all shapes, without sides that their own polygons share, and with traps of `width` pixels under
-/// later shapes. `occluders` are identified by the polygons' ids; translucent shapes are none. Translucent shapes have
-/// traps only under others of their blend group. Corners of shapes of several polygons are rounded to 1/4096 pixel.
+/// later shapes. `occluders` holds polygons by their ids; translucent shapes never are occluders. A translucent shape
+/// has traps only under other shapes of its blend group. Corners of a shape with several polygons are rounded to 1/4096
+/// pixel.
 [[nodiscard]] Figure outlined(const ColoredOrder& colored, double width, const Occluders& occluders = Occluders::all(),
                               const Execution& execution = {});
 

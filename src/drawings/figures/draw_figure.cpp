@@ -25,7 +25,8 @@ using painter_detail::ScreenPolygon;
 using painter_detail::TrapList;
 using painter_detail::TrappedCorner;
 
-/// Polygons with a group number; a group looks the same everywhere. All polygons of a group hide, or none.
+/// The polygons of all shapes, each with the number of its group. The polygons of a group have one colour, and either
+/// all of them are occluders or none is.
 std::vector<ScreenPolygon> polygons_in_groups(const ColoredOrder& colored, const Occluders& occluders) {
   std::vector<ScreenPolygon> polygons;
   polygons.reserve(colored.polygons.size());
@@ -48,8 +49,9 @@ std::vector<ScreenPolygon> polygons_in_groups(const ColoredOrder& colored, const
   return polygons;
 }
 
-/// The traps of each polygon. Opaque polygons have traps under later ones, translucent ones under others of their blend
-/// group. Polygons of the same shape hide a trap, and so do parts of the same primitive with the same colour.
+/// The traps of each polygon. An opaque polygon has traps under later polygons, a translucent one under other polygons
+/// of its blend group. A trap may also lie under polygons of the same shape, and under parts of the same primitive that
+/// have the same colour.
 TrapList find_traps(const ColoredOrder& colored, double width, const Occluders& occluders, const Execution& execution) {
   std::vector<ScreenPolygon> polygons = polygons_in_groups(colored, occluders);
   TrapList opaque = make_traps(polygons, colored.view, width, execution);
@@ -87,7 +89,8 @@ VisibleParts parts_of(const Surfaces& surfaces, const View& view, const FigureOp
     return visible_parts(painter(surfaces, view, {.occluders = occluders}, execution), occluders, execution);
   }
   PaintOrder order = painter(surfaces, view, {}, execution);
-  // Near the eye polygons are millions of pixels wide, and all of these would be sampled.
+  // Whether any polygon reaches beyond the picture. Near the eye, polygons are millions of pixels wide, and all these
+  // pixels would be sampled.
   const auto is_outside = [&](const PaintCorner& corner) {
     return !(corner.at.x > -1 && corner.at.y > -1 && corner.at.x < view.width + 1 && corner.at.y < view.height + 1);
   };

@@ -31,12 +31,13 @@ namespace {
 using namespace shading;
 using painter_detail::PolygonExtent;
 
-/// Least overlap in pixels; polygons cut at each other's sides overlap by rounding.
+/// The least overlap that counts, in pixels, because polygons that are cut at each other's sides overlap by rounding.
 constexpr double kThin = 1.0 / 512;
 
 using PolygonCorners = std::span<const glm::dvec2>;
 
-/// Whether a side of `a` has all of `b` outside. Both are counter-clockwise as seen; y is down.
+/// Whether all of `b` lies outside of one side of `a`. Both are counter-clockwise as seen on the screen, whose y points
+/// down.
 bool has_side_between(PolygonCorners a, PolygonCorners b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     const glm::dvec2 from = a[i], way = a[i + 1 == a.size() ? 0 : i + 1] - from;
@@ -66,7 +67,7 @@ std::vector<PolygonExtent> extents_of(const ColoredOrder& order) {
   return extents;
 }
 
-/// The polygons of an order on the screen. Borrows the order.
+/// Finds the polygons of an order that overlap on the screen. Borrows the order.
 class Overlaps {
  public:
   explicit Overlaps(const ColoredOrder& order) : order_(order), extents_(extents_of(order)), grid_(extents_) {}
@@ -79,8 +80,8 @@ class Overlaps {
     return !has_side_between(own, other) && !has_side_between(other, own);
   }
 
-  /// Call meet(other) for polygons near polygon i that are later or earlier in the order, until a call returns true;
-  /// some polygons occur more than once. \returns whether a call did.
+  /// Calls meet(other) for polygons near polygon i that are later in the order (any_earlier(): earlier), until a call
+  /// returns true. Some polygons occur more than once. \returns whether a call returned true.
   template <class Meet>
   bool any_later(std::size_t i, const Meet& meet) const {
     return any_cell(i, [&](std::span<const std::uint32_t> cell) {
@@ -113,7 +114,7 @@ class Overlaps {
   painter_detail::PieceGrid grid_;
 };
 
-/// By polygon, whether no later polygon covers a part of it.
+/// For each polygon, whether no later polygon covers a part of it.
 std::vector<bool> find_uncovered(const ColoredOrder& order, const Execution& execution) {
   const Overlaps overlaps(order);
   painter_detail::PaintEffort effort(execution, order.polygons.size());
@@ -127,10 +128,11 @@ std::vector<bool> find_uncovered(const ColoredOrder& order, const Execution& exe
   return uncovered;
 }
 
-/// The last polygon of a set is its leader: the set is painted in its place.
+/// Sets of polygons that are painted together. The leader of a set is its last polygon, in whose place the set is
+/// painted.
 using PolygonSets = DisjointSets<std::greater<>>;
 
-/// Joins uncovered polygons of one colour that share a part of a side, and those of one shape.
+/// Joins uncovered polygons of one colour that share a part of a side, and consecutive uncovered polygons of one shape.
 PolygonSets joined(const ColoredOrder& colored, const std::vector<std::uint32_t>& shapes,
                    const std::vector<bool>& uncovered, const Execution& execution) {
   PolygonSets sets(uncovered.size());
@@ -157,10 +159,10 @@ PolygonSets joined(const ColoredOrder& colored, const std::vector<std::uint32_t>
   return sets;
 }
 
-/// Nodes are shapes that are painted as a whole, numbered in the original order.
+/// Two nodes. A node is a shape that is painted as a whole; nodes are numbered in the original order.
 using NodePair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Memory of 128 MB. With more pairs, the order stays unchanged.
+/// The most pairs of nodes, which take 128 MB. With more pairs, the order stays unchanged.
 constexpr std::size_t kMostPairs = std::size_t(1) << 24;
 /// Limits on overlap tests; with more, the order stays unchanged.
 constexpr std::size_t kMostAsked = std::size_t(1) << 28, kMostAskedOfPolygon = 1 << 10, kAskedPerPoll = 1 << 12;
@@ -199,7 +201,7 @@ std::optional<std::vector<NodePair>> find_over(const ColoredOrder& colored, cons
   return over;
 }
 
-/// Pairs of translucent neighbours of one opacity.
+/// The pairs of translucent neighbours of one opacity, in both directions.
 std::vector<NodePair> find_beside(const ColoredOrder& colored, const Execution& execution) {
   std::vector<NodePair> beside;
   std::array<std::vector<std::uint32_t>, 255> by_opacity;
@@ -230,8 +232,9 @@ NodeLists lists_of(const std::vector<NodePair>& pairs, std::size_t count) {
   return {count, pairs.size(), list, {.threads = 1}};
 }
 
-/// Opaque nodes that may be painted next go first, in their order; then patches that have no waiting node
-/// beside them; if there are none, the patch with the fewest. O(n log n) in the number of nodes and pairs.
+/// Sorts nodes in painting order. Opaque nodes that may be painted next go first, in their order. Then all patches go
+/// that have no waiting node beside them; if there are none, the patch with the fewest goes. A patch is a set of
+/// translucent neighbours that may be painted next. O(n log n) in the number of nodes and pairs.
 class BlendSorter {
  public:
   /// `over`: the second is painted after the first. `beside`: translucent pairs of one opacity, in both directions.
@@ -250,7 +253,7 @@ class BlendSorter {
   }
 
   /// Nodes in painting order, each with its blend group; groups ascend. Translucent nodes of a group have the same
-  /// opacity, and none is over another; opaque nodes have groups without translucent ones.
+  /// opacity, and none is over another. A group with opaque nodes has no translucent ones.
   [[nodiscard]] std::vector<NodePair> sort() {
     for (std::uint32_t node = 0; node < below_.size(); ++node)
       if (below_[node] == 0) make_ready(node);
@@ -276,7 +279,7 @@ class BlendSorter {
   void make_ready(std::uint32_t node) {
     states_[node] = State::ready;
     if (opacities_[node] == 255) return opaque_.push(node);
-    // The patch of the node and the ready nodes beside it, which have waited for it.
+    // Joins the node and the ready patches beside it, which have waited for it, into one patch.
     std::size_t open = 0;
     std::uint32_t patch = node;
     for (const std::uint32_t other : beside_[node]) {
@@ -296,7 +299,7 @@ class BlendSorter {
     by_open_sides_.insert({open, patch});
   }
 
-  /// Paints all patches without open sides or, if there are none, the one with the fewest.
+  /// Paints all patches without open sides or, if there are none, the patch with the fewest open sides.
   void paint_patches() {
     std::vector<std::uint32_t> taken;
     do {
@@ -333,8 +336,8 @@ class BlendSorter {
   std::vector<State> states_;
   std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> opaque_;
   DisjointSets<std::greater<>> patches_;      ///< patches of translucent nodes that are ready
-  std::vector<std::size_t> open_sides_;       ///< by patch: pairs of one of its nodes with a waiting one
-  std::vector<std::uint32_t> next_in_patch_;  ///< rings of nodes
+  std::vector<std::size_t> open_sides_;       ///< by patch: number of pairs of a node in the patch and a waiting node
+  std::vector<std::uint32_t> next_in_patch_;  ///< the nodes of each patch form a ring
   std::set<std::pair<std::size_t, std::uint32_t>> by_open_sides_;
   std::vector<NodePair> order_;
   std::uint32_t group_ = 0;

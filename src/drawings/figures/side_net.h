@@ -20,7 +20,7 @@
 
 namespace frontmost::shading {
 
-/// O(n log n) in the number of corners, for sides that are short beside the whole.
+/// O(n log n) in the number of corners, if sides are short in comparison with the whole.
 class SideNet {
  public:
   using Corner = painter_detail::TrappedCorner;
@@ -38,7 +38,7 @@ class SideNet {
 
   void clear() { raw_.clear(); }
 
-  /// Splits sides. Call it after all outlines were added.
+  /// Splits sides at the corners that lie on them. Call this after all outlines are added.
   void weave() {
     sides_.clear();
     if (raw_.empty()) return;
@@ -81,7 +81,7 @@ class SideNet {
 
  private:
   static constexpr double kUnits = 4096;  ///< per pixel
-  /// Units that a corner may lie beside its side: both were rounded.
+  /// The greatest distance, in units, between a corner and the side on which it lies. Both were rounded.
   static constexpr double kBesideSide = 1.5;
 
   using Point = glm::i64vec2;
@@ -93,7 +93,8 @@ class SideNet {
     std::uint32_t outline, trap;
   };
 
-  /// All sides between two points: in the direction low to high they are [begin, turn), in the other [turn, end).
+  /// All sides between two points. Sides [begin, turn) lead from the low point to the high point, sides [turn, end)
+  /// back.
   struct Pairs {
     std::size_t begin, turn, end;
     [[nodiscard]] std::size_t count() const { return std::min(turn - begin, end - turn); }
@@ -141,7 +142,7 @@ class SideNet {
     for (std::size_t r = rows_.size() - 1; r-- > 0;) rows_[r] = std::min(rows_[r], rows_[r + 1]);
   }
 
-  /// Sets between_ to the points on a side, in its direction.
+  /// Sets between_ to the points on a side, in the order of the side's direction.
   void find_between(const Point& from, const Point& to) {
     between_.clear();
     const glm::dvec2 way(to - from);
@@ -175,7 +176,7 @@ class SideNet {
     std::sort(between_.begin(), between_.end());
   }
 
-  /// Drops equal numbers of sides in both directions.
+  /// Sides in opposite directions cancel out, so equal numbers of both are dropped.
   void leave_unshared() {
     left_.clear();
     for (std::size_t i = 0; i < sides_.size();) {
@@ -190,7 +191,8 @@ class SideNet {
     is_used_.assign(left_.size(), 0);
   }
 
-  /// Every point has as many ending sides as beginning ones, so every walk returns.
+  /// Finds the next ring. \returns whether there is one. As many sides end at each point as begin there, so every walk
+  /// returns to its first point.
   void walk_around(std::size_t first) {
     ring_.clear();
     std::size_t side = first;
@@ -206,7 +208,7 @@ class SideNet {
     straighten();
   }
 
-  /// Removes corners at which nothing turns.
+  /// Removes corners at which the ring does not turn.
   void straighten() {
     std::vector<Corner> kept;
     const std::size_t count = ring_.size();
@@ -222,12 +224,12 @@ class SideNet {
   }
 
   std::vector<Raw> raw_;
-  std::vector<Point> points_;      ///< by rows, and by x in a row
+  std::vector<Point> points_;      ///< sorted by row, then by x
   std::vector<std::size_t> rows_;  ///< by row: index of its first point
   std::int64_t low_y_ = 0, row_height_ = 1;
   std::vector<std::pair<double, std::uint32_t>> between_;
   std::vector<Side> sides_;  ///< sides between the same points are consecutive
-  std::vector<Side> left_;   ///< sorted by first point
+  std::vector<Side> left_;   ///< sides that are not shared, sorted by first point
   std::vector<std::uint8_t> is_used_;
   std::vector<Corner> ring_;
 };

@@ -1,9 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0
-// R. Ulichney. The Void-and-Cluster Method for Dither Array Generation. 1993: ranks for the cells of a torus, so that
-// the cells below any rank are spread evenly.
-//
-// A dot is repeatedly put into the largest gap; the order of dots is their rank. So one table, made once for all
-// threads, serves for every darkness.
+// SPDX-License-Identifier: Apache-2.0 Ranks the cells of a torus so that, for any rank, the cells of lower rank are
+// spread evenly (R. Ulichney. The Void-and-Cluster Method for Dither Array Generation. 1993). A dot is repeatedly put
+// into the largest gap; the order of dots is their rank. So one table, made once for all threads, serves for every
+// darkness.
 #include "hatching/dot_grid.h"
 
 #include <array>
@@ -13,7 +11,8 @@ namespace {
 
 constexpr int cells_along = DotGrid::side, cell_count = cells_along * cells_along;
 
-/// How crowded each cell is by taken cells. Compilers vectorize the loops; else they take most time of small pictures.
+/// For each cell, how much the taken cells around it crowd it. Compilers vectorize the loops; else they take most time
+/// of small pictures.
 class Torus {
  public:
   Torus() {
@@ -40,7 +39,8 @@ class Torus {
       for (int i = 0; i < cells_along; ++i) crowd[i] += sign * double(near[i]);
     }
   }
-  /// The most crowded of the taken cells, or the least crowded of the free ones; the first of equals.
+  /// With `taken`, the most crowded of the taken cells; otherwise the least crowded of the free cells. Among equals,
+  /// the first.
   [[nodiscard]] int extreme(bool taken) const {
     const double sign = taken ? 1 : -1;
     const auto value = [&](int cell) { return sign * crowd_[std::size_t(cell)] + barred_[taken][std::size_t(cell)]; };
@@ -63,13 +63,13 @@ class Torus {
  private:
   static constexpr double never = -1e300;
 
-  std::array<float, 2 * cell_count> near_{};  ///< by distance, from minus to plus the size of a row
+  std::array<float, 2 * cell_count> near_{};  ///< weight by distance; x goes from minus to plus the size of a row
   std::array<double, cell_count> crowd_{};
   std::array<std::array<double, cell_count>, 2>
-      barred_{};  ///< 0 for cells in the state (free, taken), `never` for others
+      barred_{};  ///< [0]: 0 for free cells; [1]: 0 for taken cells; `never` for others
 };
 
-/// A generator of the same numbers on every machine.
+/// A random generator with the same numbers on every machine.
 struct Shuffle {
   std::uint64_t state = 1;
   std::uint32_t next() {
@@ -88,7 +88,7 @@ std::vector<int> ranks() {
     torus.set(cell, true);
     ++taken;
   }
-  // Moves a dot from the thickest crowd to the widest gap, until that is the place it came from.
+  // Moves a dot from the most crowded cell to the widest gap, until this gap is the cell that it left.
   for (int i = 0; i < cell_count; ++i) {
     const int from = torus.extreme(true);
     torus.set(from, false);

@@ -3,7 +3,7 @@
 //
 //    row 3   .  o    .   o      Each square cell holds one place, a little off its middle so that no columns
 //    row 2     .   o  .   .     show. A place has a dot (o) where the picture is darker than the place's limit;
-//    row 1   o   .    o   .     limits follow the ranks, so dots thin out evenly.
+//    row 1   o   .    o   .     limits are spread so that dots thin out evenly.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ class DotGrid {
  public:
   static constexpr int side = 64;
 
-  /// `spacing` of dots where it is darkest, and `width` of the picture, both in pixels.
+  /// `spacing` is the distance of dots where it is darkest, `width` the width of the picture, both in pixels.
   DotGrid(double spacing, double width);
   [[nodiscard]] static double cell_of(double spacing) { return spacing / 2; }
 

@@ -256,7 +256,8 @@ void find_dark(const NormalAlong& normal, const glm::dvec3& to_light, double lim
 constexpr std::size_t triangles_per_part = 256, triangles_per_poll = 16;
 constexpr std::size_t most_pieces = std::size_t(1) << 26, pieces_per_tally = 1 << 16;
 constexpr std::uint32_t lines_per_poll = 256;
-/// The most boxes of triangles that lines are compared with.
+/// Lines are compared with at most `most_boxes` boxes of triangles, and `most_boxes_of_triangle` more for each
+/// triangle.
 constexpr std::uint64_t most_boxes = std::uint64_t(1) << 33, most_boxes_of_triangle = 1 << 14;
 
 /// \returns the unit direction to the light.
@@ -270,7 +271,8 @@ glm::dvec3 light_of(const ToneOptions& tone, const View& view) {
   return *tone.to_light / length;
 }
 
-/// Coincident triangles hide no more and have no other lines than one of them, so only the first is kept.
+/// The seen triangles without twins. Coincident triangles hide no more than one of them and have the same lines, so
+/// only the first is kept.
 SeenMesh see_once(const WeldedMesh& mesh, const std::vector<std::uint32_t>& twins, const Sight& sight,
                   const Execution& execution) {
   SeenMesh seen = see(mesh, sight, execution);
@@ -310,7 +312,7 @@ struct Scenery {
   const EdgeOccluders occlusion;
 };
 
-/// A scene that answers how dark it is along lines. Borrows the surfaces.
+/// A scene with the data that tells how dark it is along lines. Borrows the surfaces.
 struct TonedScene {
   /// \throws Error bad_argument for options out of range.
   TonedScene(const Surfaces& its_surfaces, const View& view, const ToneOptions& tone, const Execution& execution)
@@ -337,8 +339,9 @@ struct TonedScene {
 struct HatchTask {
   const std::vector<HatchSet>& sets;
   bool by_instance = true;
-  const DotGrid* dots = nullptr;  ///< dots of sets[0]: then pieces are dots
-  /// One bit for each set of a material; the last entry is for triangles without material. Empty: all have all sets.
+  const DotGrid* dots = nullptr;  ///< not null: pieces are dots of this grid, in the rows of sets[0]
+  /// For each material, one bit for each of its sets; the last entry is for triangles without a material. Empty: all
+  /// triangles have all sets.
   std::vector<std::uint32_t> sets_by_material{};
 };
 
@@ -350,7 +353,7 @@ class Hatcher {
     if (scene.light) lit_.emplace(scene.light->occlusion);
   }
 
-  /// Counts the work since the last call. \throws Error limit_exceeded, cancelled.
+  /// Adds the work since the last call to the work limit. \throws Error limit_exceeded, cancelled.
   void tell() {
     work_.add(seen_.take_work() + (lit_ ? lit_->take_work() : 0), [this] {
       return "too many of " + std::to_string(scene_.mesh.triangles.size()) + " triangles lie over each other";
@@ -372,7 +375,7 @@ class Hatcher {
       if ((sets >> set & 1) == 0) continue;
       const HatchRows::Range range = rows_[set].range_of(triangle);
       for (std::int32_t line = range.first; line <= range.last; ++line) {
-        // A triangle may fill a very large picture.
+        // One triangle may fill a very large picture, and so have very many lines.
         if (++lines_ % lines_per_poll == 0) tell();
         const std::optional<HatchSegment> segment = rows_[set].segment(triangle, line);
         if (!segment) continue;
@@ -383,7 +386,8 @@ class Hatcher {
   }
 
  private:
-  /// A possible dot: its position along the line, and along the segment.
+  /// A possible dot: its position along the line, its parameter t along the segment, and the brightness below which it
+  /// is drawn.
   struct Dot {
     double along, t, below;
   };
@@ -461,8 +465,8 @@ class Hatcher {
     std::erase_if(parts_, [](const DrawnPart& part) { return part.hidden_by != 0; });
   }
 
-  /// Normals on the visible side. A triangle that faces away from the light gets no shadows: its smooth normals give
-  /// what brightness is left near the terminator.
+  /// Finds the triangle's normals on its visible side. A triangle that faces away from the light gets no shadows,
+  /// because its smooth normals give the brightness that is left near the terminator.
   void find_normals(std::uint32_t triangle) {
     if (has_normals_) return;
     has_normals_ = true;
@@ -503,7 +507,7 @@ class Hatcher {
   std::vector<Dot> dots_;
 };
 
-/// The pieces of all lines, in any order.
+/// The pieces of all lines, in the order of the triangles.
 std::vector<HatchPiece> pieces_of(const TonedScene& scene, const HatchTask& task, const std::vector<HatchRows>& rows,
                                   const Execution& execution) {
   const std::size_t count = scene.mesh.triangles.size();

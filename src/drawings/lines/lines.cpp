@@ -8,7 +8,7 @@
 //                              |                             |
 //                              +--> candidates --EdgeCutter--+--> parts, seen and hidden
 //
-// Edges are cut in parts of 64, in parallel, and the parts' lists are joined in order.
+// Threads cut 64 edges at a time, and their lists of parts are joined in the order of the edges.
 #include "frontmost/lines.h"
 
 #include <algorithm>
@@ -31,11 +31,12 @@ using namespace lines_detail;
 
 constexpr std::size_t kEdgesPerPart = 64, kEdgesPerPoll = 16;
 constexpr std::size_t kPartsPerTally = 1 << 16;
-/// The most parts of a drawing is kMostParts and kMostPartsOfEdge for each edge: five times what a city has.
+/// A drawing has at most kMostParts parts, and kMostPartsOfEdge more for each edge: five times what a city has.
 constexpr std::size_t kMostParts = std::size_t(1) << 21, kMostPartsOfEdge = 4;
-/// The most boxes of triangles that are compared with edges, at 0.6 nanoseconds each: sixty times what a city takes.
+/// At most kMostBoxes boxes of triangles are compared with edges, and kMostBoxesOfEdge more for each edge. A comparison
+/// takes 0.6 nanoseconds. The limit is sixty times what a city takes.
 constexpr std::uint64_t kMostBoxes = std::uint64_t(1) << 35, kMostBoxesOfEdge = 1024;
-/// Memory of all Buffers of a drawing together, with room to spare: the bunny takes 260.
+/// Memory of all Buffers of a drawing together, with a reserve: the bunny takes 260 bytes per triangle.
 constexpr std::size_t kBytesPerTriangle = 400;
 constexpr double kCutFrom = 0.3;  // share of the progress at which cutting begins
 
@@ -110,7 +111,7 @@ void cut_all(const Candidates& candidates, const EdgeOccluders& occlusion, const
   drawing.parts = joined(lists, execution);
 }
 
-/// Adds to the message of a limit where most triangles lie over each other.
+/// Adds to the message of a limit the place where most triangles lie over each other.
 Error with_place(const Error& error, const OccluderGrid& grid, const WeldedMesh& mesh, const Surfaces& surfaces) {
   const OccluderGrid::Crowd crowd = grid.largest_crowd();
   if (error.code() != ErrorCode::limit_exceeded || crowd.count == 0) return error;
@@ -121,7 +122,7 @@ Error with_place(const Error& error, const OccluderGrid& grid, const WeldedMesh&
               std::to_string(surfaces.source(id).instance) + "; leave out faces that lie there many times"};
 }
 
-/// Closes the mesh's seams.
+/// The properties of the mesh's triangles, after closing the mesh's seams.
 SeenMesh see_closed(WeldedMesh& mesh, const Sight& sight, const Execution& execution) {
   SeenMesh seen = see(mesh, sight, execution);
   if (!close_seams(mesh, seen.facing, execution)) return seen;

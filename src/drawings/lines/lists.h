@@ -22,8 +22,8 @@ template <class T>
   return all;
 }
 
-/// Sorts like std::sort and can be stopped. Precondition: equal values are identical, or there are none. Parts are
-/// sorted on their own, and neighbours are merged until one is left: O(n log n) on one thread, O(n) on many.
+/// Sorts like std::sort, but can be cancelled. Precondition: values that compare equal are identical. Parts are sorted
+/// on their own, and neighbouring parts are merged until one part is left: O(n log n) on one thread, O(n) on many.
 template <class T, class Less>
 void sort_in_parts(std::vector<T>& values, const Less& less, const Execution& execution) {
   constexpr std::size_t part = 1 << 15;

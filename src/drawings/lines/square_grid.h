@@ -30,7 +30,7 @@ struct PassedCell {
 /// Squares are numbered row by row.
 struct SquareGrid {
   glm::dvec2 low{0};
-  double size = 1;  ///< side of a square
+  double size = 1;  ///< side length of a square
   int columns = 1, rows = 1;
 
   [[nodiscard]] std::size_t count() const { return std::size_t(columns) * std::size_t(rows); }
@@ -66,7 +66,7 @@ struct SquareGrid {
   }
 
  private:
-  /// The square's index along one axis, from -1 to `count`; both of these lie outside of the grid.
+  /// The index of a square along one axis, from -1 to `count`. Squares -1 and `count` are outside of the grid.
   [[nodiscard]] int index(double offset, int count) const {
     return int(std::clamp(offset / size + 1, 0.0, count + 1.0)) - 1;
   }

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Vectors of three coordinates, each of which is a vector of lanes. Kernels of this room take differences and products
-// of them, and normals with bounds on rounding errors.
+// SPDX-License-Identifier: Apache-2.0 Vectors of three coordinates, each of which is a vector of lanes. The kernels of
+// this room compute differences and products of such vectors, and normals with bounds on rounding errors.
 
 // This file is included once for every target.
 #if defined(FRONTMOST_LINES_VECTOR3_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -44,7 +43,7 @@ HWY_INLINE V Dot(const Lanes3<V>& a, const Lanes3<V>& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
 
-/// BoundedNormal of base/exact_vector.h for vectors: the same operations in the same order, in doubles.
+/// BoundedNormal of base/exact_vector.h for vectors of lanes: the same operations in the same order, in doubles.
 template <class V>
 struct BoundedNormals {
   Lanes3<V> value, error;

@@ -26,7 +26,7 @@ struct Span {
   double begin, end;
 };
 
-/// A path, addressed by length.
+/// A path whose points are addressed by their distance along the path.
 struct Ruler {
   struct Leg {
     Join join;
@@ -44,7 +44,8 @@ struct Ruler {
     }
   }
 
-  /// The spans from corner to corner. A closed path begins at a corner, or is one span if it has none.
+  /// The spans from corner to corner. The first span of a closed path begins at its first corner; without corners, a
+  /// closed path has no spans.
   [[nodiscard]] std::vector<Span> spans() const {
     std::vector<double> corners;
     if (!is_closed) corners.push_back(0);
@@ -61,7 +62,8 @@ struct Ruler {
     return spans;
   }
 
-  /// Adds the part of the path within the span as a path. On a closed path, the span may cross the end once.
+  /// Adds the part of the path within the span to `group`, as a path of its own. On a closed path, the span may cross
+  /// the path's end once.
   void cut(const Span& span, PageGroup& group) const {
     PagePath path{std::uint32_t(group.points.size()), 0, false};
     for (int round = 0; round < (is_closed ? 2 : 1); ++round)
@@ -111,17 +113,18 @@ struct Ruler {
   double length = 0;
 };
 
-/// The dashes of a pen: drawn, gap, drawn and so on.
+/// The dash pattern of a pen: a dash, a gap, a dash and so on.
 class Pattern {
  public:
   explicit Pattern(const std::vector<double>& dashes) : dashes_(dashes) {
     for (const double dash : dashes) period_ += dash;
   }
 
-  /// The approximate number of dashes on a line of that length.
+  /// The approximate number of dashes on a line of length `length`.
   [[nodiscard]] double count_on(double length) const { return length / period_ * double(dashes_.size() / 2); }
 
-  /// Appends the dashes of a span, which begins and ends with the first one; a span too short for a gap is one dash.
+  /// Appends the dashes of a span. The span begins and ends with the pattern's first dash; a span too short for a gap
+  /// is one dash.
   void fill(const Span& span, std::vector<Span>& drawn) const {
     const double length = span.end - span.begin, times = std::round((length - dashes_[0]) / period_);
     if (times < 1) return append(span, drawn);
@@ -148,7 +151,8 @@ class Pattern {
     return at;
   }
 
-  /// Appends a dash, or extends the last one if it ends where this one begins, around a corner.
+  /// Appends a dash. If the last dash ends where the new one begins, around a corner, the last dash is extended
+  /// instead.
   static void append(const Span& span, std::vector<Span>& drawn) {
     if (!drawn.empty() && drawn.back().end == span.begin)
       drawn.back().end = span.end;
@@ -160,7 +164,7 @@ class Pattern {
   double period_ = 0;
 };
 
-/// The spans of a path that its pattern draws.
+/// The spans of a path that are drawn as dashes.
 std::vector<Span> drawn_of(const Ruler& ruler, const Pattern& pattern) {
   const std::vector<Span> spans = ruler.spans();
   std::vector<Span> drawn;
@@ -174,13 +178,13 @@ std::vector<Span> drawn_of(const Ruler& ruler, const Pattern& pattern) {
   return drawn;
 }
 
-/// Turns the dashes of a group, `most` at most, into paths.
+/// Turns the dashes of a group, at most `most` of them, into paths.
 PageGroup with_cut_dashes(const PageGroup& group, std::size_t most, const Execution& execution) {
   const Pattern pattern(group.pen.dashes);
   PageGroup cut{group.name, group.pen};
   cut.pen.dashes.clear();
   std::size_t steps = 0;
-  const auto poll = [&] {  // only sometimes: a check takes longer than a dash
+  const auto poll = [&] {  // only sometimes, because a check takes longer than a dash
     if (++steps % 1024 == 0) check_cancelled(execution);
   };
   for (const PagePath& path : group.paths) {

@@ -20,7 +20,7 @@
 namespace frontmost::detail {
 namespace {
 
-/// Release 12 allows capitals, digits, $, - and _.
+/// The name in characters that release 12 allows: capitals, digits, $, - and _.
 std::string table_text(const std::string& name) {
   std::string clean;
   for (const char c : name) {
@@ -31,7 +31,7 @@ std::string table_text(const std::string& name) {
   return clean;
 }
 
-/// A longer list of layers helps nobody.
+/// With more layers, each layer of the page is only one DXF layer, because a longer list helps nobody.
 constexpr std::size_t most_layers = 1000;
 
 struct Layer {
@@ -85,7 +85,7 @@ class DxfWriter {
         types_.try_emplace(type_name(group.pen), group.pen.dashes);
         const bool is_own = groups <= most_layers && !group.name.empty();
         if (!is_own && !common) common = add(of_class, group.pen);
-        // The class is not shortened, so that programs can select all of it.
+        // On sheets, every class with named groups fits into 11 characters, so that programs can select all of a class.
         layers_of_groups_.back().push_back(
             is_own ? add(of_class.substr(0, 11) + "-" + table_text(group.name), group.pen) : *common);
       }
@@ -120,7 +120,7 @@ class DxfWriter {
     text(2, name);
   }
   void end_section() { text(0, "ENDSEC"); }
-  /// Flips y from down to up.
+  /// Writes a point, with y flipped from down to up.
   void point(const glm::dvec2& p, int code = 10) {
     number(code, p.x);
     number(code + 10, page_.height - p.y);
@@ -207,7 +207,7 @@ class DxfWriter {
     }
   }
 
-  /// Properties that are not written are those of the layer, and change with it.
+  /// Begins an entity. Properties that are not written are those of the layer, and change with the layer.
   void entity(std::string_view kind, const std::string& layer) {
     text(0, kind);
     text(8, layer);

@@ -23,7 +23,7 @@ std::optional<Arc> arc_between(const glm::dvec2& from, const glm::dvec2& to, dou
   const glm::dvec2 chord = to - from;
   const double length = glm::length(chord);
   if (std::abs(bulge) * length * 0.5 < flat) return std::nullopt;  // the height of the arc over its chord
-  // The centre lies on the chord's bisector; it changes sides where the arc passes a half circle.
+  // The centre lies on the chord's bisector, and changes sides if the arc is more than a half circle.
   const glm::dvec2 middle = (from + to) * 0.5, across(-chord.y, chord.x);
   Arc arc;
   arc.centre = middle + across * ((1 - bulge * bulge) / (4 * bulge));
@@ -49,7 +49,7 @@ std::optional<Arc> whole_arc(const PageGroup& group, const PagePath& path) {
     if (!same) return std::nullopt;
     whole->turn += arc->turn;
   }
-  // More than once around is another shape.
+  // A path that goes around more than once is no arc.
   if (whole && std::abs(whole->turn) > 6.2832) return std::nullopt;
   return whole;
 }

@@ -43,10 +43,10 @@ struct Join {
   return path.is_closed ? path.count : path.count - 1;
 }
 
-/// The circle on which a whole path lies, in one direction; none otherwise.
+/// The arc that a whole path forms, if all its joins run along one circle in one direction; none otherwise.
 [[nodiscard]] std::optional<Arc> whole_arc(const PageGroup& group, const PagePath& path);
 
-/// Coordinates are rounded to thousandths. Millimetres are doubles of at most 1e9, so the result fits.
+/// Rounds a coordinate in millimetres to thousandths. Coordinates are at most 1e9, so the result fits.
 [[nodiscard]] inline std::int64_t thousandths(double value) { return std::llround(value * 1000); }
 [[nodiscard]] inline glm::i64vec2 thousandths(const glm::dvec2& p) { return {thousandths(p.x), thousandths(p.y)}; }
 
@@ -98,7 +98,7 @@ class PageText {
 /// A PDF text string in UTF-16, cleaned by printable_text(), as hexadecimal digits in brackets.
 [[nodiscard]] std::string pdf_text(std::string_view name);
 
-/// Writers get valid pages, and do not commit the file.
+/// The writers of the formats. They get valid pages, and do not commit the file.
 void save_svg(const Page& page, OutputFile& file, const Execution& execution);
 void save_pdf(std::span<const Page> pages, OutputFile& file, const Execution& execution);
 /// \throws Error unsupported if some path is filled, before anything is written.

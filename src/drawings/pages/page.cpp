@@ -1,8 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0
-// Pages are validated here, so that their writers have no error paths. Refused is whatever a format could not write:
-// numbers that are not finite or have too many digits, lists of different lengths, paths with missing points.
-//
-// The shapes of a figure become filled paths of a page, and each of its blend groups becomes a group with an opacity.
+// SPDX-License-Identifier: Apache-2.0 Pages are validated here, so that their writers have no error paths. A page is
+// refused if a format could not write it: for numbers that are not finite or have too many digits, for lists of
+// different lengths, and for paths with missing points. The shapes of a figure become filled paths of a page, and each
+// of its blend groups becomes a group with an opacity.
 #include <cmath>
 #include <filesystem>
 #include <span>
@@ -40,10 +39,11 @@ void check_group(const PageGroup& group, const std::string& where) {
   for (const PagePath& path : group.paths)
     if (path.count == 0 || path.first >= group.points.size() || path.count > group.points.size() - path.first)
       refuse(where, "a path has no points, or points beyond the last one of the page");
-  if (!group.paths.empty() && group.paths[0].is_part) refuse(where, "the first path is part of none");
+  if (!group.paths.empty() && group.paths[0].is_part)
+    refuse(where, "the first path is part of a path, but there is none before it");
 }
 
-/// The size of a pixel in style sheets, so that a figure is as large on a page as the picture in a browser.
+/// Millimetres per pixel, as in style sheets, so that a figure is as large on a page as the picture in a browser.
 constexpr double kMillimetres = 25.4 / 96;
 
 PageGroup backdrop(const glm::vec3& color, const Page& page) {
@@ -57,7 +57,8 @@ PageGroup backdrop(const glm::vec3& color, const Page& page) {
   return group;
 }
 
-/// The end of a blend group of several shapes; otherwise the begin of the next such group.
+/// The end of the shapes from `begin` on that become one page group: a blend group of several shapes, or all shapes
+/// before the next such blend group.
 std::size_t end_of_group(std::span<const FigureShape> shapes, std::size_t begin) {
   const auto goes_on = [&](std::size_t i) {
     return i + 1 < shapes.size() && shapes[i + 1].blend_group == shapes[i].blend_group;

@@ -78,7 +78,7 @@ class PdfContent {
 
   void write_page() {
     std::size_t form = 0;
-    // Millimetres with y down, like the page; round ends and joins.
+    // Sets millimetres with y down, as on the page, and round ends and joins.
     out_.fixed(std::llround(scale_ * 1e9), 9) << " 0 0 ";
     out_.fixed(-std::llround(scale_ * 1e9), 9) << " 0 ";
     out_.fixed(std::llround(page_.height * scale_ * 1e6), 6) << " cm 1 J 1 j\n";
@@ -119,7 +119,7 @@ class PdfContent {
     std::size_t points = 0;
     for (std::size_t i = 0; i < group.paths.size(); ++i) {
       progress_.step();
-      if (group.paths[i].is_part && !group.fills.empty()) continue;  // drawn with the path that it is part of
+      if (group.paths[i].is_part && !group.fills.empty()) continue;  // drawn with the path before it
       const PathPaint paint = paint_of(group, i);
       if (!paint.is_seen()) continue;
       set(paint);
@@ -127,7 +127,7 @@ class PdfContent {
       points += group.paths[i].count;
       for (std::size_t k = i + 1; paint.fill && k < group.paths.size() && group.paths[k].is_part; ++k)
         write_path(group, group.paths[k]);
-      // Lines share a painting operator. Fills do not: where they overlap, the later one is above.
+      // Lines share a painting operator. Fills do not, because the later of two overlapping fills is above the other.
       if (paint.fill) {
         out_ << (paint.line ? "B\n" : "f\n");
         points = 0;
@@ -218,7 +218,7 @@ struct PdfPage {
   std::size_t object, contents, length;
   std::vector<std::size_t> layers;  ///< by layer of the page: its index among all layers
   std::vector<Form> forms;
-  double unit;   ///< viewers refuse pages of more than 14400 units
+  double unit;   ///< points per unit, because viewers refuse pages of more than 14400 units
   double scale;  ///< units per millimetre
 };
 
@@ -301,7 +301,8 @@ class PdfWriter {
     return content.states();
   }
 
-  /// Resources are written before it is known which of them a form uses, so all opacities of its group are listed.
+  /// Writes a form. Its resources are written before it is known which of them the form uses, so all opacities of its
+  /// group are listed.
   void write_form(const PdfPage& page, const PdfPage::Form& form) {
     const PageGroup& group = *form.group;
     glm::dvec2 low(0), high(page.page->width, page.page->height);
@@ -350,7 +351,7 @@ class PdfWriter {
   void write_page(const PdfPage& page, const States& states) {
     begin(page.object) << "<< /Type /Page /Parent 2 0 R /Contents ";
     reference(page.contents) << "/MediaBox [0 0 ";
-    // Rounded down, because rasterizers round up.
+    // The size is rounded down, because rasterizers round up.
     out_.fixed(std::int64_t(page.page->width * page.scale * 1e6), 6) << ' ';
     out_.fixed(std::int64_t(page.page->height * page.scale * 1e6), 6) << "]";
     if (page.unit > 1) out_ << " /UserUnit " << std::int64_t(page.unit);

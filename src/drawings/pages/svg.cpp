@@ -75,7 +75,7 @@ class SvgWriter {
 
   /// Each line is an element, so that editors can remove or change it alone.
   void write_lines(const PageGroup& group) {
-    std::size_t dots = 0;  // in the open element
+    std::size_t dots = 0;  // number of dots in the open element
     for (const PagePath& path : group.paths) {
       progress_.step();
       const bool is_dot = path.count == 1;
@@ -129,7 +129,7 @@ class SvgWriter {
     for (std::uint32_t i = 0; i < joins; ++i) {
       const Join join = join_of(group, path, i);
       const std::optional<Arc> arc = arc_between(join.from, join.to, join.bulge);
-      if (path.is_closed && i + 1 == joins && !arc) break;  // z draws it
+      if (path.is_closed && i + 1 == joins && !arc) break;  // z draws this join
       const glm::i64vec2 to = thousandths(join.to);
       arc ? turn(*arc, to - at) : step(to - at);
       at = to;

@@ -13,21 +13,21 @@
 namespace frontmost {
 namespace {
 
-constexpr double kSquare = 2e-3;         // sine of the greatest angle to the view, or to its plane, of an axis
+constexpr double kSquare = 2e-3;  // sine of an axis' greatest angle to the line of sight, or to the picture's plane
 constexpr double kSameDirection = 2e-4;  // radians
 constexpr double kLeastDrawn = 0.2;      // share of a round's own length that must be drawn
 constexpr double kLeastSize = 1.0 / 6;   // radius of the smallest circle, as a share of the overshoot
 constexpr double kLeastOvershoot = 1.0 / 3;
-constexpr double kSameLine = 1.0 / 6;      // as a share of the overshoot: two widths of the line
-constexpr double kWidestGap = 10.0 / 3;    // as a share of the overshoot: between bores of one axis
-constexpr double kWidestGapInRadii = 4.0;  // applies where it is more
+constexpr double kSameLine = 1.0 / 6;    // greatest offset within one line, as a share of the overshoot: two pen widths
+constexpr double kWidestGap = 10.0 / 3;  // between bores of one axis, as a share of the overshoot
+constexpr double kWidestGapInRadii = 4.0;  // in radii of the smaller bore; applies if it is more
 
 /// A piece of a straight line.
 struct AxisPiece {
   glm::dvec2 direction;  ///< unit length
   double offset;         ///< distance of the line from the origin, to the left of its direction
   double begin, end;     ///< along the line
-  double radius;         ///< radius of the round that it belongs to
+  double radius;         ///< radius of the round to which the piece belongs
 };
 
 AxisPiece piece_between(const glm::dvec2& from, const glm::dvec2& to, double radius) {
@@ -78,7 +78,8 @@ struct CentreLiner {
     if (glm::length(glm::cross(round.axis, view.forward())) <= kSquare) {
       if (drawn >= kLeastDrawn * round.turn * radius) add_cross(on_screen(view, round.from), radius);
     } else if (std::abs(glm::dot(round.axis, view.forward())) <= kSquare && drawn >= kLeastDrawn * length) {
-      // Circles appear as lines; they have no length along their axes, but may lengthen the axes of others.
+      // A circle that is seen from the side appears as a line. It has no length along its axis, but may lengthen the
+      // axis of other rounds.
       if (drawn < kLeastDrawn * radius) return;
       const glm::dvec2 middle = on_screen(view, (round.from + round.to) * 0.5);
       const glm::dvec2 ahead = on_screen(view, (round.from + round.to) * 0.5 + round.axis) - middle;

@@ -47,7 +47,8 @@ struct RunFinder {
     return mesh.mesh.positions[chain.vertices[i % chain.vertices.size()]];
   }
 
-  /// The angle around the circle of the sides from `first` to `last`; none if they are not chords of it.
+  /// The angle that the sides from `first` to `last` cover around the circle; none if these sides are not chords of the
+  /// circle.
   [[nodiscard]] std::optional<double> turn_along(const Circle3& circle, std::size_t first, std::size_t last) const {
     if (!(circle.radius >= kSmallestRadius * mesh.noise)) return std::nullopt;
     double turn = 0;
@@ -96,7 +97,7 @@ class ArcJoiner {
     const Key middle{std::int64_t(std::floor(cell.x)), std::int64_t(std::floor(cell.y)),
                      std::int64_t(std::floor(cell.z))};
     for (int i = 0; i < 8; ++i) {
-      // The neighbours on the nearer sides: equal circles are less than half a cell away.
+      // The cell and its neighbours on the nearer sides suffice, because equal circles are less than half a cell away.
       const auto moved = [&](int axis) {
         const bool is_high = cell[axis] - std::floor(cell[axis]) >= 0.5;
         return (i >> axis & 1) == 0 ? 0 : is_high ? 1 : -1;
@@ -132,8 +133,8 @@ class ArcJoiner {
 };
 
 constexpr std::size_t kSeedsPerPart = 4096;
-constexpr double kFlat = 0.9999999;  // cosine of 0.026 degrees: the two halves of a plane
-constexpr double kUpright = 0.01;    // radians from the axis, for neighbours of the two triangles
+constexpr double kFlat = 0.9999999;  // cosine of 0.026 degrees: triangles that turn by less lie in one plane
+constexpr double kUpright = 0.01;    // radians: greatest lean of a triangle that counts as parallel to the axis
 constexpr double kRoughlyUpright = 0.1;
 constexpr double kFacesOut = 0.9;       // least cosine between the normal and the direction from the axis
 constexpr double kWholeSagitta = 1.05;  // times the sagitta of the mean side
@@ -229,7 +230,7 @@ struct Seeds {
       if (!mesh.is_smooth(triangle, k)) continue;
       const std::uint32_t next = mesh.across(triangle, k);
       if (is_twice(next)) return true;
-      // The next ring may begin behind the other half of the triangle's quad.
+      // The next ring may begin beyond the other half of the triangle's quad.
       for (int j = 0; j < 3; ++j)
         if (mesh.is_smooth(next, j) && is_twice(mesh.across(next, j))) return true;
     }
@@ -257,8 +258,9 @@ struct WallGrower {
     return grown(true);
   }
 
-  /// Grows a wall from a side of a circle whose triangle is parallel to the axis. `may_be_cut`: vertices may lie on
-  /// chords, inside of the radius, where something else cuts the wall; a circle is precise enough to allow that.
+  /// Grows a wall from `triangle`, which has a side on `circle`, if the triangle is parallel to the circle's axis.
+  /// `step` is the angle of a side. With `may_be_cut`, vertices may also lie inside of the radius, on chords, because
+  /// something else cuts the wall there. A circle is precise enough to allow that.
   [[nodiscard]] std::optional<FoundRound> grow(const Circle3& circle, double step, std::uint32_t triangle,
                                                bool may_be_cut) {
     if (is_used[triangle]) return std::nullopt;
@@ -289,7 +291,7 @@ struct WallGrower {
       if (!fits || (fit() && holds_all())) return measured();
       return std::nullopt;
     }
-    // A short run of triangles may belong to a wall that begins with a better axis.
+    // Too few triangles are released again, because they may belong to a wall that begins with a better axis.
     for (const std::uint32_t t : triangles) is_used[t] = false;
     return std::nullopt;
   }
@@ -372,14 +374,15 @@ struct WallGrower {
   const SmoothMesh& mesh;
   std::vector<bool> is_used = std::vector<bool>(mesh.mesh.triangles.size());
   Tube current{};
-  double slack = 0, within = 0, outside = 1;  ///< how far vertices may be outside of the radius, and inside
+  double slack = 0, within = 0, outside = 1;  ///< slack_ and within_: how far vertices may lie outside and inside of
+                                              ///< the radius; outside_: 1, or -1 if hollow
   std::vector<std::uint32_t> triangles{};
 };
 
 }  // namespace
 
 double covered(const FoundCircle& circle) {
-  std::vector<std::pair<double, double>> spans;  // angles from the begin of the first arc
+  std::vector<std::pair<double, double>> spans;  // angles from the beginning of the first arc
   for (const FoundCircle::Arc& arc : circle.arcs) {
     double begin = circle.circle.turn_between(circle.arcs[0].from, arc.from);
     if (begin < 0) begin += kWhole;
@@ -420,7 +423,7 @@ std::vector<FoundRound> find_walls(const SmoothMesh& mesh, const std::vector<Fou
   const auto grow_from_circles = [&](bool may_be_cut) {
     for (const FoundCircle& circle : circles) {
       check_cancelled(execution);
-      // Most sides have two triangles.
+      // The mean angle of a side, because most sides have two triangles.
       const double step = std::min(kWidestStep, 2 * covered(circle) / double(circle.triangles.size()));
       for (const std::uint32_t triangle : circle.triangles)
         keep(grower.grow(circle.circle, step, triangle, may_be_cut));

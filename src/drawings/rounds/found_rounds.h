@@ -25,12 +25,13 @@ struct Circle3 {
   glm::dvec3 centre, axis;  ///< unit axis; seen from its tip, the circle runs anticlockwise
   double radius;
 
-  /// The angle from one point to the next around the axis, in (-pi, pi].
+  /// The angle from point a to point b around the axis, in (-pi, pi].
   [[nodiscard]] double turn_between(const glm::dvec3& a, const glm::dvec3& b) const {
     const glm::dvec3 u = a - centre, v = b - centre;
     return std::atan2(glm::dot(axis, glm::cross(u, v)), glm::dot(u, v) - glm::dot(u, axis) * glm::dot(v, axis));
   }
-  /// The approximate distance of a point: the greater of its distances from the plane and from the radius.
+  /// The approximate distance of a point from the circle: its distance from the circle's plane, or its distance from
+  /// the cylinder over the circle, whichever is greater.
   [[nodiscard]] double distance(const glm::dvec3& point) const {
     const glm::dvec3 u = point - centre;
     const double height = glm::dot(u, axis);
@@ -49,7 +50,7 @@ struct Circle3 {
   return Circle3{a + to_centre, normal / std::sqrt(square), radius};
 }
 
-/// The distance between the middle of a chord and its circle.
+/// The distance between the circle and the middle of a chord that spans `step` radians.
 [[nodiscard]] inline double sagitta(double radius, double step) { return radius * (1 - std::cos(step / 2)); }
 
 /// A cylinder without ends.
@@ -57,14 +58,14 @@ struct Tube {
   glm::dvec3 point, axis;  ///< `point` is on the axis; the axis has unit length
   double radius;
 
-  /// The vector from the axis to the point, at a right angle.
+  /// The vector from the axis to the point `at`, perpendicular to the axis.
   [[nodiscard]] glm::dvec3 outwards(const glm::dvec3& at) const {
     const glm::dvec3 u = at - point;
     return u - glm::dot(u, axis) * axis;
   }
 };
 
-/// Two unit vectors across a third.
+/// Two unit vectors that are perpendicular to each other and to `axis`.
 struct Across {
   glm::dvec3 u, v;
   explicit Across(const glm::dvec3& axis);
@@ -77,9 +78,9 @@ inline constexpr double kWhole = 2 * std::numbers::pi;  ///< radians of a whole 
 
 struct SmoothMesh {
   WeldedMesh mesh;
-  Buffer<glm::dvec3> normals;  ///< unit length; zero where rounding leaves no direction
+  Buffer<glm::dvec3> normals;  ///< unit length; zero if rounding leaves no direction
   EdgeNeighbours neighbours;
-  double noise = 0;  ///< by how much corners may be off their places: what six digits leave open
+  double noise = 0;  ///< greatest error of a corner's place, as in files with six digits
 
   [[nodiscard]] glm::dvec3 corner(std::uint32_t triangle, int k) const {
     return mesh.positions[mesh.triangles[triangle][k]];
@@ -94,7 +95,8 @@ struct SmoothMesh {
   }
 };
 
-/// O(triangles log triangles at a vertex). \throws Error limit_exceeded as EdgeNeighbours does.
+/// Welds a scene and finds neighbours. O(triangles log triangles at a vertex). \throws Error limit_exceeded as
+/// EdgeNeighbours does.
 [[nodiscard]] SmoothMesh smooth_mesh(const Surfaces& surfaces, const Execution& execution);
 
 /// An edge and its triangles; `right` may be no_index.
@@ -113,7 +115,7 @@ struct SharpChains {
   std::vector<SharpChain> chains;
 };
 
-inline constexpr std::size_t kFewestSides = 4;  ///< the fewest of an arc
+inline constexpr std::size_t kFewestSides = 4;  ///< the fewest sides of an arc
 
 /// Chains of at least kFewestSides edges. Where several edges meet, the straightest pairs continue each other, unless
 /// the cosine of the turn is below `least_cosine`. O(edges log edges at a vertex).
@@ -144,8 +146,9 @@ struct FoundRound {
   std::vector<std::uint32_t> triangles;
 };
 
-/// The cylinders of a mesh, with ascending triangles: first those that begin at circles, in their order; last those
-/// that are cut between their ends. Each triangle belongs to at most one. O(triangles log triangles).
+/// The cylinders of a mesh, with ascending triangles: first those that begin at circles, in the order of the circles;
+/// then those that begin at two smooth neighbours; last those that something cuts between their ends. Each triangle
+/// belongs to at most one cylinder. O(triangles log triangles).
 [[nodiscard]] std::vector<FoundRound> find_walls(const SmoothMesh& mesh, const std::vector<FoundCircle>& circles,
                                                  const Execution& execution);
 

@@ -1,11 +1,8 @@
-// SPDX-License-Identifier: Apache-2.0
-// Surfaces of revolution and prisms, and the public list of all rounds.
-//
+// SPDX-License-Identifier: Apache-2.0 Finds surfaces of revolution and prisms, and makes the public list of all rounds.
 // Rings with corners at equal angles have equal moments in all directions across their axis. So the axis passes through
-// the mean of the corners, in the direction whose second moment differs from two equal ones.
-//
-// A prism has two rims about one axis, each with its corners on a circle. Rims are sorted by the point of their axis
-// nearest to the origin, along a direction that is parallel to no usual row of holes.
+// the mean of the corners, in the direction whose second moment differs from the other two, which are equal. A prism
+// has two rims about one axis, each with its corners on a circle. Rims are sorted by the point of their axis nearest to
+// the origin, along a direction that is parallel to no usual row of holes.
 #include <algorithm>
 #include <numbers>
 
@@ -18,9 +15,9 @@ namespace {
 using namespace lines_detail;
 
 constexpr std::size_t kFewestCorners = 19;  // a ring and a tip
-constexpr double kEqualMoments = 1e-5;      // of the largest
+constexpr double kEqualMoments = 1e-5;      // share of the sum of the moments
 constexpr double kSameRing = 8;             // in units of noise: the greatest distance within a ring
-constexpr double kSmallestRevolved = 400;   // in units of noise
+constexpr double kSmallestRevolved = 400;   // smallest radius, in units of noise
 
 /// A vertex relative to an axis.
 struct Polar {
@@ -43,10 +40,11 @@ std::vector<std::uint32_t> region_from(std::uint32_t first, const SmoothMesh& me
   return region;
 }
 
-/// The direction whose second moment differs from two equal ones; none if all are equal or all differ.
+/// The direction whose second moment differs from the other two, which are equal. None if all three are equal or all
+/// differ.
 std::optional<glm::dvec3> odd_direction(const glm::dmat3& moments) {
-  // With the equal moments m: moments = m * 1 + (odd - m) * outerProduct(axis, axis). The traces of this and of its
-  // square give a quadratic equation for m; either root may be right.
+  // If both equal moments are m, then moments = m * 1 + (odd - m) * outerProduct(axis, axis). The traces of this and of
+  // its square give a quadratic equation for m; either root may be right.
   const double trace = moments[0][0] + moments[1][1] + moments[2][2], mean = trace / 3;
   glm::dmat3 deviator = moments;
   for (int k = 0; k < 3; ++k) deviator[k][k] -= mean;
@@ -93,7 +91,7 @@ struct RevolvedFinder {
     const auto [thinnest, widest] = std::minmax_element(polar.begin(), polar.end(), by_radius);
     const auto [lowest, highest] = std::minmax_element(polar.begin(), polar.end(), by_height);
     const double radius = widest->radius, low = lowest->height, high = highest->height;
-    // Discs need no axis, walls are cylinders, and whole spheres are round about any axis.
+    // Left out: discs need no axis, walls are cylinders, and whole spheres are round about any axis.
     if (high - low <= slack || radius - thinnest->radius <= slack || is_sphere(middle, corners)) return std::nullopt;
     if (radius < kSmallestRevolved * mesh.noise || !is_in_rings(polar)) return std::nullopt;
     return FoundRound{{RoundKind::revolved, middle + low * *axis, middle + high * *axis, *axis, radius, kWhole},
@@ -120,7 +118,8 @@ struct RevolvedFinder {
                        [&](const glm::dvec3& p) { return std::abs(glm::distance(middle, p) - radius) <= slack; });
   }
 
-  /// Calls use(begin, end) for each run of vertices whose sorted values are within a ring's tolerance of each other.
+  /// Sorts the vertices by value, and splits them into runs where a gap is wider than a ring's tolerance. \returns
+  /// whether every run lies within the tolerance and use(run) returns true for each.
   template <class Value, class Use>
   [[nodiscard]] bool all_runs(std::span<Polar> polar, const Value& value, const Use& use) const {
     std::sort(polar.begin(), polar.end(), [&](const Polar& a, const Polar& b) { return value(a) < value(b); });
@@ -156,12 +155,12 @@ struct RevolvedFinder {
 
 constexpr std::size_t kFewestPrismSides = 7, kMostPrismSides = 17;
 constexpr double kWidestPrismTurn = 0.91;  // radians, a little more than the turn between two of seven sides
-constexpr double kSamePrism = 1e-3;        // of the radius
+constexpr double kSamePrism = 1e-3;        // tolerance, as a share of the radius
 constexpr std::size_t kMostLookedAt = 4096;
 
 struct PrismRim {
   Circle3 circle;
-  double key, slack;  ///< `key`: the axis' nearest point to the origin, along one direction; `slack`: its uncertainty
+  double key, slack;  ///< `key`: the axis' nearest point to the origin, along one direction; `slack`: error of the key
   bool is_used = false;
 };
 

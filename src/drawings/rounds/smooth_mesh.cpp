@@ -17,9 +17,9 @@ namespace frontmost::lines_detail {
 namespace {
 
 constexpr std::size_t kTrianglesPerPart = 4096;
-constexpr double kSixDigits = 2e-6;  // of the largest coordinate
+constexpr double kSixDigits = 2e-6;  // share of the largest coordinate
 
-/// More edges at one vertex belong to no circle, and would take the square of their number.
+/// If more edges meet at a vertex, they belong to no circle, and pairing them would take the square of their number.
 constexpr std::size_t kMostAtVertex = 16;
 
 /// An end of an edge: edge i has the ends 2 i and 2 i + 1.
@@ -109,7 +109,7 @@ SmoothMesh smooth_mesh(const Surfaces& surfaces, const Execution& execution) {
   SmoothMesh result;
   result.mesh = weld(surfaces, execution);
   const WeldedMesh& mesh = result.mesh;
-  // Fillers of T-junctions have no area and would split smooth surfaces.
+  // Removes the fillers of T-junctions, which have no area and would split smooth surfaces.
   Buffer<std::int8_t> may_be_flat(mesh.triangles.size());
   for (std::size_t i = 0; i < may_be_flat.size(); ++i) {
     const glm::uvec3& t = mesh.triangles[i];

@@ -32,7 +32,7 @@ glm::vec3 meeting(const PlaneAxes& plane, glm::vec3 p, glm::vec3 q) {
   return place + 0.0f;  // -0 is 0
 }
 
-/// One object: the remaining part, and the segments of the cut.
+/// Cuts one object: `left` is the remaining part, `segments` are the segments of the cut.
 struct ObjectCutter {
   void run(const ToWorld& to_world, const Execution& execution) {
     left.name = mesh.name;
@@ -118,13 +118,13 @@ CutFace close(const std::vector<CutSegment>& segments, const PlaneAxes& plane, s
 
 constexpr int style_count = 6;
 constexpr std::size_t most_compared = 2048;
-constexpr double spacings[] = {1, 0.7, 1.4};  // two angles of each
+constexpr double spacings[] = {1, 0.7, 1.4};  // factors of the spacing, each used at two angles
 
 bool may_touch(const Box& a, const Box& b) {
   return glm::all(glm::lessThanEqual(a.low, b.high)) && glm::all(glm::lessThanEqual(b.low, a.high));
 }
 
-/// Twice the area by the perimeter: about the width of a long strip.
+/// Twice the area divided by the perimeter: about the width of a long strip.
 double thickness_of(const CutFace& face) {
   double around = 0;
   for (const std::vector<glm::vec3>& outline : face.outlines)
@@ -133,7 +133,7 @@ double thickness_of(const CutFace& face) {
   return around > 0 ? 2 * face.area / around : 0;
 }
 
-/// A cut face among those of several sections.
+/// A cut face of one of several sections.
 struct PlacedFace {
   std::uint32_t instance;
   std::size_t section;
@@ -166,7 +166,7 @@ Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution
       std::vector<Material>& materials = scene.materials;
       section.faces.push_back(close(cutter.segments, axes, std::uint32_t(materials.size()), cutter.left, execution));
       section.faces.back().instance = i;
-      // The material of the object's other triangles, under the object's name.
+      // The material of the object's first triangle, renamed to the object's name.
       const std::uint32_t own = mesh.material_of(0);
       materials.push_back(own != no_index ? Material(materials[own]) : Material());
       materials.back().name = instance.name;

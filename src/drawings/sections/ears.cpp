@@ -48,7 +48,7 @@ struct Rings {
     links[links[i].next].last = links[i].last;
   }
 
-  /// Joins the rings of two corners at one place, where a bridge would have no length.
+  /// Joins the rings of two corners that lie at one place, where a bridge would have no length.
   void splice(std::uint32_t a, std::uint32_t b) {
     std::swap(links[a].next, links[b].next);
     links[links[a].next].last = a;
@@ -68,7 +68,7 @@ struct Rings {
     links[b].last = a;
   }
 
-  /// Whether the side from corner i to `to` runs into the polygon at i, and not along its sides.
+  /// Whether a side from corner i to the point `to` leads into the polygon at i, and not along one of its sides.
   [[nodiscard]] bool runs_inside(std::uint32_t i, const glm::vec2& to) const {
     const glm::vec2 &before = at(last(i)), &here = at(i), &behind = at(next(i));
     const bool left_of_next = orientation(here, behind, to) > 0, right_of_last = orientation(here, before, to) < 0;
@@ -100,7 +100,7 @@ struct Joiner {
   void run() {
     std::vector<std::uint32_t> leftmost;
     for (std::size_t k = 1; k < rings.firsts.size(); ++k) leftmost.push_back(leftmost_of(rings.firsts[k]));
-    // From the left, so that each hole sees a part of the outer line or of a joined hole.
+    // Holes are joined from left to right, so that each hole sees a part of the outer line or of a joined hole.
     std::sort(leftmost.begin(), leftmost.end(),
               [&](std::uint32_t a, std::uint32_t b) { return is_left_of(rings.at(a), rings.at(b)); });
     rings.append_ring(rings.firsts[0], joined);
@@ -135,7 +135,7 @@ struct Joiner {
     std::vector<Near> near;
     for (const std::uint32_t i : joined)
       if (!is_left_of(from, rings.at(i))) near.emplace_back(distance(i), i);
-    // The first is nearly always in sight.
+    // The nearest corner is nearly always in sight.
     std::priority_queue<Near, std::vector<Near>, std::greater<>> nearest(std::greater<>(), std::move(near));
     for (; !nearest.empty(); nearest.pop())
       if (sees(corner, nearest.top().second)) return nearest.top().second;
@@ -145,7 +145,7 @@ struct Joiner {
   [[nodiscard]] bool sees(std::uint32_t corner, std::uint32_t other) const {
     const glm::vec2 &a = rings.at(corner), &b = rings.at(other);
     if (!rings.runs_inside(other, a != b ? a : rings.at(rings.next(corner)))) return false;
-    // Tests sides of outlines only: bridges connect corners of these and cross nothing that is in sight.
+    // The line of sight must not cross a side of an outline or of a bridge.
     for (std::uint32_t i = 0; i < rings.size(); ++i) {
       const glm::vec2 &p = rings.at(i), &q = rings.at(rings.next(i));
       if (p == a || q == a || p == b || q == b) continue;
@@ -158,7 +158,7 @@ struct Joiner {
     return !has_place_between(a, b);
   }
 
-  /// Precondition: both segments lie on one line.
+  /// Whether two segments overlap. Precondition: both lie on one line.
   static bool overlap(const glm::vec2& a, const glm::vec2& b, const glm::vec2& p, const glm::vec2& q) {
     const auto [low, high] = is_left_of(a, b) ? std::pair(a, b) : std::pair(b, a);
     const auto [first, second] = is_left_of(p, q) ? std::pair(p, q) : std::pair(q, p);
@@ -235,7 +235,7 @@ struct EarCutter {
         cut(corner);
         since_cut = 0;
         patience = Patience::ears;
-        corner = rings.next(next);  // not the next one: its triangle would be as narrow again
+        corner = rings.next(next);  // skips the next corner, whose triangle would be as narrow again
         while (is_cut[corner]) corner = rings.next(corner);
         continue;
       }
@@ -246,7 +246,7 @@ struct EarCutter {
     }
   }
 
-  /// The kind of corner that may be cut off; later kinds are used when there are no earlier ones.
+  /// The kind of corner that may be cut off. A later kind is used only if there is no corner of an earlier kind.
   enum class Patience : std::uint8_t { ears, flat, crossing, any };
 
   [[nodiscard]] bool may_go(std::uint32_t i, Patience patience) const {
@@ -261,7 +261,7 @@ struct EarCutter {
       if (is_cut[k] || k == i || k == rings.last(i) || k == rings.next(i)) return false;
       const glm::vec2& p = rings.at(k);
       if (p == a || p == c) return false;
-      // Another corner at the same place blocks the ear if one of its sides leads into it.
+      // Another corner at the same place blocks the ear if one of its sides leads into the ear.
       if (p == b) return leads_into(i, rings.at(rings.last(k))) || leads_into(i, rings.at(rings.next(k)));
       return orientation(a, b, p) >= 0 && orientation(b, c, p) >= 0 && orientation(c, a, p) >= 0;
     };

@@ -17,7 +17,7 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr double joined_gap = 1e-5;  // of the size of the section
+constexpr double joined_gap = 1e-5;  // the widest gap that is closed, as a share of the section's size
 constexpr std::size_t steps_per_poll = 1 << 14;
 
 /// A segment between two places, by their numbers.
@@ -26,7 +26,7 @@ struct Step {
   friend auto operator<=>(const Step&, const Step&) = default;
 };
 
-/// Segments as steps without duplicates. Pairs in opposite directions cancel out.
+/// The steps of segments, without duplicates; steps in opposite directions cancel out. Sets `places`.
 std::vector<Step> steps_of(const std::vector<CutSegment>& segments, std::vector<glm::vec2>& places) {
   for (const CutSegment& segment : segments) {
     places.push_back(segment.from);
@@ -54,7 +54,7 @@ std::vector<Step> steps_of(const std::vector<CutSegment>& segments, std::vector<
   return steps;
 }
 
-/// The steps at each place, by an end of them.
+/// The steps at each place; `end` chooses the end of the step that counts.
 Buckets<std::uint32_t> steps_at(const std::vector<Step>& steps, std::size_t places, std::uint32_t Step::*end,
                                 const Execution& execution) {
   const auto list = [&](std::size_t i, const auto& add) { add(steps[i].*end, std::uint32_t(i)); };
@@ -102,7 +102,8 @@ struct Walker {
     return is_turned ? steps[step].from : steps[step].to;
   }
 
-  /// \returns the place to which the leftmost step from the path's end leads; no_index if there is none.
+  /// Takes the leftmost unused step from the path's end. \returns the place to which it leads; no_index if there is
+  /// none.
   std::uint32_t next() {
     const std::uint32_t end = path.back();
     std::uint32_t best = no_index;
@@ -114,7 +115,8 @@ struct Walker {
     return no_index;
   }
 
-  /// Whether place a comes before place b, clockwise around the path's end from the direction the path came from.
+  /// Whether place a comes before place b, clockwise around the path's end, counted from the direction from which the
+  /// path came.
   [[nodiscard]] bool is_before(std::uint32_t a, std::uint32_t b) const {
     if (path.size() < 2) return false;
     const glm::vec2 &from = places[path[path.size() - 2]], &end = places[path.back()];
@@ -160,8 +162,8 @@ std::vector<std::uint32_t> successors(const std::vector<SectionOutline>& lines, 
   return next;
 }
 
-constexpr double area_rounding = 1e-12;  // of the sum of absolute terms
-constexpr double crossed_area = 1e-6;    // likewise, for lines that turn as much one way as the other
+constexpr double area_rounding = 1e-12;  // an area is 0 up to this share of the sum of absolute terms
+constexpr double crossed_area = 1e-6;    // a line without area counts if it turns by more than this: it crosses itself
 
 /// A closed line with its properties.
 struct Ring {
@@ -206,7 +208,7 @@ RegionPlace place_in(const SectionOutline& ring, const glm::vec2& p) {
   return is_inside ? RegionPlace::inside : RegionPlace::outside;
 }
 
-/// Precondition: the rings do not cross.
+/// Whether ring `inner` lies in ring `outer`. Precondition: the rings do not cross.
 bool lies_in(const Ring& inner, const Ring& outer) {
   const bool may = inner.low.x >= outer.low.x && inner.low.y >= outer.low.y && inner.high.x <= outer.high.x &&
                    inner.high.y <= outer.high.y;

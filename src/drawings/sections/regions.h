@@ -18,8 +18,9 @@ namespace frontmost::lines_detail {
   return a.x != b.x ? a.x < b.x : a.y < b.y;
 }
 
-/// Coordinates in a cutting plane: two axes within the plane and one across it, right-handed in this order with
-/// CuttingPlane::towards. The plane is perpendicular to a world axis, so coordinates are selected and never computed.
+/// The axes of a cutting plane: two within the plane and one across it. The first two and CuttingPlane::towards are
+/// right-handed, in this order. The plane is perpendicular to a world axis, so coordinates are selected and never
+/// computed.
 struct PlaneAxes {
   explicit PlaneAxes(const CuttingPlane& plane)
       : across(int(plane.towards) % 3), is_minus(int(plane.towards) >= 3), at(float(plane.at)) {}
@@ -41,7 +42,8 @@ struct PlaneAxes {
   float at;
 };
 
-/// A segment of a triangle in the plane. If the triangle is wound outwards, the removed part is on the segment's left.
+/// The segment in which the plane cuts a triangle. If the triangle is wound outwards, the removed part is on the
+/// segment's left.
 struct CutSegment {
   glm::vec2 from, to;
 };
@@ -66,16 +68,16 @@ struct Region {
   double area = 0;
 };
 
-/// The regions within lines, by the nonzero rule if lines are wound alike, else by the even-odd rule. Lines may touch
-/// but must not cross. Lines without area, except for rounding, bound nothing; nor do lines with the same state on both
-/// sides. O(points), times the number of lines around each.
+/// The regions that lines enclose, by the nonzero rule if all lines are wound alike, else by the even-odd rule. Lines
+/// may touch but must not cross. A line bounds nothing if its area is 0 up to rounding, or if both of its sides are
+/// filled, or neither is. O(points), times the number of lines around each point.
 [[nodiscard]] std::vector<Region> regions_of(Outlines outlines, const Execution& execution);
 
 using FlatTriangle = std::array<glm::vec2, 3>;
 
-/// Appends counter-clockwise triangles that fill the region. Each side is a side of another triangle or of an outline;
-/// corners on one line may give triangles without area. All signs are exact. Outlines that cross themselves are filled
-/// by triangles that may overlap and run clockwise. O(n log n) for usual parts, at worst O(n^2).
+/// Appends counter-clockwise triangles that fill the region. Each side of a triangle is also a side of another triangle
+/// or of an outline. Corners on one line may give triangles without area. All signs are exact. Outlines that cross
+/// themselves are filled by triangles that may overlap and run clockwise. O(n log n) for usual parts, at worst O(n^2).
 void fill(const Region& region, std::vector<FlatTriangle>& triangles, const Execution& execution);
 
 }  // namespace frontmost::lines_detail

@@ -26,10 +26,10 @@ constexpr double gap_between_views = 15;     // millimetres
 constexpr double page_rim = 5;               // millimetres in which printers do not print
 constexpr double centre_overshoot = 3;       // millimetres of centre lines beyond their rounds
 constexpr double inch = 25.4;                // millimetres
-constexpr glm::ivec2 fine_grid{3840, 2160};  // the shape of render()'s default pictures, for the same camera
+constexpr glm::ivec2 fine_grid{3840, 2160};  // pixels: the shape of render()'s default pictures, for the same camera
 constexpr double fine_error = 0.2;           // in pixels of that grid: about 0.01 mm on a sheet of A4
 constexpr double coarsest_error = 10;
-constexpr double most_fine_triangles = 2e6;  // seconds to draw
+constexpr double most_fine_triangles = 2e6;  // this many take seconds to draw
 
 bool has_named_views(const SheetOptions& options) { return !options.views.empty() || !options.sections.empty(); }
 
@@ -153,7 +153,8 @@ std::shared_ptr<const Surfaces> surfaces_for(const Surfaces& surfaces, const Vie
   return surfaces_of(std::make_shared<const Scene>(tessellate(surfaces.scene(), view, *error)), execution);
 }
 
-/// By default, views at an angle show no hidden lines, since these would obscure the shape.
+/// Whether a view shows hidden lines. By default, views at an angle do not, because hidden lines would obscure the
+/// shape.
 bool shows_hidden(const SheetOptions& options, NamedView direction) {
   if (options.hidden == HiddenLines::none) return false;
   if (!options.hidden_views) return !is_at_an_angle(direction);
@@ -213,7 +214,7 @@ void find_rounds_of(std::vector<PlannedView>& views, const SheetOptions& options
   // Dimensions need rounds, too.
   if (!options.dimensions && !wants_centre_lines(options)) return;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    // Named views at an angle show nothing along its axis.
+    // A named view at an angle shows no round along its axis.
     if (views[i].direction && is_at_an_angle(*views[i].direction)) continue;
     for (std::size_t k = 0; k < i && !views[i].rounds; ++k)
       if (views[k].surfaces == views[i].surfaces) views[i].rounds = views[k].rounds;
@@ -245,7 +246,7 @@ std::vector<ViewCell> cells_of(std::vector<PlannedView>& views, const Surfaces& 
   return cells;
 }
 
-constexpr double usual_crease = std::numbers::pi / 6;  // of intersections
+constexpr double usual_crease = std::numbers::pi / 6;  // grazing angle of intersections without a crease angle
 constexpr double plotted_stroke = 0.5;                 // millimetres: the shortest stroke worth a pen's movement
 constexpr double paper_tolerance = 0.01;               // millimetres: for arcs, and for lines that count as one
 constexpr double stroke_tolerance = 0.0005;            // millimetres: half of the rounding unit of coordinates
@@ -336,7 +337,8 @@ SheetPlan place_views(std::vector<PlannedView>& views, const Surfaces& surfaces,
   return plan;
 }
 
-/// Adds dimensions to the page, clear of its rim or of its later frame and title block, and of `marks`.
+/// Adds dimensions to the page. They stay away from `marks`, and from the page's rim, or from the frame and the title
+/// block if these will be added.
 void add_dimensions(Sheet& sheet, const std::vector<PlannedView>& views, const std::vector<PageBox>& marks,
                     const Scene& scene, const SheetOptions& options) {
   DimensionOptions numbers;

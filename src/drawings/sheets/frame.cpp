@@ -20,7 +20,7 @@ constexpr glm::dvec2 title_block_size{180, 36};
 constexpr double outer_width = 0.7, inner_width = 0.35;
 constexpr double label_height = 1.8;
 constexpr double indent = 1.2;                             // millimetres, for all text in a field
-constexpr double heights[] = {5, 3.5, 2.5, label_height};  // of ISO 3098
+constexpr double heights[] = {5, 3.5, 2.5, label_height};  // letter heights of ISO 3098
 
 /// A field's name, its rectangle in the block, and the tallest letters that suit it.
 struct Field {
@@ -35,7 +35,7 @@ struct FittedText {
   std::vector<std::string> lines;
 };
 
-/// The text in two lines, split at the blank that makes the longer one shortest; in one line without blanks.
+/// The text in two lines, split at the blank that makes the longer line shortest; in one line if it has no blank.
 std::vector<std::string> halves(const std::string& text) {
   std::vector<std::string> best = {text};
   double least = text_width(text);
@@ -80,7 +80,7 @@ class BlockDrawing {
     const FittedText fit = fitted(text, field);
     PageGroup& group =
         texts_.try_emplace(fit.height, PageGroup{"title block: text", text_pen(fit.height)}).first->second;
-    // Centred below the label, with room for descenders.
+    // The text is centred below the label, with room for descenders.
     const double step = 1.6 * fit.height, taken = step * double(fit.lines.size() - 1) + 1.3 * fit.height;
     const double top = field.low.y + indent + label_height, free = field.high.y - top;
     glm::dvec2 at = corner_ + glm::dvec2(field.low.x + 2 * indent, top + (free - taken) / 2 + fit.height);
@@ -90,8 +90,9 @@ class BlockDrawing {
     }
   }
 
-  /// The truncated cone from the side and from its narrow end, which is on the left. In first-angle projection the view
-  /// from the left is on the right; in third-angle projection, on the left.
+  /// Adds the symbol of a projection method: a truncated cone, seen from the side and from its narrow end, which is on
+  /// the left. In first-angle projection the view from the left is on the right; in third-angle projection, on the
+  /// left.
   void add_symbol(const Field& field, ProjectionMethod method) {
     add(field, "");
     if (method == ProjectionMethod::none) return;
@@ -118,7 +119,7 @@ class BlockDrawing {
 
   void finish(PageLayer& layer) {
     PageGroup border{"title block", {outer_width, {}}};
-    // The frame itself is the right and the lower side.
+    // The right and the lower side of the block are sides of the frame.
     border.add(std::vector<glm::dvec2>{corner_ + glm::dvec2(0, title_block_size.y), corner_,
                                        corner_ + glm::dvec2(title_block_size.x, 0)},
                false);
@@ -154,9 +155,9 @@ std::vector<glm::dvec2> rectangle(const glm::dvec2& low, const glm::dvec2& high)
 
 constexpr double filing_margin = 20, frame_margin = 10;  // millimetres of paper outside the frame
 constexpr double strip = 5;                              // width of the zones' border, outside the frame
-constexpr double zone = 50;                              // beginning at the centring marks
-constexpr double mark_inside = 10;                       // of centring marks
-constexpr double narrow_page = 210;                      // A4 has zones on two sides
+constexpr double zone = 50;                              // length of a zone; zones begin at the centring marks
+constexpr double mark_inside = 10;                       // length of centring marks inside the frame
+constexpr double narrow_page = 210;                      // a page this narrow, such as A4, has zones on two sides only
 constexpr double frame_width = 0.7, zone_width = 0.35, zone_text = 3.5;
 
 /// A, B, ...; AA follows Z.
@@ -188,7 +189,7 @@ struct FrameDrawing {
     frame.add(rectangle(space.low, space.high), true);
     centring_marks(frame);
     PageGroup zones{"zones", {zone_width, {}}};
-    // The border around the frame, or above it and on its right.
+    // The border of the zones is around the frame, or only above it and on its right.
     const glm::dvec2 low = space.low - strip, high = space.high + strip;
     if (is_narrow)
       zones.add(std::vector<glm::dvec2>{{space.low.x, low.y}, {high.x, low.y}, {high.x, space.high.y}}, false);
@@ -199,7 +200,8 @@ struct FrameDrawing {
     for (PageGroup* const group : {&trimming, &zones, &names, &frame}) layer.groups.push_back(std::move(*group));
   }
 
-  /// Two rectangles of 10 x 5 mm in an L shape, filled by rounds of the pen, because DXF has no fills.
+  /// Adds a trimming mark: two rectangles of 10 x 5 mm in an L shape. The pen fills them in rounds, because DXF has no
+  /// fills.
   void trimming_mark(PageGroup& group, const glm::dvec2& corner) const {
     constexpr double length = 10, width = 5;
     const glm::dvec2 inwards = 1.0 - 2.0 * corner;
@@ -212,7 +214,7 @@ struct FrameDrawing {
     }
   }
 
-  /// Marks from the zones' border into the drawing, but not into the title block.
+  /// Adds marks that lead from the zones' border into the drawing, but not into the title block.
   void centring_marks(PageGroup& group) const {
     const glm::dvec2 middle = page * 0.5;
     for (const int axis : {0, 1})
@@ -228,7 +230,7 @@ struct FrameDrawing {
       }
   }
 
-  /// Numbers from left to right, and letters downwards.
+  /// Adds the zones along an axis: numbers from left to right, letters downwards.
   void zones_along(int axis, PageGroup& lines, PageGroup& names) const {
     const int across = 1 - axis;
     const std::vector<double> ends = zone_ends(page[axis], space.low[axis], space.high[axis]);

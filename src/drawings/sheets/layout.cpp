@@ -112,7 +112,7 @@ std::optional<glm::dvec2> corner_in(const Area& area, const SheetLayout& layout,
   return std::nullopt;
 }
 
-/// The largest scale with such a corner; smaller ones have one too.
+/// The largest scale at which corner_in() finds a corner; it finds one at every smaller scale, too.
 double largest_scale(const Area& area, const SheetLayout& layout) {
   double most = layout.largest_scale(area.size());
   if (!area.block || corner_in(area, layout, most)) return most;
@@ -164,7 +164,7 @@ std::vector<glm::dvec2> pages_of(const Paper& paper, const SheetOptions& options
   std::vector<glm::dvec2> pages = {paper.size};
   if (paper.may_turn) pages.emplace_back(paper.size.y, paper.size.x);
   if (!options.title_block) return pages;
-  // ISO 5457: A4 is upright, all larger pages lie.
+  // ISO 5457: A4 is upright, and all larger pages are landscape.
   if (paper.may_turn && paper.size.x > upright_width) std::swap(pages[0], pages[1]);
   std::erase_if(pages,
                 [](const glm::dvec2& page) { return page.x < least_framed_page.x || page.y < least_framed_page.y; });
@@ -175,7 +175,7 @@ std::vector<glm::dvec2> pages_of(const Paper& paper, const SheetOptions& options
 }
 
 /// The area on the page with the largest drawing, and its largest scale. `taken` maps a largest scale to the scale that
-/// will be used; the first of the pages with equal results is best.
+/// will be used; among pages with equal results, the first is taken.
 template <class Taken>
 std::pair<Area, double> best_area(const std::vector<glm::dvec2>& pages, const SheetLayout& layout,
                                   const SheetOptions& options, const Taken& taken) {

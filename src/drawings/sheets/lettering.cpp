@@ -231,8 +231,8 @@ constexpr Mark marks[] = {
     {"0.3,-0.9 0.3,-1.3 -0.3,-2.6", true, U"SȘsșTȚtțGĢKĶkķLĻlļNŅnņRŖrŗ"},
 };
 
-constexpr double gap = 3;       // between the middles of strokes: ISO 3098-1 has two pen widths between letters
-constexpr double rise = 3;      // of a mark above a tall letter
+constexpr double gap = 3;       // between the middles of strokes, which leaves two pen widths, as in ISO 3098-1
+constexpr double rise = 3;      // height by which a mark is raised above a tall letter
 constexpr double tall = 6.5;    // letters that reach higher are tall
 constexpr double edge = 0.5;    // half of the pen width
 constexpr double capital = 10;  // height of capitals, from edge to edge
@@ -290,7 +290,8 @@ Character character_of(char32_t code) {
   return {glyph, mark->strokes, mark_at, (width - glyph->width) / 2, width};
 }
 
-/// Calls visit(character, its left) for every character. \returns the end of the last one; negative if there is none.
+/// Calls visit(character, left side) for every character of a text. \returns the end of the last character; negative if
+/// there is none.
 template <class Visit>
 double for_each_character(std::string_view text, const Visit& visit) {
   double left = 0;

@@ -31,10 +31,10 @@ inline void add_arrowhead(PageGroup& group, const glm::dvec2& tip, const glm::dv
   group.add(corners, true);
 }
 
-/// A number with at most so many significant digits, without trailing zeros: "0.25", "1e+07".
+/// The text of a number with at most `digits` significant digits, without trailing zeros: "0.25", "1e+07".
 [[nodiscard]] inline std::string number_text(double value, int digits = 6) { return general_text(value, digits); }
 
-/// Two sides: "210 x 297".
+/// The text of two side lengths: "210 x 297".
 [[nodiscard]] inline std::string size_text(const glm::dvec2& size, int digits = 6) {
   return number_text(size.x, digits) + " x " + number_text(size.y, digits);
 }
@@ -69,23 +69,24 @@ struct ViewCell {
 /// The cell of a named view relative to the front view.
 [[nodiscard]] glm::ivec2 cell_of(NamedView view, ProjectionMethod method);
 
-/// The columns and rows in use, each as wide as its widest view.
+/// Arranges views in columns and rows, each as wide as its widest view.
 class SheetLayout {
  public:
-  /// Precondition: not empty. `gap` is in millimetres at any scale, between columns and between rows.
+  /// `gap` is the distance between columns and between rows, in millimetres at any scale. Precondition: there are
+  /// cells.
   SheetLayout(const std::vector<ViewCell>& cells, const glm::dvec2& gap);
   /// The layout of these views with another gap.
   [[nodiscard]] SheetLayout with_gap(const glm::dvec2& gap) const { return {cells_, gap}; }
 
   [[nodiscard]] glm::dvec2 size(double scale) const { return extent_ * scale + gaps_; }
-  /// The largest scale at which the layout fits into `area`; 1 if it has no size.
+  /// The largest scale at which the layout fits into `area`; 1 if the layout has no size.
   [[nodiscard]] double largest_scale(const glm::dvec2& area) const;
   [[nodiscard]] const glm::dvec2& gap() const { return gap_; }
   /// The number of columns and rows in use.
   [[nodiscard]] glm::dvec2 counts() const { return {lines_[0].size(), lines_[1].size()}; }
   /// The places of the anchors. `corner` is the layout's upper left corner.
   [[nodiscard]] std::vector<glm::dvec2> anchors(double scale, const glm::dvec2& corner) const;
-  /// Whether no view extends beyond `block` to the right and downwards.
+  /// Whether no view reaches into the corner of the page to the right of `block` and below it.
   [[nodiscard]] bool leaves_free(const glm::dvec2& block, double scale, const glm::dvec2& corner) const;
 
  private:
@@ -111,9 +112,9 @@ struct SheetPlan {
   std::vector<glm::dvec2> anchors;
 };
 
-/// Plans the sheet. Views avoid the title block and are spread evenly if there is room. A given scale without a page
-/// takes the smallest of A4 to A0 that has room. `has_scale` is false in perspective.
-/// \throws Error when the drawing does not fit; the message says what would.
+/// Chooses the page, the scale and the places of the views. Views avoid the title block and are spread evenly if there
+/// is room. If a scale is given but no page, the smallest of A4 to A0 that has room is taken. `has_scale` is false in
+/// perspective. \throws Error when the drawing does not fit; the message says what would.
 [[nodiscard]] SheetPlan plan_sheet(const SheetLayout& layout, const SheetOptions& options, bool has_scale);
 
 }  // namespace frontmost::detail

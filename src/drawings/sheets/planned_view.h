@@ -17,13 +17,13 @@
 namespace frontmost::detail {
 
 struct PlannedView : DrawnView {
-  std::optional<NamedView> direction;    ///< empty if the view was given
+  std::optional<NamedView> direction;    ///< none if the caller gave the view
   CuttingPlane plane;                    ///< cutting plane of a section
   std::string letter;                    ///< letter of a section: "A"
   double millimetres_per_pixel = 1;      ///< at scale 1:1; meaningless by itself in perspective
   glm::dvec2 anchor{0};                  ///< pixel at the anchor of the view's cell
   std::shared_ptr<const Rounds> rounds;  ///< circles of the surfaces; null if not needed
-  /// Millimetres of paper on the left and below that marks of sections occupy.
+  /// Millimetres of paper that marks of sections occupy on the left of the view and below it.
   glm::dvec2 taken{0};
 };
 
@@ -35,9 +35,10 @@ struct PlannedView : DrawnView {
 /// \throws Error bad_argument if the plane misses them.
 void cut_surfaces(PlannedView& view, const SectionView& wanted, const View& camera, const Execution& execution);
 
-/// Sets the cells of sections: those of the views with the same direction if free, else a column of their own.
+/// Leaves a section in the cell of its direction if no other view has that cell; otherwise gives the section a column
+/// of its own.
 void place_sections(std::vector<ViewCell>& cells, const std::vector<PlannedView>& views);
-/// Reserves room in the cells for cutting lines and names, and records it in the views.
+/// Reserves room in the cells for cutting lines and names, and records it in PlannedView::taken.
 void keep_section_room(std::vector<ViewCell>& cells, std::vector<PlannedView>& views);
 
 /// Hatches the cut faces of views whose places on the sheet are final.
@@ -45,14 +46,14 @@ void hatch_sections(std::vector<PlannedView>& views, const SheetOptions& options
 
 /// The line of an edge-on cutting plane on the page.
 struct CuttingLine {
-  glm::dvec2 from{0}, to{0};  ///< ends of the part that it cuts
+  glm::dvec2 from{0}, to{0};  ///< ends of the part that the plane cuts
   glm::dvec2 looking{0};      ///< the section's view direction, across the line; unit length
   std::string letter;         ///< "A"
 };
 
 /// The name of a view.
 struct ViewName {
-  glm::dvec2 at{0};  ///< the middle of its lower edge
+  glm::dvec2 at{0};  ///< the middle of the text's lower edge
   std::string text;  ///< "A-A"
 };
 

@@ -19,7 +19,7 @@ constexpr double least_spacing = 1.2, most_spacing = 3;  // millimetres between 
 constexpr double spacing_share = 0.03;                   // as a share of the section's diagonal
 constexpr double thinnest = 0.8;                         // millimetres: thinner parts are solid
 constexpr double name_distance = 5, name_height = 5;     // millimetres above a section
-constexpr int first_own_column = 3;                      // behind those of all views
+constexpr int first_own_column = 3;                      // to the right of all named views
 
 [[noreturn]] void refuse_section(const SectionView& wanted, const std::string& reason) {
   throw Error(ErrorCode::bad_argument,
@@ -27,7 +27,8 @@ constexpr int first_own_column = 3;                      // behind those of all 
               reason);
 }
 
-/// By section, the view that marks its cutting plane: the first view, or other section, that sees the plane edge-on.
+/// For each section, the index of the view that marks its cutting plane: the first view, or other section, that sees
+/// the plane edge-on; the number of views if there is none.
 std::vector<std::size_t> hosts_of(const std::vector<PlannedView>& views) {
   std::vector<std::size_t> hosts(views.size(), views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -65,9 +66,9 @@ Trace trace_in(const PlannedView& host, const PlannedView& section) {
 bool is_empty(const Trace& trace) { return trace.box.is_empty() || !(glm::distance(trace.from, trace.to) > 0); }
 
 constexpr double gap_before = 3, thick_length = 6;   // millimetres beyond the cut part
-constexpr double arrow_place = 6;                    // likewise: in the middle of the thick end
+constexpr double arrow_place = 6;                    // millimetres beyond the cut part: the middle of the thick end
 constexpr double arrow_length = 8, head_length = 4;  // millimetres
-constexpr double letter_distance = 1;                // from the arrow's tail
+constexpr double letter_distance = 1;                // millimetres from the arrow's tail
 
 }  // namespace
 
@@ -216,7 +217,7 @@ SectionMarks section_marks_of(const std::vector<PlannedView>& views, const Pen& 
   std::vector<ViewName> names;
   for (std::size_t i = 0; i < views.size(); ++i) {
     const DrawingBounds box = bounds_of(views[i].drawing, false);
-    if (!views[i].section || box.is_empty()) continue;  // the near and far planes may leave nothing of it
+    if (!views[i].section || box.is_empty()) continue;  // the near and far planes may leave nothing of a section
     const glm::dvec2 low = views[i].placed.on_page(box.low), high = views[i].placed.on_page(box.high);
     bool is_host = false;
     for (std::size_t k = 0; k < hosts.size(); ++k) is_host = is_host || (views[k].section && hosts[k] == i);

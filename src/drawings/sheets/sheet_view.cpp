@@ -12,14 +12,15 @@
 namespace frontmost {
 namespace {
 
-/// In drawing order. Numbers are part of the names, because a plotter's pens are selected by them.
+/// Layers are in drawing order. Their names contain numbers, because a plotter's pens are selected by number.
 constexpr std::size_t layer_count = 6;
 enum LayerOf : std::size_t { stippling, hatching, centre, hidden, seen, outline };
 const char* const layer_names[layer_count] = {"5 stippling", "4 hatching", "6 centre lines",
                                               "1 hidden",    "2 visible",  "3 outline"};
 
-/// The dashes of a pen for a line of that length: an odd number of first dashes, with the others between them. The
-/// first is rounded, so that lines of similar length have the same pattern. Empty if there is room for only one dash.
+/// The dashes of a pen, fitted to a line of that length. The line gets an odd number of the pen's first dash, with the
+/// other dashes between them. The length of the first dash is rounded, so that lines of similar length have the same
+/// pattern. Empty if there is room for only one dash.
 std::vector<double> dashes_on(const Pen& pen, double length) {
   if (pen.dashes.empty()) return {};
   constexpr double step = 0.02;  // millimetres

@@ -30,10 +30,10 @@ namespace {
 
 using namespace shading;
 
-/// A point has one sample, at its own place.
+/// A shaded point has one sample, at its own place.
 constexpr glm::ivec2 kAtPoint[] = {{0, 0}};
 
-/// The scene's triangles, with smooth normals of the large ones.
+/// The scene's triangles, with smooth normals for the large ones.
 const TriangleStore& smoothed(PreparedScene& scene, const BitSet& large, const Execution& execution) {
   scene.triangles.smooth(large, execution);
   return scene.triangles;
@@ -56,7 +56,8 @@ struct FigureTriangles {
 };
 
 struct PointShader {
-  /// Borrows all but the options; prepares whatever the scene lacks. \throws Error as check_opacity() does.
+  /// Borrows all arguments but the options, and prepares whatever the scene lacks. \throws Error as check_opacity()
+  /// does.
   PointShader(PreparedScene& scene, const ShadeInput& input, const FigureTriangles& triangles,
               const ShadeOptions& options, const Execution& execution)
       : source(smoothed(scene, triangles.large, execution), input.first().view, &triangles.large),
@@ -90,7 +91,7 @@ constexpr double kLeastWidth = 0.25, kBesideCut = 0.35;
 constexpr double kWithin = 2.0 / 3;
 /// The factor of the tolerance for pieces narrower than a pixel, which are hardly visible.
 constexpr double kOfSlivers = 8;
-/// Samples that are shaded together: some batches of the shader, and few enough to stay in the cache.
+/// The number of samples that are shaded together: they fill several batches of the shader, but stay in the cache.
 constexpr std::size_t kSamplesAtOnce = 2048;
 
 bool is_hole(const glm::vec4& color) { return color.w < 0; }
@@ -105,7 +106,8 @@ glm::u8vec4 rounded(const glm::vec4& color) {
   throw Error(ErrorCode::limit_exceeded, "figure", "more than " + std::to_string(most) + " polygons and pieces");
 }
 
-/// Samples many pieces before it judges them, so that the shader has whole batches. Not for several threads at once.
+/// Cuts polygons into pieces of one colour. Many pieces are sampled before they are judged, so that the shader has
+/// whole batches. Not for several threads at once.
 class PolygonColors {
  public:
   /// Borrows all but the view.
@@ -115,8 +117,9 @@ class PolygonColors {
     shader_.begin(shader.source, shader.colorist, execution.isa);
   }
 
-  /// Appends some of these parts in pieces, without holes and clear pieces. The result depends only on these polygons.
-  /// Precondition: each has at least three corners. \throws Error cancelled, and as refuse_more_than() does.
+  /// Appends the pieces of `polygons`, some of the polygons of `parts`, without holes and fully transparent pieces. The
+  /// result depends only on these polygons. Precondition: each polygon has at least three corners. \throws Error
+  /// cancelled, and as refuse_more_than() does.
   void color(const VisibleParts& parts, std::span<const PaintPolygon> polygons, ColoredOrder& into) {
     begin(polygons);
     while (started_ < polygons_.size() || !waiting_.empty()) {
@@ -145,12 +148,12 @@ class PolygonColors {
     std::vector<glm::dvec2> corners;
     std::vector<ColorSample> samples;  ///< includes samples of the piece from which it was cut
     std::size_t known_samples = 0;
-    bool is_sliver = false;     ///< all of it lies beside cuts
+    bool is_sliver = false;     ///< the whole piece lies close to cuts
     std::uint32_t polygon = 0;  ///< index of its polygon
     std::uint32_t slot = 0;
     std::uint32_t cut = no_index;  ///< the last cut that made it
   };
-  /// A cut, linked to the one before it: a piece lies on one side of all of its cuts.
+  /// A cut, linked to the cut before it. A piece lies on one side of each of its cuts.
   struct Cut {
     ScreenLine line;
     std::uint32_t before = no_index;
@@ -172,7 +175,8 @@ class PolygonColors {
     std::optional<std::vector<TexcoordLines>> texture_lines{};  ///< made when first needed
   };
   void begin(std::span<const PaintPolygon> polygons) {
-    // A triangle is set up about its first sample, which must be on one of these polygons.
+    // The shader is cleared because it sets up a triangle around its first sample, which must be on one of these
+    // polygons.
     shader_.clear();
     polygons_.clear();
     slots_.clear();
@@ -199,7 +203,7 @@ class PolygonColors {
     piece.slot = polygon.first_slot;
   }
 
-  /// Takes pieces with samples for some batches; first the ones that were cut last.
+  /// Takes pieces until their samples fill several batches. The pieces that were cut last are taken first.
   void take_pieces(const VisibleParts& parts) {
     looked_at_.clear();
     std::size_t samples = 0;
@@ -240,7 +244,7 @@ class PolygonColors {
     const auto hand_out = [&] {
       shader_.hand_out([&](const FragmentShader::Shaded& shaded) {
         const glm::vec3& light = shaded.light;
-        // Paper shows nothing brighter than white: brighter reflections hide what is behind instead.
+        // Paper shows nothing brighter than white, so brighter reflections become white and more opaque.
         const float brightest = std::max(1.0f, std::max(light.x, std::max(light.y, light.z)));
         const glm::vec3 shown = light / brightest;
         const float opacity = std::clamp(shaded.alpha * brightest * shading_.opacity, 0.0f, 1.0f);
@@ -277,7 +281,7 @@ class PolygonColors {
     kept_.push_back({color, std::move(piece.corners)});
   }
 
-  /// The greatest difference, in steps, between a sample and the colour of its piece.
+  /// The greatest allowed difference, in steps, between a sample and the colour of its piece.
   [[nodiscard]] float within(const Piece& piece) const {
     return float(options_.tolerance * (polygons_[piece.polygon].is_grouped ? kWithin : 1) *
                  (piece.is_sliver ? kOfSlivers : 1));
@@ -331,7 +335,7 @@ class PolygonColors {
     }
   }
 
-  /// Lines along the coordinates of the base colour's texture, which the picture mostly shows.
+  /// The lines of equal coordinates in the texture of the base colour, which the picture mostly shows.
   [[nodiscard]] std::span<const TexcoordLines> texture_lines(const Piece& piece) {
     Polygon& polygon = polygons_[piece.polygon];
     if (polygon.texture_lines) return *polygon.texture_lines;
@@ -373,7 +377,7 @@ class PolygonColors {
   FragmentShader shader_;
 
   std::vector<Polygon> polygons_;
-  std::size_t started_ = 0;       ///< polygons
+  std::size_t started_ = 0;       ///< number of polygons that were started
   std::vector<Piece> waiting_;    ///< a stack: the next piece is last
   std::vector<Piece> looked_at_;  ///< the pieces of the current round
   std::vector<ColorSample*> asked_;

@@ -7,7 +7,7 @@
 //    direction in which the colours of the best cut differ          squared differences on both sides
 //
 // For the last kind, samples are sorted by their distance from a line of that direction, and running sums give the gain
-// of every place of the line. Among equal gains the line that was tried first wins, regardless of rounding.
+// for every position of the line. Among equal gains the line that was tried first wins, regardless of rounding.
 #include "figures/coloring/pieces.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace frontmost::shading {
 namespace {
 
-/// Up to so many colours are tested one by one.
+/// Up to this number of colours, all of them are tested one by one.
 constexpr std::size_t kFewColors = 64;
 
 std::uint64_t key_of(const glm::ivec4& cell) {
@@ -28,7 +28,7 @@ std::uint64_t key_of(const glm::ivec4& cell) {
   return key;
 }
 
-/// Square pixels, and pixels from end to end: smaller pieces have the colour of their middle.
+/// Area in square pixels and length in pixels: a piece below both has the colour of its middle.
 constexpr double kLeastArea = 1.5, kLeastLength = 2;
 constexpr double kAreaPerSample = 2;      // square pixels per sample of a usual piece
 constexpr double kMostAreaPerSample = 9;  // square pixels per sample of a large piece
@@ -45,7 +45,7 @@ constexpr double kEven = 0.1;
 constexpr std::size_t kFewestOfChange = 4;
 /// In texels: a cut this near to the border of two texels is moved to the border.
 constexpr double kTexelReach = 0.25;
-/// In pixels: texels of that size are separated one by one.
+/// In pixels: texels of at least this size are separated one by one.
 constexpr double kLargeTexel = 4;
 
 /// The direction of the longest axis of the ellipse of a symmetric matrix.
@@ -66,7 +66,7 @@ struct EvenChange {
   }
 };
 
-/// Fits the function by least squares; none if much remains.
+/// Fits an affine function by least squares; none if the samples differ much from the function.
 std::optional<EvenChange> find_even_change(std::span<const ColorSample> samples) {
   const double count = double(samples.size());
   glm::dvec2 place(0);
@@ -99,7 +99,7 @@ std::optional<EvenChange> find_even_change(std::span<const ColorSample> samples)
   return change;
 }
 
-/// A cut of samples in two, by the values of a function.
+/// A division of samples in two, by a threshold on a function of their places.
 struct Split {
   double gain = 0;               ///< decrease of the sum of squared differences
   double threshold = 0;          ///< value of the function at the cut
@@ -131,7 +131,8 @@ class CutFinder {
   struct Range {
     double least, greatest;
   };
-  /// The border of the middle band where colours change evenly, across the direction with the most steps in the piece.
+  /// If colours change evenly, the border of the middle band. It runs across the direction in which the piece has the
+  /// most steps of colour.
   [[nodiscard]] std::optional<ScreenLine> border_of_bands() const {
     if (samples_.size() < kFewestOfChange) return std::nullopt;
     const std::optional<EvenChange> change = find_even_change(samples_);
@@ -149,7 +150,7 @@ class CutFinder {
     return line;
   }
 
-  /// If texels are large, their border nearest to the middle of the piece. No single cut separates the colours of a
+  /// If texels are large, the texel border nearest to the middle of the piece. No single cut separates the colours of a
   /// chessboard, and pieces of other shapes have ragged edges.
   [[nodiscard]] std::optional<ScreenLine> border_of_texels() const {
     std::optional<ScreenLine> line;
@@ -183,7 +184,7 @@ class CutFinder {
     return range;
   }
 
-  /// The best split by a function of the place, at a value within a range.
+  /// The best split by a function of the place, with a threshold in the range `allowed`.
   template <class Function>
   [[nodiscard]] Split split_by(const Function& function, const Range& allowed) {
     keys_.clear();
@@ -200,7 +201,7 @@ class CutFinder {
       const double n = double(i + 1);
       const glm::dvec4 above = total - below;
       const double gain = glm::dot(below, below) / n + glm::dot(above, above) / (count - n) - whole;
-      if (gain <= best.gain * (1 + 1e-9)) continue;  // of equal ones the first, regardless of rounding
+      if (gain <= best.gain * (1 + 1e-9)) continue;  // among equal gains the first wins, regardless of rounding
       best = {gain, threshold, glm::vec4(below / n), glm::vec4(above / (count - n))};
     }
     return best;
@@ -231,8 +232,8 @@ class CutFinder {
     if (sides.least <= -piece_.least_width && sides.greatest >= piece_.least_width) take(split, *line);
   }
 
-  /// The best split so far has two mean colours. Each sample is nearer to one of them; the returned direction in the
-  /// picture separates both groups of samples best.
+  /// The best split so far has two mean colours, and each sample is nearer to one of them. Returns the direction in the
+  /// picture that best separates the two groups of samples.
   [[nodiscard]] std::optional<glm::dvec2> direction_of_change() const {
     const glm::vec4 way = best_.above - best_.below, middle = (best_.above + best_.below) * 0.5f;
     const double length = double(glm::dot(way, way));

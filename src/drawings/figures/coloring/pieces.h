@@ -20,13 +20,13 @@ namespace frontmost::shading {
 
 /// A point of a piece with its colour.
 struct ColorSample {
-  glm::dvec2 at{0};    ///< screen
+  glm::dvec2 at{0};    ///< pixels on the screen
   glm::vec4 color{0};  ///< 0 to 255 each: sRGB and alpha
 };
 /// The colour of holes: farther from every colour than any two colours are from each other.
 inline constexpr glm::vec4 hole_color{0, 0, 0, -512};
 
-/// Points with dot(normal, p) = offset; the normal is a unit vector.
+/// The line of the points p with dot(normal, p) = offset; the normal is a unit vector.
 struct ScreenLine {
   glm::dvec2 normal{1, 0};
   double offset = 0;
@@ -58,7 +58,7 @@ class TexcoordLines {
     return std::isfinite(value) ? value : 0;
   }
 
-  /// None if the whole triangle has one value.
+  /// The line on which the coordinate is `value`; none if the coordinate is the same in the whole triangle.
   [[nodiscard]] std::optional<ScreenLine> line(double value) const {
     const glm::dvec2 normal(weighted_.x - value * weight_.x, weighted_.y - value * weight_.y);
     const double length = glm::length(normal);
@@ -77,15 +77,16 @@ class TexcoordLines {
 /// A piece to be cut: its convex outline, and its samples.
 struct ColorPiece {
   std::span<const glm::dvec2> corners;
-  /// Thinned out to a few hundred.
+  /// best_cut() uses at most a few hundred of them.
   std::span<const ColorSample> samples;
   double least_width;  ///< pixels: least width of each side, across the cut
   double range;        ///< greatest difference in a channel that counts as one colour
 };
 
-/// The line with the least sum of squared differences from the mean colours of both sides, among lines along `texture`
-/// coordinates, in some fixed directions, and across the direction of change. None if no line separates the samples. If
-/// colours change evenly in one direction, the line is a border of the fewest bands of one colour each.
+/// The line that leaves the least sum of squared differences between samples and the mean colour of their side. It is
+/// chosen among lines of equal `texture` coordinates, lines in some fixed directions, and lines across the direction of
+/// change. None if no line separates the samples. If colours change evenly in one direction, the line is a border of
+/// the fewest bands of one colour each.
 [[nodiscard]] std::optional<ScreenLine> best_cut(const ColorPiece& piece, std::span<const TexcoordLines> texture);
 
 /// A convex outline and its size.
@@ -94,9 +95,9 @@ struct PieceSize {
   glm::dvec2 middle{0};
   double area = 0;    ///< square pixels
   double length = 0;  ///< pixels, at least half of the greatest distance between two corners
-  /// Whether its middle gives its colour.
+  /// Whether a sample at the middle suffices for the piece's colour.
   [[nodiscard]] bool is_small() const;
-  /// The number of samples that it should have.
+  /// The number of samples that the piece should have.
   [[nodiscard]] double sample_count() const;
 };
 
@@ -104,7 +105,7 @@ struct PieceSize {
 [[nodiscard]] glm::dvec2 middle_across(std::span<const glm::dvec2> corners, const glm::dvec2& at,
                                        const glm::dvec2& along);
 
-/// Calls add(place) beside every corner of an outline, where colours are extreme.
+/// Calls add(place) for a place beside every corner of an outline, because colours are extreme there.
 template <class Add>
 void for_each_corner_place(std::span<const glm::dvec2> corners, const glm::dvec2& middle, const Add& add) {
   constexpr double kInset = 0.25;  // pixels from the corner inwards
@@ -126,12 +127,12 @@ void for_each_place_along(std::span<const glm::dvec2> corners, const PieceSize& 
   for (std::size_t k = 0; k < count; ++k) add(middle_across(corners, from + step * (double(k) + 0.5), step));
 }
 
-/// Calls add(place) for places from number `first` on until `count`, evenly spread over an outline of some area: a
-/// rank-1 lattice over each triangle of its fan, with a number of places in proportion to its area. (M. Roberts. The
-/// Unreasonable Effectiveness of Quasirandom Sequences. 2018.)
+/// Calls add(place) for about `count` places that are evenly spread over an outline with this area. They form a rank-1
+/// lattice over each triangle of the outline's fan, and their number there is in proportion to the triangle's area. (M.
+/// Roberts. The Unreasonable Effectiveness of Quasirandom Sequences. 2018.)
 template <class Add>
 void for_each_place(std::span<const glm::dvec2> corners, double area, double count, const Add& add) {
-  if (!(area > 0)) return;  // no area has no direction, though it may be long
+  if (!(area > 0)) return;  // an outline without area has no triangles to fill
   double before = 0;
   std::size_t number = 0;
   const glm::dvec2 from = corners[0];
@@ -156,14 +157,14 @@ void for_each_place(std::span<const glm::dvec2> corners, double area, double cou
 void cut_outline(std::span<const glm::dvec2> corners, const ScreenLine& line, std::vector<glm::dvec2>& below,
                  std::vector<glm::dvec2>& above);
 
-/// The greatest difference of any channel.
+/// The greatest difference in any channel.
 [[nodiscard]] float difference(const glm::vec4& a, const glm::vec4& b);
 
-/// Groups are numbered in the order in which they were added. A photograph has as many colours as pieces, so groups are
-/// found by cells of a grid over all colours.
+/// Groups of nearly equal colours, numbered in the order in which they are added. A photograph has as many colours as
+/// pieces, so groups are found by the cells of a grid over all colours.
 class ColorGroups {
  public:
-  /// Channels, 0 to 255, may differ by `reach`.
+  /// A colour may differ from the first colour of its group by `reach` in each channel; channels are 0 to 255.
   explicit ColorGroups(double reach) : reach_(reach), cell_size_(std::max(reach * 1.001, kLeastCell)) {}
 
   /// The number of the first group within reach of `color`; adds a new group if there is none.

@@ -23,12 +23,13 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr double kWidestCorner = 0.9659;  // the cosine of 15 degrees, by which slivers' corners miss a straight angle
+constexpr double kWidestCorner = 0.9659;  // the cosine of 15 degrees: slivers have a corner of more than 165 degrees
 constexpr double kOnePlane = 0.996;       // the cosine of 5 degrees
 constexpr std::size_t kTrianglesPerPart = 4096;
-constexpr std::size_t kMostSlivers = 8;  // more in one plane are no sliver together
+constexpr std::size_t kMostSlivers = 8;  // more slivers in one plane form a piece that is no sliver
 
-/// A triangle seen from a neighbour: reversed where the two are wound against each other.
+/// A triangle on a walk from neighbour to neighbour. `is_turned`: it is wound against the triangle at which the walk
+/// began.
 struct TurnedTriangle {
   std::uint32_t number = no_index;
   bool is_turned = false;
@@ -53,15 +54,15 @@ class Fan {
     std::size_t entry;  ///< the triangle's index in the fan
   };
 
-  /// The side from the fan's vertex to `rim`, of a triangle in the fan.
+  /// The side of `triangle`, a triangle of the fan, that leads from the fan's vertex to `rim`.
   [[nodiscard]] Side side(const TurnedTriangle& triangle, std::uint32_t rim) const {
     std::size_t entry = 0;
     while (entry < count_ && entries_[entry].triangle != triangle.number) ++entry;
     return {triangle, rim, entry};
   }
 
-  /// The triangle beyond a side, with its other side at the vertex. Copies of a triangle count once. Returns none where
-  /// several different triangles lie beyond.
+  /// Crosses a side: returns the triangle beyond it, with that triangle's other side at the vertex. Copies of a
+  /// triangle count once. Returns no triangle if several different ones lie beyond.
   [[nodiscard]] Side beyond(const Side& side) const {
     Side found{{}, no_index, count_};
     if (side.entry >= count_) return found;
@@ -86,7 +87,7 @@ class Fan {
     std::uint32_t triangle, next, last;
   };
 
-  /// Crosses to an entry that has the rim of `from`, and gives that entry's other side.
+  /// Crosses from the side `from` to an entry with the same rim, and returns that entry's other side.
   [[nodiscard]] Side to(std::size_t entry, const Side& from) const {
     const Entry& own = entries_[from.entry];
     const Entry& other = entries_[entry];
@@ -145,8 +146,8 @@ class Neighbours {
     if (normal == glm::dvec3(0)) normal = unit_of(normal_of(seen_.mesh, triangle.number));
     return triangle.is_turned ? -normal : normal;
   }
-  /// Whether the corners lie almost on a line, one between the others. On a curved surface such a triangle may have any
-  /// normal: on a chord of a cylinder's rim it lies in the rim's plane.
+  /// Whether the corners lie almost on a line, one between the other two. The normal of such a triangle says little
+  /// about its surface: a sliver between three vertices of a cylinder's rim lies in the rim's plane.
   [[nodiscard]] bool is_sliver(std::uint32_t triangle) const { return is_sliver_[triangle] != 0; }
 
   /// The normal of the surface that the triangle is cut from. A sliver that is not part of something wider takes the
@@ -203,7 +204,7 @@ class Neighbours {
 
 enum class FoldGrade : std::uint8_t {
   smooth,
-  weak,    ///< a crease where one goes on along it
+  weak,    ///< a crease only if it continues a strong fold
   strong,  ///< a crease
   sharp,   ///< a crease whatever is beside it
 };
@@ -215,25 +216,26 @@ struct JudgedFold {
 
 constexpr double kDegree = 0.017453292519943295;
 constexpr double kStrong = 18 * kDegree, kWeak = 9 * kDegree;
-/// The limit beside surfaces that turn evenly, and by less than kEven times the jump.
+/// Replaces kStrong if the surfaces on both sides turn evenly, and by at most kEven times the jump.
 constexpr double kStrongBesideEven = 12 * kDegree, kEven = 0.5;
-constexpr double kOneWay = 0.25;  // the most that a side turns the other way, as a share, to count as turning one way
-/// A side that turns back by more is not rough: it has a crease of its own.
+constexpr double kOneWay = 0.25;  // a side counts as turning one way if it turns back by at most this share
+/// The greatest angle that counts as roughness: a side that turns back by more has a crease of its own.
 constexpr double kRoughest = 10 * kDegree;
 /// The cosine of 34 degrees: a regular polygon of ten sides keeps its corners, and one of eleven is round.
 constexpr double kSharpCosine = 0.82903757255504162;
-constexpr double kAhead = 0.05;      // the least sine of the angle to the edge: sides of rims run along it
+constexpr double kAhead = 0.05;      // the least sine of the angle between the edge and a side that leads ahead
 constexpr double kOtherSide = 0.37;  // the cosine of 68 degrees
-constexpr double kFar = 3;           // times the width of the triangle on the other side
-constexpr int kMostTriangles = 16;   // the most that are visited around a corner
+constexpr double kFar = 3;  // a triangle counts less if it is wider than this many times the triangle on the other side
+constexpr int kMostTriangles = 16;  // the most triangles that a walk around a corner visits
 
-/// The tangent of half the angle with this sine and cosine, times any length. Grows with the angle, from -pi to pi.
+/// The tangent of half an angle. `sine` and `cosine` may both be multiplied by any positive factor. The tangent grows
+/// with the angle, from -pi to pi.
 double half_tangent(double sine, double cosine) {
   const double sum = std::sqrt(sine * sine + cosine * cosine) + cosine;
   return sum > 0 ? sine / sum : 0;
 }
 
-/// The angle for the tangent of its half, which is not less than 0. Correct to 1e-7 up to 90 degrees.
+/// The angle whose half has the tangent `half`, which is not less than 0. Correct to 1e-7 up to 90 degrees.
 double angle_of(double half) {
   const double t = half / (1 + std::sqrt(1 + half * half)), square = t * t;
   double sum = 0;
@@ -241,8 +243,8 @@ double angle_of(double half) {
   return 4 * t * sum;
 }
 
-/// The plane across an edge. A surface normal in that plane is a complex number. Its argument is the angle from the
-/// left side's normal, around the edge.
+/// The plane perpendicular to an edge. A surface normal, projected to this plane, is a complex number. Its argument is
+/// the angle around the edge from the left side's normal.
 struct CrossSection {
   CrossSection(const glm::dvec3& edge, const glm::dvec3& left)
       : along(edge), up(left - along * glm::dot(left, along)), side(glm::cross(along, up)) {}
@@ -259,13 +261,13 @@ double turn_between(const glm::dvec2& from, const glm::dvec2& to) {
   return half_tangent(from.x * to.y - from.y * to.x, glm::dot(from, to));
 }
 
-/// How far the surface on one side of a fold turns beyond its triangle: in the sense of the fold (`on`), and against it
-/// (`back`). Tangents of half the angles, not less than 0.
+/// How far the surface on one side of a fold turns beyond the triangle there: in the sense of the fold (`on`), and
+/// against that sense (`back`). Both are tangents of half the angles, not less than 0.
 struct Turn {
   double on = 0, back = 0;
 
   [[nodiscard]] double most() const { return std::max(on, back); }
-  /// True for a cylinder or a plane; a rough surface turns both ways.
+  /// Whether the surface turns in one sense only, as a cylinder or a plane does; a rough surface turns both ways.
   [[nodiscard]] bool is_one_way() const { return std::min(on, back) <= kOneWay * most(); }
   [[nodiscard]] bool is_beyond(double half) const { return half > on || -half > back; }
   void add(double half) {
@@ -274,12 +276,12 @@ struct Turn {
   }
 };
 
-/// The fold's angle, less what the sides take off.
+/// The fold's angle, from which the turns of both sides are subtracted.
 class Jump {
  public:
   explicit Jump(double half) : half_(half), angle_(angle_of(half)) {}
 
-  /// Subtracts half the turn of a side, weighted by `share`, 0 to 1.
+  /// Subtracts half of the turn of one side, weighted by `share` (0 to 1).
   void take_off(const Turn& turn, double share) {
     angle_ -= 0.5 * share * angle_of(std::min(turn.on, half_));
     rough_ = std::max(rough_, share * std::min(angle_of(turn.back), kRoughest));
@@ -287,7 +289,7 @@ class Jump {
     is_even_ = is_even_ && turn.is_one_way();
   }
   [[nodiscard]] double angle() const { return is_clear() ? angle_ : angle_ - rough_; }
-  /// Never rises as more is taken off.
+  /// A further take_off() never raises the grade.
   [[nodiscard]] FoldGrade grade() const {
     if (is_clear() || angle() >= kStrong) return FoldGrade::strong;
     return angle() < kWeak ? FoldGrade::smooth : FoldGrade::weak;
@@ -321,7 +323,7 @@ Turn turn_beyond(const Neighbours& near, const FoldSide& side, const CrossSectio
   const glm::uvec3& t = near.corners(side.triangle.number);
   for (int k = 0; k < 3; ++k) {
     if (t[k] == side.tip) continue;
-    // Walks around the tip, as long as nothing is sharp.
+    // Walks around the tip as far as the next sharp fold.
     Fan::Side at = fan.side(side.triangle, t[k]);
     glm::dvec3 last = side.normal;
     bool was_ahead = is_ahead(at.rim);
@@ -337,7 +339,7 @@ Turn turn_beyond(const Neighbours& near, const FoldSide& side, const CrossSectio
         break;
       }
       last = normal;
-      // Beyond a cone's tip lies the other side of the cone.
+      // Beyond a cone's tip lies the other side of the cone, which does not count.
       if (!ahead || glm::dot(normal, side.normal) < kOtherSide) continue;
       const double half = sense * turn_between(side.direction, section.direction(normal));
       if (turn.is_beyond(half) && !near.is_sliver(at.triangle.number)) turn.add(half);
@@ -347,9 +349,9 @@ Turn turn_beyond(const Neighbours& near, const FoldSide& side, const CrossSectio
 }
 
 /// A chamfer or a cone's rim jumps by its whole angle, the edge between a plane and a fillet by half. Two rules adjust
-/// the grade. Where a side turns back, it is rough, and the fold has to be deeper by as much. Where each side turns one
-/// way only, and by at most half as much, fainter folds count. Triangles that are far in comparison with the width of
-/// the other side's triangle count little. `edge` has two triangles. O(triangles at its corners).
+/// the grade. A side that turns back is rough, and the fold has to be deeper by as much. If each side turns one way
+/// only, by at most half of the jump, fainter folds count. A side counts little if its triangle is much wider than the
+/// triangle on the other side. O(triangles at the corners of both triangles).
 JudgedFold judge_fold(const Neighbours& near, const FeatureEdge& edge) {
   const bool is_alike =
       runs(near.corners(edge.left), edge.from, edge.to) != runs(near.corners(edge.right), edge.from, edge.to);
@@ -384,10 +386,10 @@ JudgedFold judge_fold(const Neighbours& near, const FeatureEdge& edge) {
 }
 
 constexpr std::size_t kEdgesPerPart = 256;
-constexpr double kGoesOn = 0.5;          // the least cosine of the angle between a crease and its continuation
-constexpr double kBend = 0.25;           // the least cosine between two edges that count as one line
-constexpr double kFaintest = 0.75;       // a fainter crease goes: share of the greatest jump of a triangle's creases
-constexpr std::size_t kFewestEdges = 3;  // the edges of a line that may end in the air
+constexpr double kGoesOn = 0.5;     // the least cosine of the angle between a crease and its continuation
+constexpr double kBend = 0.25;      // the least cosine between two edges that count as one line
+constexpr double kFaintest = 0.75;  // share of a triangle's greatest jump below which its faintest crease is removed
+constexpr std::size_t kFewestEdges = 3;  // a line of so many edges may end in the air
 constexpr double kLong = 0.05;           // share of the mesh's diagonal: a longer line may end in the air
 
 bool is_fold(const FeatureEdge& edge) { return edge.kind == EdgeKind::crease || edge.kind == EdgeKind::silhouette; }
@@ -417,7 +419,7 @@ class CreaseGraph {
     edges_at_ = Buckets<std::uint32_t>(mesh.positions.size(), edges_.size(), list, execution);
   }
 
-  /// Makes weak folds strong that continue strong ones.
+  /// Makes each weak fold strong that continues a strong fold.
   void follow_strong() {
     std::vector<std::uint32_t> open;
     for (std::size_t i = 0; i < edges_.size(); ++i)
@@ -493,7 +495,7 @@ class CreaseGraph {
   [[nodiscard]] glm::dvec3 direction_from(std::uint32_t edge, std::uint32_t vertex) const {
     return glm::normalize(mesh_.positions[other_end(edge, vertex)] - mesh_.positions[vertex]);
   }
-  /// The cosine of the angle between the end of one edge and the beginning of the next.
+  /// The cosine of the angle by which a line that goes from `edge` to `next` bends at `vertex`.
   [[nodiscard]] double bend(std::uint32_t edge, std::uint32_t next, std::uint32_t vertex) const {
     return -glm::dot(direction_from(edge, vertex), direction_from(next, vertex));
   }
@@ -502,7 +504,8 @@ class CreaseGraph {
     return std::size_t(std::count_if(here.begin(), here.end(), [&](std::uint32_t e) { return is_drawn(e); }));
   }
 
-  /// The line from a vertex with one edge to where others meet it, or it bends sharply, or it is long enough.
+  /// The edges of the line that begins at `tip`, a vertex with one drawn edge. The line ends where other edges meet it,
+  /// where it bends sharply, or after kFewestEdges edges.
   [[nodiscard]] std::vector<std::uint32_t> line_from(std::uint32_t tip) const {
     std::vector<std::uint32_t> line;
     for (std::uint32_t vertex = tip; line.size() < kFewestEdges;) {

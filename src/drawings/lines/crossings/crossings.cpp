@@ -45,7 +45,7 @@ Box box_of(const WeldedMesh& mesh, std::size_t triangle) {
   return box;
 }
 
-/// The exponent that std::frexp() gives for the box's longest side, but many times faster. That side is not 0.
+/// The exponent of the box's longest side, which is not 0. Equal to std::frexp()'s, but computed many times faster.
 int exponent_of(const Box& box) {
   const glm::dvec3 size = glm::dvec3(box.high) - glm::dvec3(box.low);
   const auto bits = bits_as<std::uint64_t>(std::max({size.x, size.y, size.z}));
@@ -64,7 +64,7 @@ Box bounds_of(const Buffer<glm::vec3>& places, const Execution& execution) {
   return all;
 }
 
-/// Keys on D. Hilbert's curve, 30 bits: the class of size, then the place of the box's middle.
+/// Computes sort keys of 30 bits: the class of size, then the place of the box's middle on D. Hilbert's curve.
 class Curve {
  public:
   Curve(const WeldedMesh& mesh, const Execution& execution) {
@@ -82,7 +82,8 @@ class Curve {
     return size << 3 * kBitsAnAxis | hilbert_place(step(at.x) | step(at.y) << 1 | step(at.z) << 2, kBitsAnAxis);
   }
   /// A power of two that makes most triangles about 1 in size. The kernels take products of many lengths, and denormal
-  /// floats cost hundreds of cycles. The scaling rounds nothing; what becomes infinite is left open by the kernels.
+  /// floats cost hundreds of cycles. The scaling rounds nothing, and the kernels leave pairs open whose values become
+  /// infinite.
   [[nodiscard]] float scale() const { return std::ldexp(1.0f, std::clamp(-usual_, 0, kMostScale)); }
 
  private:
@@ -107,9 +108,10 @@ class Curve {
 
   static constexpr double kSteps = (1 << kBitsAnAxis) - 1;
   static constexpr int kMostScale = 60;
-  /// By exponent: 0 for nine tenths of all triangles; each class beyond spans a factor of 4.
+  /// The class of each exponent. Class 0 has the smallest nine tenths of all triangles; further classes span a factor
+  /// of 4 each.
   std::array<std::uint32_t, 2 * kExponents> class_of_{};
-  int usual_ = 0;  ///< the largest exponent of those nine tenths
+  int usual_ = 0;  ///< the largest exponent of class 0
   glm::dvec3 low_{0};
   double scale_ = 0;
   std::array<std::uint32_t, 1 << kBitsAnAxis> spread_;
@@ -125,7 +127,7 @@ class BoxTree {
     const Curve curve(mesh, execution);
     Buffer<std::uint64_t> keys(count);
     parallel_for(execution, count, kPerPart, [&](std::size_t begin, std::size_t end) {
-      // Index i counts triangles that are not left out; `t` is the triangle's number with those before it added.
+      // `i` counts only the triangles that are not left out; `t` counts all triangles.
       std::size_t t = begin;
       auto next = left_out.begin();
       for (; next != left_out.end() && *next <= t; ++next) ++t;
@@ -172,8 +174,8 @@ class BoxTree {
   /// The number of groups of up to sixteen triangles.
   [[nodiscard]] std::size_t group_count() const { return triangles_.numbers.size() / kSpaceLanes; }
 
-  /// Calls visit(a, b) for every pair that SpaceKernels::crossing leaves open, with one triangle of this group and the
-  /// other of this group or a later one. Each pair is visited once.
+  /// Calls visit(a, b) once for every pair of triangles that SpaceKernels::crossing leaves open, if one triangle is in
+  /// this group and the other in this group or a later one.
   template <class Visitor>
   void visit_pairs(std::size_t group, const Visitor& visit) const {
     const std::size_t begin = group * kSpaceLanes;
@@ -197,7 +199,7 @@ class BoxTree {
   }
 
  private:
-  /// Calls visit(other, its box) for every group from `group` on whose box touches that of `group`.
+  /// Calls visit(other, other's box) for `group` itself and for every later group whose box touches the box of `group`.
   template <class Visitor>
   void visit_groups(std::size_t group, const Visitor& visit) const {
     const Box box = levels_[0].get(group);
@@ -265,7 +267,7 @@ struct Heights {
     const auto any = [&](int sign) { return of[0].sign == sign || of[1].sign == sign || of[2].sign == sign; };
     return any(1) && any(-1);
   }
-  /// The only corner that is not in the plane; -1 if there is none or several.
+  /// Index of the only corner that is not in the plane; -1 if no corner or several are outside of the plane.
   [[nodiscard]] int beside() const {
     int corner = -1;
     for (int k = 0; k < 3; ++k) {
@@ -279,13 +281,14 @@ struct Heights {
   Signed of[3];
 };
 
-/// The point in which a face's outline meets the plane of another: one end of its interval.
+/// A point in which a face's outline meets the plane of another face: an end of the first face's interval.
 struct EdgeMeeting {
   CrossingEnd end;
   std::uint32_t p, q;  ///< the edge that passes through the plane, or ends in it
 };
 
-/// The two meetings of a face that straddles the plane. A vertex in the plane is represented by one of its edges.
+/// The two points in which the outline of a face meets the plane that it straddles. A vertex in the plane is
+/// represented by one of its edges.
 std::array<EdgeMeeting, 2> meetings(const WeldedMesh& mesh, const CrossedFace& face, const Heights& heights) {
   std::array<EdgeMeeting, 2> found;
   std::size_t count = 0;
@@ -304,14 +307,15 @@ std::array<EdgeMeeting, 2> meetings(const WeldedMesh& mesh, const CrossedFace& f
   return found;
 }
 
-/// The orientation of the tetrahedron spanned by two edges; 0 where they meet.
+/// The orientation of the tetrahedron spanned by the edges p-q and r-s; 0 if these edges share a vertex.
 int turn(const WeldedMesh& mesh, std::uint32_t p, std::uint32_t q, std::uint32_t r, std::uint32_t s) {
   if (p == r || p == s || q == r || q == s) return 0;
   const auto& at = mesh.positions;
   return FacePlane(at[p], at[q], at[r]).height(at[s]).sign;
 }
 
-/// Whether the line through the meeting's edge passes through the face. The edge does not lie in the face's plane.
+/// Whether the line through the meeting's edge passes through the face. Precondition: the edge does not lie in the
+/// face's plane.
 bool is_within(const WeldedMesh& mesh, const EdgeMeeting& meeting, const CrossedFace& face) {
   const glm::uvec3& v = face.vertices;
   const int a = turn(mesh, meeting.p, meeting.q, v.x, v.y), b = turn(mesh, meeting.p, meeting.q, v.y, v.z);
@@ -350,7 +354,8 @@ struct Found {
   }
 };
 
-/// The segment of two triangles that share at most one vertex.
+/// The segment in which two triangles cross, if there is one. Adds contacts to `found`. Precondition: the triangles
+/// share at most one vertex.
 std::optional<Crossing> crossing(const WeldedMesh& mesh, const std::array<const CrossedFace*, 2>& faces, Found& found) {
   const Heights first(mesh, *faces[0], *faces[1]);
   const int first_beside = first.beside();
@@ -369,7 +374,7 @@ std::optional<Crossing> crossing(const WeldedMesh& mesh, const std::array<const 
   for (std::size_t k = 0; k < 2; ++k)
     for (const EdgeMeeting& end : ends[k])
       if (is_within(mesh, end, *faces[1 - k])) within[k][count[k]++] = &end;
-  // Where edges meet, both triangles have an end there; two ends of one triangle are then enough.
+  // Where two edges meet, both triangles have an end at the same point. So two ends of one triangle are enough.
   for (std::size_t k = 0; k < 2; ++k)
     if (count[k] == 2) return Crossing{within[k][0]->end, within[k][1]->end, faces[0]->triangle, faces[1]->triangle};
   if (count[0] == 0 || count[1] == 0) return std::nullopt;
@@ -391,7 +396,7 @@ std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& fea
   const std::size_t parts = (tree.group_count() + kGroupsPerPart - 1) / kGroupsPerPart;
   std::vector<std::vector<Crossing>> crossings(parts);
   std::vector<std::vector<EdgeContact>> contacts(parts);
-  // Counted over all threads, so that the limit is checked before memory is requested.
+  // Segments are counted over all threads, so that the limit is checked before memory is requested.
   const std::size_t most_segments = kMostSegments + kMostSegmentsOfTriangle * mesh.triangles.size();
   std::atomic<std::size_t> segments{0};
   WorkLimit work(execution, kMostSteps + kMostStepsOfTriangle * mesh.triangles.size(), "lines");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments along which triangles pass through each other.
+// Finds the segments along which triangles pass through each other.
 //
 //           /|             The segment that two triangles share ends where an edge of one of them passes through
 //      ____/_|___          the other (o). An end is identified by the edge that it is on. The next triangle of the
@@ -17,7 +17,7 @@ namespace frontmost::lines_detail {
 /// The point in which an edge meets the plane of a triangle.
 struct CrossingEnd {
   glm::dvec3 place{0};                ///< rounded
-  std::array<std::uint32_t, 2> on{};  ///< the edge's vertices; the same vertex twice where it lies in the plane
+  std::array<std::uint32_t, 2> on{};  ///< the edge's vertices; if one of them lies in the plane, that vertex twice
 };
 
 /// The segment that two triangles have in common.
@@ -33,16 +33,17 @@ struct Crossing {
 [[nodiscard]] std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features,
                                                    const Execution& execution);
 
-/// An edge, the lower vertex first, that lies in the plane of a triangle whose edge it is not.
+/// An edge that lies in the plane of a triangle but is none of that triangle's edges. `from` is the lower vertex.
 struct EdgeContact {
   std::uint32_t from, to, triangle;
   friend auto operator<=>(const EdgeContact&, const EdgeContact&) = default;
 };
 
-/// Appends the segments of contacts whose edge reaches the triangle and has its own two triangles on different sides of
-/// it. Where two edges lie along each other, a segment is appended if their triangles alternate around them. Edges that
-/// are drawn give no segment, so that every line is there once. Ends at vertices are exact. O(triangles + contacts log
-/// contacts), or nothing without contacts.
+/// Appends a segment for each contact whose edge reaches the triangle, if the edge's own two triangles lie on different
+/// sides of the triangle's plane. If the edge lies along an edge of the triangle, a segment is appended if the
+/// triangles of both edges alternate around their common line. Edges that are drawn anyway give no segment, so that
+/// every line exists once. Ends at vertices are exact. O(triangles + contacts log contacts), or nothing without
+/// contacts.
 void add_contacts(const WeldedMesh& mesh, const Features& features, std::vector<EdgeContact> contacts,
                   std::vector<Crossing>& crossings);
 

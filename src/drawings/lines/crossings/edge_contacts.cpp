@@ -21,7 +21,8 @@ struct Edge {
   friend auto operator<=>(const Edge&, const Edge&) = default;
 };
 
-/// The triangles at an edge, by their third vertices.
+/// The triangles at an edge, each with its third vertex (apex). Only the first two are stored; `count` is the number of
+/// all.
 struct Wedge {
   std::uint32_t triangles[2] = {no_index, no_index}, apexes[2] = {no_index, no_index};
   int count = 0;
@@ -45,7 +46,7 @@ void visit_edges(const glm::uvec3& t, const Visitor& visit) {
   }
 }
 
-/// The wedges of the contacts' edges and of the edges of their triangles.
+/// The wedges of all edges that matter: the edges of the contacts, and the sides of the contacts' triangles.
 class Wedges {
  public:
   Wedges(const WeldedMesh& mesh, const std::vector<EdgeContact>& contacts) {
@@ -82,9 +83,10 @@ struct Contacts {
     const glm::uvec3& t = mesh.triangles[contact.triangle];
     const int above = turn(t.x, t.y, t.z, wedge.apexes[0]), below = turn(t.x, t.y, t.z, wedge.apexes[1]);
     if (above == 0 && below == 0) return std::nullopt;
-    // An apex in the triangle's plane puts all corners of its own triangle in one plane with the edge.
+    // With an apex in the triangle's plane, all points would lie in one plane. So an apex outside of the plane is
+    // chosen.
     const std::uint32_t beside = wedge.apexes[above != 0 ? 0 : 1];
-    int sides[3];  // of the triangle's corners beside the edge
+    int sides[3];  // on which side of the edge each corner of the triangle lies
     for (int k = 0; k < 3; ++k) sides[k] = turn(edge.from, edge.to, beside, t[k]);
     const auto any = [&](int sign) { return sides[0] == sign || sides[1] == sign || sides[2] == sign; };
     if (any(1) && any(-1)) return above * below < 0 ? within(edge, wedge, contact.triangle, sides) : std::nullopt;
@@ -109,14 +111,14 @@ struct Contacts {
   [[nodiscard]] int turn(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t x) const {
     return height(a, b, c, x).sign;
   }
-  /// Order along a line. Precondition: both points are on that line.
+  /// Whether vertex `a` comes before vertex `b` along their line.
   [[nodiscard]] bool is_before(std::uint32_t a, std::uint32_t b) const {
     const glm::dvec3 p = mesh.positions[a], q = mesh.positions[b];
     return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
   }
   [[nodiscard]] CrossingEnd end_at(std::uint32_t vertex) const { return {mesh.positions[vertex], {vertex, vertex}}; }
 
-  /// The part of the edge that lies in a triangle with corners on both sides of it.
+  /// The part of the edge that lies in the triangle. Precondition: the triangle has corners on both sides of the edge.
   [[nodiscard]] std::optional<Crossing> within(const Edge& edge, const Wedge& wedge, std::uint32_t triangle,
                                                const int (&sides)[3]) const {
     const glm::uvec3& t = mesh.triangles[triangle];
@@ -142,7 +144,7 @@ struct Contacts {
     return Crossing{ends[0], ends[1], wedge.triangles[0], triangle};
   }
 
-  /// The common part of two edges of one line, if their triangles alternate around it.
+  /// The common part of the edges `one` and p-q, if their triangles alternate around the line on which both edges lie.
   [[nodiscard]] std::optional<Crossing> along(const Edge& one, std::uint32_t p, std::uint32_t q) const {
     const Edge other{std::min(p, q), std::max(p, q)};
     const Wedge &own = wedges.of(one), &wedge = wedges.of(other);
@@ -162,12 +164,13 @@ struct Contacts {
     const Wedge& own = wedges.of(edge);
     const std::uint32_t first = own.apexes[0], second = own.apexes[1], x = other.apexes[which];
     const auto around = [&](std::uint32_t a, std::uint32_t b) { return turn(edge.from, edge.to, a, b); };
-    // A point beside the first triangle's plane distinguishes that triangle's half plane from the opposite one.
+    // A point outside of the first triangle's plane distinguishes that triangle's half plane from the opposite one.
     std::uint32_t beside = no_index;
     for (const std::uint32_t apex : {second, other.apexes[0], other.apexes[1]})
       if (around(first, apex) != 0) beside = apex;
     if (beside == no_index) return 0;
-    // 0: with the first; 1: within half a turn; 2: opposite; 3: beyond.
+    // 0: in the direction of the first apex; 1: less than half a turn from it; 2: opposite to it; 3: more than half a
+    // turn.
     const auto quarter = [&](std::uint32_t apex) {
       const int side = around(first, apex);
       if (side != 0) return side > 0 ? 1 : 3;

@@ -32,7 +32,7 @@ using M = hn::Mask<D>;
 /// kShare bounds the rounding errors of normal, difference and product, as a share of the sum of the terms' absolute
 /// values. kLeast bounds errors by underflow.
 constexpr float kShare = 32.0f / 16777216.0f, kLeast = 1e-36f;
-/// kLeast for heights, whose products must not underflow in turn; most sizes are about 1.
+/// Used in place of kLeast for heights, because products of heights must not underflow either; most sizes are about 1.
 constexpr float kLeastHeight = 1e-20f;
 
 HWY_INLINE M Overlaps(V low, V high, float box_low, float box_high) {
@@ -74,7 +74,7 @@ HWY_INLINE LanePlane PlaneThrough(const Vector3& corner, const Vector3& one, con
           {bound(c.y, d.z, c.z, d.y), bound(c.z, d.x, c.x, d.z), bound(c.x, d.y, c.y, d.x)}};
 }
 
-/// Whether a point is certainly above a plane, or below it; neither for NaN.
+/// Whether a point is certainly above a plane, and whether it is certainly below the plane; neither for NaN.
 struct Height {
   M is_above, is_below;
 
@@ -108,11 +108,13 @@ struct Cut {
   }
 };
 
-/// A vector of any length from a corner in a plane to the point where the opposite edge passes through the plane.
+/// For a triangle with one corner in a plane: a vector of any length from that corner towards the point where the
+/// opposite edge passes through the plane.
 struct LaneReach {
   Vector3 to, error;
 
-  /// `a` and `b` lead from that corner to the other two. Valid only where these are not on one side of the plane.
+  /// `a` and `b` lead from that corner to the other two corners. Valid only if these two are not on one side of the
+  /// plane.
   HWY_INLINE LaneReach(const Vector3& a, const Vector3& b, const LanePlane& plane) {
     const D d;
     const Vector3 far_a = Abs(a), far_b = Abs(b);
@@ -122,7 +124,7 @@ struct LaneReach {
                      hn::Add(hn::Mul(p.z, t), hn::Mul(q.z, u))};
     };
     to = mix(a, high_b, b, high_a);
-    // A height is at most the sum of its own terms, so that sum bounds later roundings, too.
+    // A height is at most the sum of its terms, so that sum also bounds later rounding errors.
     const V share = hn::Set(d, 2 * kShare), least = hn::Set(d, kLeastHeight);
     const V error_a = hn::Add(hn::Mul(Dot(far_a, plane.size), share), least);
     const V error_b = hn::Add(hn::Mul(Dot(far_b, plane.size), share), least);
@@ -130,7 +132,7 @@ struct LaneReach {
   }
 };
 
-/// One of sixteen probes, in all lanes.
+/// One of sixteen probes, copied to all lanes.
 struct Probe {
   const SpaceTriangles& triangles;
   const SpaceProbes& all;
@@ -147,7 +149,7 @@ struct Probe {
   HWY_INLINE hn::Vec<DU> Vertex(int k) const { return hn::Set(DU(), triangles.vertices[k][all.first + lane]); }
 };
 
-/// Up to sixteen triangles in registers.
+/// Up to sixteen triangles in registers, one in each lane.
 struct Lanes {
   Vector3 corner[3], from_middle[3];
   Vector3 low, high;
@@ -175,7 +177,7 @@ struct Lanes {
     return hn::RebindMask(
         D(), hn::Or(hn::Or(hn::Eq(vertex[0], wanted), hn::Eq(vertex[1], wanted)), hn::Eq(vertex[2], wanted)));
   }
-  /// Lanes that touch the probe's box and share no vertex with it around which all triangles lie side by side.
+  /// Lanes whose boxes touch the probe's box, and which share no spread vertex with the probe.
   HWY_INLINE M MayMeet(const Probe& probe) const {
     const DU d;
     const auto overlaps = [&](V from, V to, int axis) HWY_ATTR {
@@ -197,13 +199,13 @@ struct Lanes {
       const auto is = [&](int v) HWY_ATTR { return hn::Eq(vertex[k], probe.Vertex(v)); };
       const M shared = hn::RebindMask(d, hn::Or(hn::Or(is(0), is(1)), is(2)));
       const V value = Dot(from_middle[k], probe.Splat3(probe.all.normal));
-      // The comparison is negated so that NaN counts as both.
+      // The comparisons are negated so that NaN counts as both above and below.
       above = hn::Or(above, hn::Not(hn::Or(shared, hn::Lt(value, hn::Set(d, least)))));
       below = hn::Or(below, hn::Not(hn::Or(shared, hn::Gt(value, hn::Set(d, most)))));
     }
     return hn::And(above, below);
   }
-  /// Lanes for whose planes the probe may have corners on both sides; none that share two vertices with it.
+  /// Lanes whose planes the probe may straddle, without lanes that share two vertices with the probe.
   HWY_INLINE M IsStraddled(const Probe& probe, const M (&has)[3]) const {
     const D d;
     M above = hn::FirstN(d, 0), below = above;
@@ -308,7 +310,7 @@ std::uint32_t CrossingGroups(const SpaceTriangles& triangles, std::size_t first,
   std::uint32_t found = 0;
   for (std::size_t i = 0; i < kSpaceLanes; i += hn::Lanes(d)) {
     const Lanes lanes(triangles, first + i, middle);
-    // No branch per probe: whether any lane is left is unpredictable.
+    // There is no branch per probe, because it cannot be predicted whether any lane is left.
     std::uint16_t left[kSpaceLanes];
     std::uint32_t near = 0, some_left = 0;
     frontmost::HWY_NAMESPACE::ForEachBit(touching, [&](std::size_t p) HWY_ATTR {

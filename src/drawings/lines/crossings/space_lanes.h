@@ -23,7 +23,7 @@ struct SpaceBoxes {
       low[axis] = Buffer<float>(padded_to_lanes(count));
       high[axis] = Buffer<float>(padded_to_lanes(count));
     }
-    // A padding box touches nothing; an empty box would still touch an infinite one.
+    // A padding box of NaN touches nothing; an empty box would still touch an infinite box.
     constexpr float none = std::numeric_limits<float>::quiet_NaN();
     for (std::size_t i = count; i < low[0].size(); ++i) set(i, {glm::vec3(none), glm::vec3(none)});
   }
@@ -44,7 +44,7 @@ inline constexpr std::uint32_t kNotSpread = 0x80000000u;
 
 struct SpaceTriangles {
   std::size_t count = 0;
-  Buffer<float> corners[9];           ///< at any scale
+  Buffer<float> corners[9];           ///< coordinates at a common scale
   Buffer<std::uint32_t> vertices[3];  ///< vertex numbers with kNotSpread
   Buffer<std::uint32_t> numbers;
 
@@ -54,18 +54,18 @@ struct SpaceTriangles {
   }
 };
 
-/// Added to the size of a normal, in place of what products of floats lose by underflow.
+/// Added to the size of a normal, because products of floats may lose that much by underflow.
 inline constexpr float kLeastSize = 1e-32f;
-/// Sixteen triangles, from `first` on, with which others are compared.
+/// Sixteen triangles, from number `first` on, with which other triangles are compared.
 struct SpaceProbes {
   std::size_t first;
-  alignas(64) std::uint32_t spread[3][kSpaceLanes];             ///< the vertices; no_index for those with kNotSpread
+  alignas(64) std::uint32_t spread[3][kSpaceLanes];  ///< the vertices; no_index in place of vertices with kNotSpread
   alignas(64) float low[3][kSpaceLanes], high[3][kSpaceLanes];  ///< the boxes
-  alignas(64) float normal[3][kSpaceLanes];  ///< normal of any length, each component to 2^-22 of `size`
+  alignas(64) float normal[3][kSpaceLanes];  ///< normal of any length; a component's error is at most 2^-22 of `size`
   alignas(64) float size[3][kSpaceLanes];    ///< at least the sum of absolute values of the terms of `normal`
 };
 
-/// For each probe, bit i stands for triangle i of sixteen.
+/// One mask for each probe, in which bit i stands for triangle i of sixteen.
 using SpaceMasks = std::array<std::uint16_t, kSpaceLanes>;
 
 /// The functions of one instruction set. Each works on sixteen items from `first` on, a multiple of 16.
@@ -75,7 +75,7 @@ struct SpaceKernels {
   void (*set_probes)(const SpaceTriangles& triangles, std::size_t first, SpaceProbes& probes);
   /// Finds triangles that may cross a probe: their boxes touch, they share no vertex unless it has kNotSpread, each may
   /// have corners on both sides of the other's plane, and they may overlap along the planes' common line. `box`
-  /// encloses the sixteen triangles. Sets `masks` and returns which probes have any.
+  /// encloses the sixteen triangles. Sets the masks of probes that may be crossed, and returns these probes as bits.
   std::uint32_t (*crossing)(const SpaceTriangles& triangles, std::size_t first, const Box& box,
                             const SpaceProbes& probes, SpaceMasks& masks);
 };

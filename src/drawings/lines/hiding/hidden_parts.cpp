@@ -15,8 +15,9 @@ namespace {
 
 Signed times(const Signed& value, int sign) { return {value.value * sign, value.sign * sign}; }
 
-/// Where the triangle is not between the eye and the near plane. With its normal n, a point A of it and the eye E, the
-/// line of sight to X meets the triangle's plane at the distance of X times n.(A - E) / n.(X - E).
+/// Where the line of sight to the edge meets the triangle's plane beyond the near plane. If n is the triangle's normal,
+/// A a point of the triangle, and E the eye, then the line of sight to a point X meets the plane at the distance of X
+/// times n.(A - E) / n.(X - E).
 Interval beyond_near(const Occluder& occluder, const SightedEdge& edge, const Sight& sight, const glm::dvec3& n) {
   const glm::dvec3 a(occluder.corners[0]);
   const auto beyond = [&](const glm::dvec3& x, double distance) {
@@ -69,7 +70,7 @@ bool is_own(const Occluder& occluder, const SightedEdge& edge) {
 }
 
 constexpr std::size_t kMostAtOnce = 64, kBlock = 16;
-/// In cells: less than the tolerance of sides, and more than the rounding error of a place.
+/// A margin, in units of cells, below the tolerance of sides and above the rounding error of a place.
 constexpr double kEndPad = 5e-6;
 
 /// A float that is not greater than the value, in spite of rounding.
@@ -104,7 +105,7 @@ Interval within_view(const EdgeInEye& edge, const Projection& p) {
   return shown;
 }
 
-/// The point at t in pixels. Precondition: t is within the view.
+/// The edge's point at t, in pixels. Precondition: the point is within the view.
 glm::dvec2 on_screen(const EdgeInEye& edge, double t, const EdgeOccluders& o) {
   glm::dvec3 p = place_between(edge.from, edge.to, t);
   // Rounding may put the point outside of the view, if the edge is very much longer than its part in the view.
@@ -121,7 +122,7 @@ struct EdgeQuestion {
   const Interval span;
   const Asked asked;
   const glm::dvec2 begin, end;  ///< ends of the span, in cells
-  const float farthest;         ///< occluders that are no nearer do not matter
+  const float farthest;         ///< greatest distance of the edge, beyond which no occluder matters
 
   EdgeQuestion(const EdgeOccluders& occlusion, const EdgeInEye& its_edge, const Interval& its_span, Asked what)
       : o(occlusion),
@@ -135,7 +136,7 @@ struct EdgeQuestion {
   [[nodiscard]] bool hides() const { return asked == Asked::what_hides; }
 };
 
-/// An interval that contains the part of the edge in a cell, with some room.
+/// An interval that contains the part of the edge in a cell, with a margin.
 Interval part_in(const PassedCell& cell, const EdgeQuestion& question) {
   const Interval& span = question.span;
   const glm::dvec2 along = question.end - question.begin;
@@ -180,7 +181,7 @@ PartInCell seen_in(const PassedCell& cell, const Interval& part, const EdgeQuest
           {glm::vec2(a - corner), glm::vec2(b - corner), from_nearness, to_nearness}};
 }
 
-/// Compares the occluders of the batch with the edge. \returns true when more is hidden than before.
+/// Compares the occluders of the batch with the edge. \returns whether more may be hidden than before.
 bool hold_against_batch(const EdgeQuestion& question, EdgeSearch& search) {
   const SightedEdge& edge = question.edge.edge;
   HiddenBatch found;
@@ -295,7 +296,7 @@ void append_parts(const EdgeQuestion& question, EdgeSearch& search, std::uint32_
   }
 }
 
-/// Appends a visible part, cut where the cover beside it begins and ends.
+/// Appends the pieces of a visible part, cut where triangles begin and end to cover its outer side.
 void append_outline(DrawnPart part, const EdgeQuestion& question, HiddenIntervals& covered,
                     std::vector<DrawnPart>& pieces) {
   const DrawnPart whole = part;

@@ -121,7 +121,8 @@ class HiddenIntervals {
     hidden_.clear();
   }
 
-  /// O(intervals) at worst; O(log intervals) where the interval lengthens the first or last one, or becomes it.
+  /// Adds an interval that `triangle` hides. O(intervals) at worst; O(log intervals) if it extends, or becomes, the
+  /// first or the last interval.
   void add(Interval in, std::uint32_t triangle) {
     if (!(in.begin < in.end)) return;
     if (counts_) {
@@ -147,7 +148,7 @@ class HiddenIntervals {
     return at != hidden_.end() && at->interval.begin <= part.begin;
   }
 
-  /// The stretch from the first to the last open point of `part`; empty where none is open.
+  /// The stretch from the first to the last open point of `part`; empty if no point is open.
   [[nodiscard]] Interval open_part(Interval part) const {
     if (counts_) return part;
     if (const auto at = first_to(part.begin); at != hidden_.end() && at->interval.begin <= part.begin)
@@ -157,7 +158,7 @@ class HiddenIntervals {
     return part;
   }
 
-  /// United intervals in order. With counts, a triangle that was added twice occurs once.
+  /// The united intervals, in order. With counts: one interval for each triangle, even if it was added twice.
   [[nodiscard]] const std::deque<Hidden>& intervals() {
     if (!counts_) return hidden_;
     std::sort(hidden_.begin(), hidden_.end(), [](const Hidden& a, const Hidden& b) { return a.triangle < b.triangle; });
@@ -174,13 +175,14 @@ class HiddenIntervals {
   }
 
   bool counts_ = false;
-  std::deque<Hidden> hidden_;  ///< a deque: cells may come from either end of the edge
+  std::deque<Hidden> hidden_;  ///< a deque, because intervals may be added at either end
 };
 
 struct EdgeSearch {
   HiddenIntervals hidden;
   OccluderBatch batch;  ///< occluders that are still to be compared with the edge
-  /// The occluders that were asked last, by the low bits of their addresses, so that the next cell can skip them.
+  /// The occluders that were added to a batch last, by the low bits of their addresses, so that the next cell can skip
+  /// them.
   std::array<const Occluder*, 64> asked{};
   std::vector<std::pair<double, int>> changes;  ///< places where one more or one less triangle hides the edge
   std::uint64_t work = 0;                       ///< as for EdgeCutter::take_work(), over all edges
@@ -191,7 +193,8 @@ class EdgeCutter {
  public:
   explicit EdgeCutter(const EdgeOccluders& occlusion) : o_(occlusion) {}
 
-  /// Appends the parts of `edge`, whose number is `number`, that lie within the view. Its distances need not be set.
+  /// Appends the parts of `edge`, whose number is `number`, that lie within the view. The distances of `edge` need not
+  /// be set.
   void cut(const SightedEdge& edge, std::uint32_t number, std::vector<DrawnPart>& parts);
 
   /// The work since the last call, in tested boxes. A batch that is compared with an edge counts as 256 boxes.

@@ -23,17 +23,17 @@
 namespace frontmost::lines_detail {
 namespace {
 
-/// In cells. Rounding could matter farther away.
+/// The largest coordinate, in units of cells, at which rounding cannot matter.
 constexpr double kFarthest = 1e5;
-/// Limits of length by width beyond which rounding could matter: for planes, and for which side is within.
+/// The largest ratios of length to width at which rounding cannot matter: for a triangle's plane, and for its sides.
 constexpr double kThinnest = 1e4, kThinnestSide = 1e9;
-/// Relative to the values; far more than the rounding error of a place in the picture.
+/// Margins relative to the values, far above the rounding error of a place in the picture.
 constexpr double kDepthSlack = 1e-9, kSideSlack = 1e-5, kFloatSlack = 1e-6;
 
 /// Triangles per cell. Sixteen boxes are tested at once; with 4 a terrain of a million triangles takes a third longer.
 constexpr double kTrianglesPerCell = 32;
 constexpr double kMostCells = 1 << 22;
-/// The mean number of cells that a triangle may take, and the most of all; both bound memory.
+/// The most entries per triangle in the mean, and the most entries of all triangles; both limits bound memory.
 constexpr double kEntriesPerTriangle = 16, kMostEntries = 4e9;
 constexpr std::size_t kCornersPerPart = 4096, kSeenPerPart = 1024;
 /// How far ahead triangles at random addresses are prefetched.
@@ -45,10 +45,12 @@ double widened(double value, double direction) { return value + direction * 1e-9
 
 }  // namespace
 
-/// Bounds that hold in spite of rounding, for a triangle that lies wholly beyond the near plane.
+/// Bounds on a triangle's distance and sides that hold in spite of rounding. The triangle lies wholly beyond the near
+/// plane.
 class CellDepth {
  public:
-  /// Places have x and y in cells, and the planar distance as z. In perspective, its inverse is linear on the screen.
+  /// Places have x and y in units of cells, and the planar distance as z. In perspective, the inverse of z is linear on
+  /// the screen.
   CellDepth(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, bool is_parallel)
       : low_(std::min({a.z, b.z, c.z})), high_(std::max({a.z, b.z, c.z})), is_parallel_(is_parallel) {
     const glm::dvec3 corners[3] = {a, b, c};
@@ -80,7 +82,7 @@ class CellDepth {
                      (std::abs(linear_.by_x) + std::abs(linear_.by_y)) * (most * 1e-3 + 0.1 / reach));
   }
 
-  /// Bounds of the triangle's distance within a square.
+  /// A lower bound on the triangle's distance within a square; farthest(): an upper bound.
   [[nodiscard]] double nearest(const Square& square) const {
     if (!has_plane_) return low_;
     const double value = linear_.at(square, is_parallel_ ? -1 : 1);
@@ -116,7 +118,8 @@ class CellDepth {
     return all;
   }
 
-  /// The function a * x + b * y + c, in cells from a square's corner: negative values are certainly outside of a side.
+  /// The function a * x + b * y + c of a point in units of cells, relative to a square's corner. Where it is negative,
+  /// the point is certainly outside of a side.
   struct Side {
     float a, b, c;
   };
@@ -130,7 +133,7 @@ class CellDepth {
             float((side.at_0 + side.by_x * corner.x + side.by_y * corner.y) / size + 2 * kSideSlack)};
   }
 
-  /// A lower bound, in the same form, of the plane's nearness() in a square no larger than a cell.
+  /// An upper bound on the plane's nearness() within a cell, in the same form; `corner` is the cell's corner.
   [[nodiscard]] Side plane(const glm::dvec2& corner) const {
     if (!has_plane_) return nowhere_outside;
     const double sign = is_parallel_ ? -1 : 1;
@@ -151,13 +154,13 @@ class CellDepth {
     }
   };
 
-  Linear linear_, sides_[3];  ///< the sides are positive inside
-  double low_, high_;         ///< range of the distances of all vertices
+  Linear linear_, sides_[3];  ///< the functions of the sides are positive inside
+  double low_, high_;         ///< least and greatest distance of a vertex
   bool is_parallel_;
   bool has_sides_ = false, has_plane_ = false;  ///< false if the triangle is seen almost edge-on or reaches too far
 };
 
-/// A float below the value by up to 2^-22 of it, in every rounding mode.
+/// A float that is at most `value`, and smaller by at most 2^-22 of its size, in every rounding mode.
 inline float rounded_down(double value) { return float(value - std::abs(value) * 2e-7); }
 inline float rounded_up(double value) { return -rounded_down(-value); }
 
@@ -171,7 +174,7 @@ struct Footprint {
 /// The columns and rows of cells that a box touches.
 struct CellRange {
   int first_column, last_column, first_row, last_row;
-  /// Whether the triangle's outline may leave out some of these cells.
+  /// Whether some of these cells may lie outside of the triangle.
   [[nodiscard]] bool is_large() const { return last_row - first_row >= 2 && last_column > first_column; }
 };
 
@@ -211,7 +214,8 @@ class GridPlan {
   [[nodiscard]] bool is_near(const Footprint& footprint) const {
     return double(footprint.nearest) <= sight.near() + 1e-6 * std::abs(sight.near());
   }
-  /// Calls visit(cell, nearest) for every cell that the footprint's triangle may touch, with its least distance there.
+  /// Calls visit(cell, nearest) for every cell that the footprint's triangle may touch, with the triangle's least
+  /// distance in that cell.
   template <class Visitor>
   void visit_cells(std::size_t number, const Visitor& visit) const {
     const CellRange& all = ranges[number];
@@ -222,7 +226,7 @@ class GridPlan {
   }
 
  private:
-  /// The part of a triangle between the near and far planes, as a polygon in cells.
+  /// The part of a triangle beyond the near plane, as a polygon in units of cells.
   struct Outline {
     std::array<glm::dvec2, 5> corners;
     int count = 0;
@@ -234,7 +238,7 @@ class GridPlan {
     double left, right;
   };
 
-  /// Sets the resolution, the places of vertices in cells, and the footprints.
+  /// Sets the resolution to about `cells` cells, and computes the places of vertices and the footprints.
   void set_cells(const View& view, double cells) {
     const double size = std::sqrt(double(view.width) * view.height / cells);
     grid.columns = std::max(1, int(std::ceil(view.width / size)));
@@ -354,7 +358,7 @@ class GridPlan {
     return {{at[v.x], at[v.y], at[v.z]}, {v.x, v.y, v.z}, turn, footprint.triangle, is_near(footprint)};
   }
 
-  /// An upper bound on the number of cells.
+  /// An upper bound on the number of cells that the footprint takes.
   [[nodiscard]] double entries_of(const Footprint& footprint, const CellRange& range) const {
     const double columns = range.last_column - range.first_column + 1, rows = range.last_row - range.first_row + 1;
     if (!range.is_large()) return columns * rows;
@@ -365,7 +369,7 @@ class GridPlan {
     return std::min(columns * rows, area + 2 * (columns + rows));
   }
 
-  /// The extent of the outline between the lower and upper side of a row.
+  /// The horizontal extent of the outline within a row of cells.
   [[nodiscard]] static Span within_row(const Outline& outline, int row) {
     Span span{infinite, -infinite};
     const double top = row - kCellPad, bottom = row + 1 + kCellPad;
@@ -405,7 +409,7 @@ class GridPlan {
 namespace {
 
 constexpr std::size_t kCellsPerPart = 32, kLargePerPart = 64;
-/// The kernels read whole vectors beyond the last entry.
+/// The kernels may read whole vectors of values beyond the last entry.
 constexpr std::size_t kPadding = 64;
 
 /// An integer that sorts like the float.

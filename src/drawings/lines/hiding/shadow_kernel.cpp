@@ -26,12 +26,12 @@ using DF = hn::CappedTag<float, 16>;
 using Vector3 = Lanes3<V>;
 using LaneNormals = BoundedNormals<V>;
 
-/// Values, with masks of their certain signs.
+/// Values of functions, with masks that tell whose signs are certain.
 struct Values {
   V value;
   M is_positive, is_negative, is_zero;
 
-  /// n.v times `sign`; zero where `is_on`. Each coordinate of v may be wrong by `slack`.
+  /// Dot products of n and v, times `sign`; zero in the lanes of `is_on`. Each coordinate of v may be wrong by `slack`.
   HWY_INLINE Values(const LaneNormals& n, const Vector3& v, V sign, M is_on, double slack) {
     const D d;
     value = hn::Mul(Dot(n.value, v), sign);
@@ -69,13 +69,13 @@ struct Rest {
 
 struct CornerLanes {
   Vector3 place;
-  M is_from, is_to;  // the edge's ends
+  M is_from, is_to;  // whether the corner is an end of the edge
 };
 
 template <bool needs_depth>
 HWY_INLINE void Ask(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden) {
   const D d;
-  // Ends that are no vertices may still lie in planes by their vertices' numbers: hidden_by() decides that.
+  // A constructed end may also lie in a plane by the numbers of its edge's vertices; hidden_by() decides that.
   const bool has_vertices = edge.slack == 0;
   const V from_vertex = hn::Set(d, has_vertices ? double(edge.from_on[0]) : -1.0);
   const V to_vertex = hn::Set(d, has_vertices ? double(edge.to_on[0]) : -1.0);
@@ -100,7 +100,7 @@ HWY_INLINE void Ask(const OccluderBatch& batch, const SightedEdge& edge, const S
           Values(face, from_0, against, any(corner[0].is_from, corner[1].is_from, corner[2].is_from), edge.slack),
           Values(face, to_0, against, any(corner[0].is_to, corner[1].is_to, corner[2].is_to), edge.slack));
     }
-    // A turn is the negative product with the plane's normal.
+    // A turn has the opposite sign of the product with the plane's normal.
     const auto keep_within = [&](const CornerLanes& p, const CornerLanes& q, V sign) HWY_ATTR {
       if (hn::AllTrue(D(), rest.is_gone)) return;
       const LaneNormals side(sight.is_parallel() ? axis : Minus(p.place, axis), Minus(q.place, p.place));

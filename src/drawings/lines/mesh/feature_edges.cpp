@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edges are found at their lower vertex. A kernel finds the vertices that have no features; these are skipped.
+// Each edge is found at its lower vertex. A kernel finds the edges that may be features; the others are skipped.
 //
 //    triangles at the edge     what is drawn
 //    one                       boundary, unless a gap lies beside it
 //    two                       silhouette where only one faces the eye; border; crease by their angle
 //    more                      each pair of sides of one surface is judged like two; without pairs, surfaces meet
 //
-// Parts that touch have the same triangles where they do. Three or more groups of copies form pairs only if one group
-// is as large as all others together: it is the part that the others share, like the wall between two rooms.
+// Objects that touch have equal triangles where they touch. Three or more groups of copies at an edge form pairs only
+// if one group is as large as all others together. That group is the surface which the others share, like the wall
+// between two rooms.
 #include "lines/mesh/feature_edges.h"
 
 #include <algorithm>
@@ -27,7 +28,7 @@ constexpr double kShare = 1.0 / 16;  // the widest gap, as a share of an edge's 
 constexpr double kAcross = 0.5;      // least cosine of the angle between the directions into both triangles
 constexpr std::size_t kVerticesPerPart = 1024;
 constexpr float kNormalRounding = 2e-6f;    // of a product of two normals, at most
-constexpr double kWidestGap = 1.0 / 65536;  // of the scene's diagonal: a two hundredth of a millimetre on paper of A4
+constexpr double kWidestGap = 1.0 / 65536;  // share of the scene's diagonal: 1/200 mm on A4 paper
 
 struct Classifier {
   Classifier(const SeenMesh& its_seen, const Surfaces& its_surfaces, const LineOptions& its_options)
@@ -42,7 +43,7 @@ struct Classifier {
   [[nodiscard]] float plain_cosine() const {
     if (has_borders) return std::numeric_limits<float>::infinity();
     if (!options.creases) return -std::numeric_limits<float>::infinity();
-    // Zero normals mean nothing is known; a limit below 0 would make them look plain.
+    // A zero normal means that the normal is unknown. With a limit below 0, its edges would count as plain.
     return std::max(float(cosine), 0.0f) + kNormalRounding;
   }
 
@@ -59,7 +60,7 @@ struct Classifier {
     return {source.instance, surfaces.scene().meshes[source.mesh].material_of(source.triangle)};
   }
 
-  /// The side of the edge on which no triangle lies, as seen; 0 where triangles are on both sides.
+  /// The side of the edge, as seen from the eye, on which no triangle lies: 1 or -1; 0 if triangles lie on both sides.
   [[nodiscard]] std::int8_t outer_side(std::span<const Side> sides) const {
     int inner = 0;
     for (const Side& side : sides) {
@@ -70,7 +71,7 @@ struct Classifier {
     return std::int8_t(-inner);
   }
 
-  /// On which side of the plane through the eye and the edge the triangle lies: 1 or -1. Its winding does not matter.
+  /// The side of the plane through the eye and the edge on which the triangle lies: 1 or -1, whatever its winding.
   [[nodiscard]] int side_of(const Side& side) const { return seen.facing[side.triangle] * (side.is_forward ? 1 : -1); }
 
   static bool is_one_surface(const Scene& scene) {
@@ -96,9 +97,9 @@ struct Classifier {
   const bool has_borders;
 };
 
-/// A side of one triangle alone.
+/// A side that belongs to only one triangle.
 struct OpenSide {
-  /// `from` is a point, the others unit vectors; `ahead` points into the triangle.
+  /// `from` is a point, and the others are unit vectors; `ahead` points into the triangle.
   glm::dvec3 from, along, normal, ahead;
   double length;
   std::uint32_t number;  ///< of the edge, in the list of all edges
@@ -167,7 +168,7 @@ struct SideTree {
   std::vector<Box> boxes;
 };
 
-/// Whether stretches cover a length, up to holes of `slack`.
+/// Whether the stretches cover the range from 0 to `length`, except for holes of at most `slack`.
 bool cover(std::vector<std::pair<double, double>>& stretches, double length, double slack) {
   std::sort(stretches.begin(), stretches.end());
   double reached = 0;
@@ -184,7 +185,8 @@ struct Gaps {
   const double most;  ///< the widest gap
   const SideTree& tree;
 
-  /// Whether the side is a gap. Adds its vertices, with those beyond the gap, to `continued`.
+  /// Whether `side` lies at a gap. If so, adds to `continued` the pairs of its vertices and the vertices across the
+  /// gap.
   [[nodiscard]] bool is_one(const OpenSide& side, VertexPairs& continued) const {
     const double widest = std::min(most, kShare * side.length);
     Box box = side.box;
@@ -209,13 +211,15 @@ struct Gaps {
     return is_gap;
   }
 
-  /// The stretch of `side` beside which `other` lies, in lengths from its beginning; empty if there is none.
+  /// The stretch of `side` beside which `other` lies, as distances from the beginning of `side`; empty if there is
+  /// none.
   static std::pair<double, double> stretch_beside(const OpenSide& side, const OpenSide& other, double widest) {
     const double slope = glm::dot(other.along, side.along);
     if (slope == 0) return {0, 0};
     const glm::dvec3 start = other.from - side.from;
     const double s = glm::dot(start, side.along), e = s + slope * other.length;
-    // A little beyond the ends: triangles that meet the side only at a corner may reach into its own triangle.
+    // The stretch may reach a little beyond the ends of `side`, because triangles that meet the side only at a corner
+    // may reach into the side's own triangle.
     const double begin = std::max(-widest, std::min(s, e)), end = std::min(side.length + widest, std::max(s, e));
     const auto is_near = [&](double at) {
       const glm::dvec3 place = start + other.along * ((at - s) / slope);
@@ -287,7 +291,7 @@ struct OwnedSide {
 /// Sides with the same opposite vertex.
 using SidesOfCopy = std::span<const OwnedSide>;
 
-/// One side of each group: of the same object and material if possible, else the first ones.
+/// A pair with one side from each group: two sides of the same object and material if possible, else the first sides.
 SidePair pair_of(const SidesOfCopy& a, const SidesOfCopy& b) {
   for (const OwnedSide& one : a)
     for (const OwnedSide& other : b)
@@ -295,8 +299,8 @@ SidePair pair_of(const SidesOfCopy& a, const SidesOfCopy& b) {
   return {a[0].side, b[0].side};
 }
 
-/// Appends pairs that hold all sides. \returns false, and appends none, where that is impossible. Precondition: `sides`
-/// are sorted by opposite vertex.
+/// Pairs the groups of copies and appends these pairs. \returns false, and appends none, if not every group can be
+/// paired. Precondition: `sides` are sorted by opposite vertex.
 bool pair_up(std::span<const OwnedSide> sides, std::vector<SidePair>& pairs) {
   std::vector<SidesOfCopy> copies;
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
@@ -329,7 +333,8 @@ std::optional<Drawn> first_of(std::span<const SidePair> pairs, const Classifier&
   return first;
 }
 
-/// `sides` are those of one edge, copies included; `distinct` has each opposite vertex once.
+/// How an edge is drawn, if at all. `sides` are all sides of the edge, copies included; `distinct` has one side for
+/// each opposite vertex.
 std::optional<Drawn> drawn_of(std::span<const Side> sides, std::span<const Side> distinct,
                               const Classifier& classifier) {
   if (distinct.size() == 2) {

@@ -19,20 +19,20 @@ namespace frontmost::lines_detail {
 struct FeatureEdge {
   std::uint32_t from, to, left, right;
   EdgeKind kind;
-  std::int8_t outer;  ///< as for SightedEdge::outer
+  std::int8_t outer;  ///< same meaning as SightedEdge::outer
 };
 
 using VertexPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 struct Features {
   std::vector<FeatureEdge> edges;    ///< in the order of their vertices
-  VertexPairs continued;             ///< result of leave_out_gaps()
-  std::vector<std::uint32_t> twins;  ///< ascending: triangles with the same corners as another before them
+  VertexPairs continued;             ///< pairs of vertices across gaps, from leave_out_gaps()
+  std::vector<std::uint32_t> twins;  ///< triangles that repeat the corners of an earlier triangle; ascending
   /// By vertex, Star::is_spread: no two of its triangles meet except in their common corners. 0 or empty: unknown.
   Buffer<std::uint8_t> is_spread;
 };
 
-/// O(triangles log triangles at a vertex).
+/// Finds the features. O(triangles * log(triangles at a vertex)).
 [[nodiscard]] Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options,
                                      const Execution& execution);
 
@@ -46,7 +46,7 @@ struct Side {
   [[nodiscard]] auto key() const { return std::make_tuple(upper, opposite, triangle); }
 };
 
-/// Two sides of an edge between which a surface goes on.
+/// Two sides of one edge across which a surface continues.
 using SidePair = std::pair<Side, Side>;
 
 /// Which object and material a triangle belongs to.
@@ -56,25 +56,27 @@ struct SurfaceOf {
 };
 using SurfaceOfTriangle = std::function<SurfaceOf(std::uint32_t triangle)>;
 
-/// Pairs the triangles at an edge with more than two opposite vertices to surfaces. Sides of one object are paired
-/// first: two are a pair; a side that occurs as often as all others together is paired with each of them. The sides
-/// that remain are then paired with each other by the same rules. `sides` are all sides of one edge, copies included,
-/// sorted by opposite vertex; their winding does not matter. O(sides log sides). \returns none if a side has no
-/// partner, or more than one possible partner: different surfaces meet at the edge.
+/// Pairs the sides of an edge with more than two opposite vertices, so that each pair belongs to one surface. Sides of
+/// one object are paired first: two are a pair; a side that occurs as often as all others together is paired with each
+/// of them. The sides that remain are then paired with each other by the same rules. `sides` are all sides of one edge,
+/// copies included, sorted by opposite vertex; their winding does not matter. O(sides log sides). \returns none if a
+/// side has no partner, or more than one possible partner: different surfaces meet at the edge.
 [[nodiscard]] std::optional<std::vector<SidePair>> paired_sides(std::span<const Side> sides,
                                                                 const SurfaceOfTriangle& surface_of);
 
-/// Whether two triangles lie on both sides of a gap: such triangles pass through each other only by rounding.
+/// Whether triangles `a` and `b` lie on opposite sides of a gap. Such triangles pass through each other only because of
+/// rounding.
 [[nodiscard]] bool meet_at_gap(const WeldedMesh& mesh, const VertexPairs& continued, std::uint32_t a, std::uint32_t b);
 
-/// The cosine of 15 degrees. Smaller folds are never creases: half the edges of a scan are folds of some degrees.
+/// The cosine of 15 degrees. Smaller folds are never creases, because half the edges of a scanned model are folds of
+/// some degrees.
 inline constexpr double kLeastFoldCosine = 0.96592582628906831;
 
 /// Removes from `edges` the creases that the surfaces on both sides do not confirm, by hysteresis as in J. Canny. A
-/// Computational Approach to Edge Detection. 1986. A strong fold is a crease, and so are weak folds that continue one.
-/// The faintest crease of a triangle with three goes. A line of one or two edges that ends in the air goes, unless it
-/// is long. Silhouettes take part, so that the result hardly depends on the view; boundaries and borders hold what ends
-/// at them. The other edges and their order stay. O(edges).
+/// Computational Approach to Edge Detection. 1986. A strong fold is a crease, and so is a weak fold that continues a
+/// strong fold. A triangle with three creases may lose the faintest one. A line of one or two creases that ends in the
+/// air is removed, unless it is long; a line may end at a boundary or a border. Silhouettes are judged like creases, so
+/// that the result hardly depends on the view, but only creases are removed. The order of the edges stays. O(edges).
 void judge_creases(const SeenMesh& seen, const CornerTable& table, std::vector<FeatureEdge>& edges,
                    const Execution& execution);
 

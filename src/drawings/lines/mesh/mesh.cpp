@@ -44,7 +44,7 @@ std::vector<std::size_t> firsts_of(const Scene& scene, const Size& size) {
   return firsts;
 }
 
-/// The number of kept items before each part, and at the end the number of all.
+/// The number of kept items before each part, followed by the number of all kept items.
 template <class IsKept>
 std::vector<std::size_t> counted(std::size_t count, const IsKept& is_kept, const Execution& execution) {
   std::vector<std::size_t> before((count + kWeldedPerPart - 1) / kWeldedPerPart + 1, 0);
@@ -72,7 +72,7 @@ Buffer<glm::vec3> places_of(const Scene& scene, const Execution& execution) {
   return places;
 }
 
-/// By vertex of all instances, the number of its place; fills `positions`.
+/// The number of each vertex's place, for the vertices of all instances. Fills `positions`.
 Buffer<std::uint32_t> number_places(const Scene& scene, Positions& positions, const Execution& execution) {
   const Buffer<glm::vec3> places = places_of(scene, execution);
   const Buffer<std::uint32_t> first = first_at_place({places.data(), places.size()}, execution);
@@ -96,7 +96,7 @@ Buffer<std::uint32_t> number_places(const Scene& scene, Positions& positions, co
   return numbers;
 }
 
-/// By primitive, its three place numbers; the first is no_index if the primitive is left out.
+/// Three place numbers for each primitive; the first is no_index if the primitive is left out.
 Buffer<glm::uvec3> corners_of(const Surfaces& surfaces, const Buffer<std::uint32_t>& numbers,
                               const Execution& execution) {
   const Scene& scene = surfaces.scene();
@@ -135,7 +135,7 @@ bool is_straight(const Positions& at, const glm::uvec3& t) {
   return normal[0].sign() == 0 && normal[1].sign() == 0 && normal[2].sign() == 0;
 }
 
-/// The lines of fillers, and the fillers' sides on them.
+/// The seams of a mesh: the lines on which fillers lie, with the sides of these fillers.
 class Seams {
  public:
   Seams(const WeldedMesh& mesh, const std::vector<std::uint32_t>& fillers, const Execution& execution)
@@ -148,7 +148,7 @@ class Seams {
         is_corner_[a] = true;
       }
     }
-    // The order of equal sides does not matter: their fillers are on one line.
+    // The order of equal sides does not matter, because their fillers are on one line.
     sort_in_parts(sides_, std::less<>(), execution);
     const std::vector<std::uint32_t> seam_of = number_lines(fillers.size());
     for (Side& side : sides_) side.seam = seam_of[side.seam];
@@ -179,7 +179,7 @@ class Seams {
     friend bool operator<(const Side& a, const Side& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; }
   };
 
-  /// By filler, the number of its line. Fillers with a common side are on one line, since they share two points.
+  /// The number of each filler's line. Fillers with a common side are on one line, because they share two points.
   [[nodiscard]] std::vector<std::uint32_t> number_lines(std::size_t fillers) {
     DisjointSets<> lines(fillers);
     for (std::size_t s = 1; s < sides_.size(); ++s)
@@ -210,7 +210,7 @@ class Seams {
       members.emplace_back(side.seam, side.low);
       members.emplace_back(side.seam, side.high);
       const glm::dvec3 along = glm::abs(positions_[side.high] - positions_[side.low]);
-      // Any axis works on which two points of the line differ: then all of them do.
+      // Any axis works on which two points of the line differ, because all its points then differ on that axis.
       axes_[side.seam] = along.x > 0 ? 0 : along.y > 0 ? 1 : 2;
     }
     const auto is_earlier = [&](const auto& a, const auto& b) {
@@ -235,7 +235,7 @@ class Seams {
   std::vector<bool> is_corner_;         ///< by vertex
 };
 
-/// A triangle, and the seam of the side from corner k to the next; no_index where the side is on no seam.
+/// A triangle. `seams[k]` is the seam of the side from corner k to the next corner, or no_index if there is none.
 struct Seamed {
   glm::uvec3 corners, seams;
 };
@@ -244,7 +244,7 @@ Seamed seamed(const Seams& seams, const glm::uvec3& t) {
   return {t, {seams.of(t.x, t.y), seams.of(t.y, t.z), seams.of(t.z, t.x)}};
 }
 
-/// Gives up seams for which there is no room. \returns how many triangles the others add.
+/// Leaves seams open if closing them would add too many triangles. \returns how many triangles the other seams add.
 std::size_t leave_crowded(Seams& seams, const WeldedMesh& mesh, const Execution& execution) {
   std::vector<std::size_t> added(seams.count(), 0);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -267,8 +267,8 @@ std::size_t leave_crowded(Seams& seams, const WeldedMesh& mesh, const Execution&
   return sum;
 }
 
-/// Calls add(corners) for the pieces of a triangle. It is halved repeatedly, at the middle corner of the side with the
-/// lowest vertices. So the same triangle in another order of its corners gives the same pieces.
+/// Calls add(corners) for the pieces of a triangle. The triangle is halved repeatedly, each time at the middle seam
+/// corner of the side with the lowest vertices. So the pieces do not depend on the order of the triangle's corners.
 template <class Add>
 void split(const Seams& seams, const Seamed& triangle, const Add& add) {
   int side = -1;

@@ -28,13 +28,13 @@ struct Positions {
 
 struct WeldedMesh {
   Positions positions;
-  /// Three different vertices each, counter-clockwise seen from the front.
+  /// Each has three different vertices, counter-clockwise as seen from the front.
   Buffer<glm::uvec3> triangles;
   Buffer<PrimitiveId> ids;  ///< ids of the triangles
 };
 
-/// Leaves out triangles with a vertex that is not finite, and those with two vertices at one place. Vertices are
-/// numbered in the order in which their places first occur. O(triangles).
+/// Welds the triangles of a scene. Triangles with a vertex that is not finite are left out, and triangles with two
+/// vertices at one place. Vertices are numbered in the order in which their places first occur. O(triangles).
 [[nodiscard]] WeldedMesh weld(const Surfaces& surfaces, const Execution& execution);
 
 /// Removes the triangles whose corners lie exactly on one line (fillers), and splits triangles beside them at the
@@ -45,7 +45,7 @@ struct WeldedMesh {
 
 /// The properties of a triangle that need no neighbours.
 struct SeenTriangle {
-  /// The unit normal to 2^-22; zero where doubles are not precise enough.
+  /// Unit normal with an error of at most 2^-22; zero if doubles are not precise enough to find it.
   glm::vec3 normal;
   std::uint32_t bits;
 
@@ -54,20 +54,21 @@ struct SeenTriangle {
   [[nodiscard]] bool is_open() const { return bits >= kOpen; }
   /// Sight::facing()
   [[nodiscard]] int facing() const { return int(bits >> kFacingShift) - 1; }
-  /// Bit i: seen along axis i, the triangle certainly turns left (i = 0 to 2) or right (i = 3 to 5).
+  /// Bit i, for i from 0 to 2: seen along axis i, the triangle certainly turns left. Bit 3 + i: it certainly turns
+  /// right.
   [[nodiscard]] std::uint32_t turns() const { return bits & 63; }
   /// Bit i, if the triangle turns: seen along axis i, a walk around the corner passes here from below it to above it.
   [[nodiscard]] std::uint32_t climbs(std::uint32_t corner) const { return bits >> (6 + 3 * corner) & 7; }
 };
 
-/// A mesh, and its triangles' properties in a view.
+/// A mesh and the properties of its triangles in a view.
 struct SeenMesh {
   const WeldedMesh& mesh;
   Buffer<std::int8_t> facing;  ///< Sight::facing()
   Buffer<SeenTriangle> triangles;
 };
 
-/// O(triangles).
+/// Computes the properties of all triangles. O(triangles).
 [[nodiscard]] SeenMesh see(const WeldedMesh& mesh, const Sight& sight, const Execution& execution);
 
 /// The rounded normal; its length is twice the triangle's area.
@@ -108,7 +109,8 @@ class Corner {
   Corner(std::uint32_t triangle, std::uint32_t k) : number_(triangle << 2 | k) {}
   [[nodiscard]] std::uint32_t triangle() const { return number_ >> 2; }
   [[nodiscard]] std::uint32_t k() const { return number_ & 3; }
-  /// The vertices after and before this corner. Uses shifts, because glm's operator branches.
+  /// The vertex after this corner; last(): the vertex before this corner. Both use shifts, because glm's operator[]
+  /// branches.
   [[nodiscard]] std::uint32_t next(const WeldedMesh& mesh) const {
     return (&mesh.triangles[triangle()].x)[9u >> 2 * k() & 3];
   }
@@ -120,28 +122,29 @@ class Corner {
   std::uint32_t number_;
 };
 
-/// By vertex, the corners of all triangles that have it, in the order of these triangles.
+/// For each vertex, the corners of all triangles that have the vertex, in the order of the triangles.
 using CornerTable = Buckets<Corner>;
 
-/// O(triangles). \throws Error limit_exceeded for more than Corner::most_triangles.
+/// Lists the corners at each vertex. O(triangles). \throws Error limit_exceeded for more than Corner::most_triangles.
 [[nodiscard]] CornerTable corner_table(const WeldedMesh& mesh, const Execution& execution);
 
 /// The arrangement of the triangles at a vertex.
 struct Star {
-  /// Most vertices have at most so many triangles; for more, nothing is found.
+  /// Nothing is found for a vertex with more triangles than this; such vertices are rare.
   static constexpr std::size_t most = 16;
 
-  /// Whether every edge at the vertex belongs to two triangles with different third corners that are wound alike.
+  /// Whether every edge at the vertex belongs to exactly two triangles, which are wound alike and have different third
+  /// corners.
   bool is_paired;
-  /// Whether the star is paired and, seen along one of the axes, all triangles turn the same way and go once around the
-  /// vertex: then they lie side by side.
+  /// Whether the star is paired and its triangles lie side by side: seen along one of the axes, all of them turn the
+  /// same way, and together they go around the vertex once.
   bool is_spread;
-  /// For paired stars, bit j: the edge to Corner::last() of corner j leads to a higher vertex and is not plain.
+  /// Bit j, for paired stars only: the edge to Corner::last() of corner j leads to a higher vertex and is not plain.
   std::uint16_t asked;
 };
 
-/// Finds the stars of the vertices from `begin` to `end`. An edge is plain where both triangles face the same way and
-/// the cosine of their angle, in floats, is more than `plain_cosine`.
+/// Finds the stars of the vertices from `begin` to `end`. An edge is plain if its two triangles face the same way and
+/// the cosine between their normals, computed in floats, is more than `plain_cosine`.
 using StarsKernel = void (*)(const SeenMesh& seen, const CornerTable& table, float plain_cosine, std::size_t begin,
                              std::size_t end, Star* stars);
 [[nodiscard]] StarsKernel stars_kernel(Isa isa);

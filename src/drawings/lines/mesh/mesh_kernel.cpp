@@ -59,9 +59,10 @@ struct Bits {
   HWY_INLINE void Append(M mask) { Set(mask, next++); }
 };
 
-/// The climbs. Along each axis, points are ordered from below to above by the next axis' coordinate, then by the third.
+/// Appends the bits of SeenTriangle::climbs(). Seen along an axis, the point with the lower coordinate on the next axis
+/// is below the other point; if both are equal, the third axis decides.
 HWY_INLINE void AppendClimbs(const Vector3 (&p)[3], Bits& bits) {
-  M is_below[3][3];  // by corner, by axis: whether it comes before the next corner
+  M is_below[3][3];  // by corner and axis: whether the corner is below the next corner
   for (int k = 0; k < 3; ++k) {
     const Vector3 &a = p[k], &b = p[k == 2 ? 0 : k + 1];
     const M x = hn::Lt(a.x, b.x), y = hn::Lt(a.y, b.y), z = hn::Lt(a.z, b.z);
@@ -70,7 +71,7 @@ HWY_INLINE void AppendClimbs(const Vector3 (&p)[3], Bits& bits) {
     is_below[k][1] = hn::Or(z, hn::And(same_z, x));
     is_below[k][2] = hn::Or(x, hn::And(same_x, y));
   }
-  // The bit is set where the next corner is below this one and the last above it.
+  // The bit is set if the next corner is below this corner and the last corner is above.
   for (int k = 0; k < 3; ++k)
     for (int axis = 0; axis < 3; ++axis)
       bits.Append(hn::Not(hn::Or(is_below[k][axis], is_below[k == 0 ? 2 : k - 1][axis])));
@@ -105,7 +106,7 @@ void See(const WeldedMesh& mesh, const Sight& sight, std::size_t begin, std::siz
     Vector3 p[3];
     Load(mesh, i, end, p);
     const BoundedNormals<V> normal(Minus(p[1], p[0]), Minus(p[2], p[0]));
-    // The range keeps the product of two such squares finite.
+    // The product of two squares in this range is finite.
     const V square = Dot(normal.value, normal.value);
     const M is_usual = hn::And(hn::Gt(square, hn::Set(d, 1e-100)), hn::Lt(square, hn::Set(d, 1e100)));
     const V scale = hn::IfThenElseZero(is_usual, hn::Div(hn::Set(d, 1.0), hn::Sqrt(square)));
@@ -123,7 +124,7 @@ using DStar = hn::CappedTag<std::uint32_t, Star::most>;
 struct StarCorners {
   std::size_t count;
   HWY_ALIGN std::uint32_t next[Star::most], last[Star::most];
-  HWY_ALIGN std::uint32_t partner[Star::most];  ///< the corner beyond the edge to `last`
+  HWY_ALIGN std::uint32_t partner[Star::most];  ///< index of the corner in the triangle across the edge to `last`
   const SeenTriangle* triangle[Star::most];
 
   HWY_INLINE StarCorners(const SeenMesh& seen, std::span<const Corner> corners) : count(corners.size()) {
@@ -133,7 +134,7 @@ struct StarCorners {
       triangle[i] = &seen.triangles[corners[i].triangle()];
     }
   }
-  /// Sets the partners. \returns whether all are paired.
+  /// Sets the partners. \returns whether all corners are paired.
   HWY_INLINE bool Pair() {
     const DStar d;
     std::uint64_t once = 0, again = 0;
@@ -153,7 +154,7 @@ struct StarCorners {
       again |= twice << b;
     }
     const std::uint64_t all = (std::uint64_t(1) << count) - 1;
-    // If some corner is nobody's partner, another corner has two.
+    // If some corner is nobody's partner, two corners share a partner.
     std::uint64_t partners = 0, pillows = 0;
     for (std::size_t j = 0; j < count; ++j) {
       partners |= std::uint64_t(1) << partner[j];
@@ -212,7 +213,7 @@ namespace {
 
 constexpr std::size_t kTrianglesPerPart = 4096;
 
-/// The exact side of a triangle's plane on which the eye is.
+/// The side of a triangle's plane on which the eye is, decided exactly.
 int side_of_eye(const WeldedMesh& mesh, std::size_t triangle, const Sight& sight) {
   const glm::uvec3& t = mesh.triangles[triangle];
   const glm::dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];

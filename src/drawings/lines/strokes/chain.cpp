@@ -73,7 +73,7 @@ void begin_at_corner(std::vector<glm::dvec2>& points) {
   std::rotate(points.begin(), points.begin() + std::ptrdiff_t(begin), points.end());
 }
 
-/// The directions from `tip` that pass all points so far at less than the tolerance.
+/// The directions of the lines from `tip` that pass all points so far within the tolerance.
 struct Cone {
   [[nodiscard]] bool holds(const glm::dvec2& p) const {
     const glm::dvec2 d = p - tip;
@@ -86,7 +86,7 @@ struct Cone {
     const glm::dvec2 side = glm::dvec2(-d.y, d.x) * (tolerance / length);
     if (is_open || cross(right, d - side) > 0) right = d - side;
     if (is_open || cross(d + side, left) > 0) left = d + side;
-    farthest = length * length;  // a line that turns back keeps its corner
+    farthest = length * length;  // so that a line that turns back keeps its corner
     is_open = false;
   }
 
@@ -96,10 +96,11 @@ struct Cone {
 };
 
 constexpr std::size_t fewest_joins = 4;
-constexpr double widest_join = 20.01 * std::numbers::pi / 180;  // of the circle; 18 to the whole
+constexpr double widest_join = 20.01 * std::numbers::pi / 180;  // angle of an arc; 18 such joins make a whole circle
 constexpr double least_turn = 10 * std::numbers::pi / 180;      // a smaller arc is drawn as a line
-/// A chord that deviates by more than the tolerance needs two chords at least half as long, among the three before it
-/// and the three after it. Looking at the next ones alone fails where corners of other things stand on the circle.
+/// A chord that deviates from the arc by more than the tolerance is evenly stepped if, among the three chords before it
+/// and the three after it, two are at least half as long. Its two neighbours alone do not suffice, because corners of
+/// other lines may divide them.
 constexpr std::size_t reach = 3;
 constexpr int fewest_alike = 2;
 constexpr double alike = 0.5;
@@ -174,7 +175,7 @@ struct ArcFinder {
   }
 
   /// Whether each of the chords from corner `first` on lies within the tolerance of the arc, or has a length like its
-  /// neighbours. The circle runs through all corners within the tolerance. All chords of the chain are a ring.
+  /// neighbours. Precondition: all corners lie within the tolerance of the circle. All chords of the chain are a ring.
   [[nodiscard]] bool follow(const Circle& circle, std::size_t first, std::size_t chords) const {
     const bool is_ring = chords == points.size();
     const auto corner = [&](std::size_t i) { return points[(first + i) % points.size()]; };
@@ -193,7 +194,8 @@ struct ArcFinder {
     return true;
   }
 
-  /// An arc beyond a half circle is split in two: formats differ in how they take longer ones.
+  /// Adds the arc of a run. An arc of more than a half circle is split in two, because formats differ in how they treat
+  /// longer arcs.
   void add_arc(std::size_t first, std::size_t last, std::vector<glm::dvec2>& kept) {
     const Fit arc = *fit(first, last);
     if (std::abs(arc.turn) <= std::numbers::pi) {
@@ -265,7 +267,7 @@ void straighten(Chain& chain, double tolerance) {
   }
   if (!chain.is_closed) kept.push_back(points.back());
   points = std::move(kept);
-  // The chain runs along a line and back again.
+  // Such a chain runs along a line and back again.
   if (chain.is_closed && points.size() == 2) chain.is_closed = false;
 }
 

@@ -43,7 +43,8 @@ class Nearness {
   static constexpr double shortest = 8e-3;
   /// Greatest slope between a long line and a line on it. Tiny pieces point anywhere, but would be too many.
   static constexpr double most_slope = 1.0 / 128;
-  /// Greatest slope between short lines: they part by at most a quarter of their overlap, to either side.
+  /// Greatest slope between short lines that lie on each other: at both ends of their overlap, their distance is at
+  /// most a quarter of the overlap's length.
   static constexpr double most_short_slope = 0.5;
 
   explicit Nearness(double apart) : apart_(apart) {}
@@ -53,7 +54,7 @@ class Nearness {
   /// The allowed slope to a long line. It moves the end by several times `apart`: the part on that line may be short.
   [[nodiscard]] double slope_within(double length) const { return std::min(8 * apart_ / length, most_slope); }
 
-  /// The greatest distance from a line of that length of lines that lie on it.
+  /// The greatest distance between a line of that length and a line that lies on it.
   [[nodiscard]] double reach_of(double length) const { return std::min(apart_, length / 4); }
 
   /// The stretch of `line` on which `other` lies, in pixels; empty if there is none.
@@ -68,7 +69,7 @@ class Nearness {
     if (!(end - begin > shortest)) return nothing;
     const double a_off = cross(line.along, a), slope = (cross(line.along, b) - a_off) / (b_at - a_at);
     const auto off = [&](double at) { return std::abs(a_off + slope * (at - a_at)); };
-    // Short lines must be closer together, or all lines from one point would lie on each other.
+    // Short lines must be closer to each other, because otherwise all lines from one point would lie on each other.
     const double most = reach_of(end - begin);
     return off(begin) <= most && off(end) <= most ? Stretch{begin, end} : nothing;
   }
@@ -77,7 +78,7 @@ class Nearness {
   double apart_;
 };
 
-/// A line, with the limits for other lines that may lie on it.
+/// A line, with limits within which other lines may lie on it.
 struct SoughtLine {
   SoughtLine(const Line& line, const Nearness& nearness)
       : middle((line.from + line.to) / 2.0),
@@ -88,11 +89,11 @@ struct SoughtLine {
 
   glm::dvec2 middle, along;
   double half;   ///< half of the length
-  double reach;  ///< the greatest distance of such lines
-  double turn;   ///< the greatest tangent of the angle to such lines
+  double reach;  ///< the greatest distance of a line that lies on this line
+  double turn;   ///< the greatest slope between this line and a line that lies on it
 };
 
-/// A short form of a line in 20 bytes, which suffices to exclude that it lies on another.
+/// A short form of a line, 20 bytes long. It suffices to exclude that the line lies on another line.
 struct BriefLine {
   BriefLine(const Line& line, std::uint32_t its_number)
       : middle((line.from + line.to) / 2.0), half((line.to - line.from) / 2.0), number(its_number) {}
@@ -104,7 +105,7 @@ struct BriefLine {
   [[nodiscard]] bool may_lie_on(const SoughtLine& line) const {
     const glm::dvec2 other(half), apart = glm::dvec2(middle) - line.middle;
     const double across = std::abs(cross(line.along, other)), along = std::abs(glm::dot(line.along, other));
-    // More than the rounding error of floats.
+    // The slack is more than the rounding error of floats.
     const double slack = 1e-6 * (1 + std::abs(double(middle.x)) + std::abs(double(middle.y)) + along + across);
     const bool is_beside = std::abs(cross(line.along, apart)) > line.reach + across + slack;
     const bool is_beyond = std::abs(glm::dot(line.along, apart)) > line.half + along + slack;
@@ -147,7 +148,7 @@ class LongLines {
   void add(std::uint32_t number, const Line& segment) {
     const BriefLine brief(segment, number);
     const glm::dvec2 d = glm::abs(segment.to - segment.from);
-    // Near the diagonal, a line on top of the segment may be of the other kind.
+    // Near the diagonal, a line on top of the segment may be in the other table.
     if (d.y <= 1.05 * d.x) flat_[key(heights(segment, 0))].push_back(brief);
     if (d.x <= 1.05 * d.y) steep_[key(heights(segment, 1))].push_back(brief);
   }
@@ -184,7 +185,7 @@ class LongLines {
  private:
   using Table = std::unordered_map<std::uint64_t, std::vector<BriefLine>>;
 
-  /// The heights at which the segment's line meets both ends of the axis.
+  /// The heights at which the segment's line meets the two sides of the drawing across `axis`.
   [[nodiscard]] glm::dvec2 heights(const LineSegment& s, int axis) const {
     const double slope = (s.to[1 - axis] - s.from[1 - axis]) / (s.to[axis] - s.from[axis]);
     const double first = s.from[1 - axis] + slope * (low_[axis] - s.from[axis]);
@@ -204,7 +205,7 @@ class LongLines {
 
 class LaidLines {
  public:
-  /// For pieces of `lines`. Precondition: not empty.
+  /// Makes an empty index for pieces of `lines`. Precondition: there are lines.
   LaidLines(const std::vector<Line>& lines, const Nearness& nearness);
 
   void add(std::uint32_t number, const Line& line) {
@@ -241,7 +242,7 @@ class LaidLines {
     double short_length = 0, short_count = 0;
   };
 
-  /// Lines that count as lying on `line` are nearer than this distance, which includes a margin.
+  /// All lines that count as lying on `line` are within this distance, which includes a margin.
   [[nodiscard]] double reach_of(const Line& line) const { return near_.reach_of(line.length + Nearness::shortest); }
 
   const Nearness near_;

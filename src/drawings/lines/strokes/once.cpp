@@ -19,7 +19,7 @@ namespace {
 
 class OverlapRemover {
  public:
-  /// For pieces of `lines`. Precondition: not empty.
+  /// Accepts pieces of `lines`. Precondition: there are lines.
   OverlapRemover(const std::vector<Line>& lines, double apart) : near_(apart), index_(lines, near_) {}
 
   /// Appends the uncovered stretches of `line` to `fresh`. \returns how many lines were compared with it.
@@ -44,7 +44,7 @@ class OverlapRemover {
     double at = 0;
     for (const Stretch& c : covered_) {
       if (c.begin - at > least) {
-        // The line's own ends are kept to the bit, so that its neighbours find them.
+        // The line's own ends are kept to the bit, so that neighbouring lines still meet them.
         const glm::dvec2 from = at == 0 ? line.from : line.from + line.along * at;
         const glm::dvec2 to = c.begin == line.length ? line.to : line.from + line.along * c.begin;
         add(Line({from, to, line.rank, line.is_contour}), fresh);
@@ -67,7 +67,7 @@ class OverlapRemover {
   std::vector<Line> laid_;
   std::vector<std::uint32_t> asked_;  ///< by line: the last query that found it
   std::uint32_t asking_ = 0;
-  std::vector<Stretch> covered_;  ///< stretches of the current line
+  std::vector<Stretch> covered_;  ///< covered stretches of the current line
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t no_end = no_index;
 
-/// Number 2 i is the beginning of chain i, 2 i + 1 its end.
+/// The position of an end: number 2 i is the beginning of chain i, 2 i + 1 its end.
 glm::dvec2 place(const std::vector<Chain>& chains, std::uint32_t number) {
   const Chain& chain = chains[number / 2];
   return number % 2 == 0 || chain.is_closed ? chain.points.front() : chain.points.back();
@@ -127,7 +127,7 @@ void reverse(Chain& chain) {
   for (double& bulge : chain.bulges) bulge = -bulge;
 }
 
-/// Appends `chain`, or continues the last one with it where both are open and touch.
+/// Appends `chain`, or joins it to the last chain if both are open and touch.
 void draw(Chain&& chain, double touching, std::size_t first, std::vector<Chain>& drawn) {
   if (drawn.size() > first && !drawn.back().is_closed && !chain.is_closed &&
       glm::distance(drawn.back().points.back(), chain.points.front()) <= touching) {

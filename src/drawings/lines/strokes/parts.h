@@ -34,12 +34,12 @@ struct Chain {
 
 inline double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-/// Removes overlaps: where segments lie on each other, within `apart` pixels, the one with the lower rank stays, or the
-/// first of equals. The order of the segments stays.
+/// Removes overlaps. Where segments lie on each other, within `apart` pixels, the segment of the lowest rank stays, or
+/// the first of equal rank. The result is sorted by rank, and keeps the order of segments within each rank.
 [[nodiscard]] std::vector<LineSegment> draw_once(const std::vector<LineSegment>& segments, double apart,
                                                  const Execution& execution);
 
-/// Ends within about 1 / places_per_pixel count as one place.
+/// Ends that are rounded to the same multiple of 1 / places_per_pixel pixels count as one place.
 inline constexpr double places_per_pixel = 1000;
 
 /// Joins segments of one rank wherever exactly two ends meet. Chains are sorted by rank, then by their first segment.
@@ -82,15 +82,15 @@ template <class Fits>
   return end;
 }
 
-/// Removes corners that lie within `tolerance` of the line between the remaining ones.
+/// Removes corners from a chain. Each removed corner lies within `tolerance` of the straight line that replaces it.
 void straighten(Chain& chain, double tolerance);
 
-/// Replaces runs of at least four chords by arcs. Their ends lie on a circle within `tolerance`, and the chords stay
-/// within `tolerance` of the arc or are evenly stepped.
+/// Replaces runs of at least four chords by arcs. The ends of these chords lie within `tolerance` of a circle. Each
+/// chord stays within `tolerance` of the arc, or has neighbours of similar length.
 void find_arcs(Chain& chain, double tolerance);
 
-/// Chains of one rank in drawing order. Each chain begins at the end that is nearest to the last one's end, and is
-/// joined to it where the distance is within `touching`.
+/// Sorts the chains of each rank in drawing order. The next chain begins at the end that is nearest to the end of the
+/// chain before, and is joined to that chain if their distance is at most `touching`.
 [[nodiscard]] std::vector<Chain> nearest_first(std::vector<Chain> chains, double touching, const Execution& execution);
 
 }  // namespace frontmost::lines_detail

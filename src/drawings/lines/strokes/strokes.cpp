@@ -46,7 +46,7 @@ SquareGrid grid_over(const std::vector<glm::dvec2>& places, double least) {
   return {low, cell, int((high.x - low.x) / cell) + 1, int((high.y - low.y) / cell) + 1};
 }
 
-/// A chain on which an end of a short chain lies. The first end of chain i is number 2 i, its last 2 i + 1.
+/// An end of a short chain that lies on another chain. The first end of chain i is number 2 i, its last end 2 i + 1.
 struct Touch {
   std::size_t end, chain;
   bool is_within;  ///< it is no end of that chain
@@ -54,8 +54,9 @@ struct Touch {
 };
 
 /// Leaves out short chains with an end that touches nothing, and short chains between lines that continue without them,
-/// unless they are contours. Short chains that hold others together stay. Hidden chains hold no visible ones.
-/// Near-linear, unless most short chains lie within a thousandth of the drawing. Precondition: no arcs.
+/// unless they are contours. A short chain stays if other lines would end in the air without it. A hidden chain does
+/// not keep a visible one. Near-linear, unless most short chains lie within a thousandth of the drawing. Precondition:
+/// no arcs.
 class ShortChains {
  public:
   /// `strokes`: by rank, what the chains become.
@@ -137,14 +138,14 @@ class ShortChains {
 
   void add_touch(std::size_t end, std::size_t chain) {
     const auto is_hidden = [&](std::size_t number) { return strokes_[chains_[number].rank].is_hidden; };
-    // Hidden chains hold no visible ones.
+    // An end of a visible chain does not count as touching a hidden chain.
     if (end / 2 == chain || (is_hidden(chain) && !is_hidden(end / 2))) return;
     const auto is_near = [&](std::size_t other) { return glm::distance(place(end), place(other)) <= touching_; };
     touches_.push_back({end, chain, chains_[chain].is_closed || !(is_near(2 * chain) || is_near(2 * chain + 1))});
   }
 
-  /// Whether the short chain may be left out: one of its ends is in the air, or it is not of a contour and only
-  /// connects lines that continue without it.
+  /// Whether the short chain may be left out: one of its ends is in the air, or it is no contour and lies between lines
+  /// that continue without it.
   [[nodiscard]] bool is_loose(std::size_t number) const {
     if (chains_[number].is_closed) return !chains_[number].is_contour;
     bool is_link = true;
@@ -164,7 +165,8 @@ class ShortChains {
 
   std::vector<Chain>& chains_;
   const std::vector<Stroke>& strokes_;
-  const double shortest_, touching_;  ///< pixels: chains below `shortest_` are short, nearer ends and lines touch
+  const double shortest_,
+      touching_;  ///< pixels: chains below `shortest_` are short, ends and lines at most this far apart touch
   const Execution& execution_;
   std::vector<bool> is_short_, is_left_out_;
   std::vector<Touch> touches_;                        ///< ascending
@@ -224,7 +226,7 @@ class Ranked {
     return id == no_primitive ? no_index : surfaces_.source(id).instance;
   }
 
-  /// True regardless of the triangles' winding.
+  /// Whether surfaces intersect at an angle below the grazing angle, whatever the winding of their triangles.
   [[nodiscard]] bool is_grazing(const DrawnEdge& edge) const {
     if (edge.kind != EdgeKind::intersection) return false;
     const glm::dvec3 a = normal(edge.left), b = normal(edge.right);

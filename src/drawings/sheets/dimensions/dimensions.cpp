@@ -20,8 +20,8 @@
 namespace frontmost::detail {
 namespace {
 
-constexpr double square = 2e-3;               // sine, as for centre lines
-constexpr double least_drawn = 0.2;           // likewise
+constexpr double square = 2e-3;               // sine of the greatest angle to the line of sight, as for centre lines
+constexpr double least_drawn = 0.2;           // share of a round that must be drawn, as for centre lines
 constexpr double nearly_whole = 6.2;          // radians
 constexpr double widest_sagitta = 0.016;      // as a share of the radius, for sides of 20 degrees
 constexpr double same_place_on_paper = 0.02;  // millimetres of paper
@@ -43,7 +43,7 @@ struct MeasuredView {
   PageBox box;                        ///< the box of all drawn lines
   std::vector<SeenCircle> circles;    ///< seen along their axes, and drawn to at least a fifth
   std::vector<const Round*> undrawn;  ///< cylinders that are seen along their axes, but drawn less
-  std::vector<const Round*> prisms;   ///< of Rounds::prisms, seen along their axes
+  std::vector<const Round*> prisms;   ///< those of Rounds::prisms that are seen along their axes
 
   explicit MeasuredView(const DimensionedView& view) : view_(view) {
     const View& camera = view.drawing->view;
@@ -96,8 +96,9 @@ struct MeasuredView {
     return all;
   }
 
-  /// The position, along the other axis, of the outermost point at one end of an axis: the lowest such point (y is
-  /// down) for axis 0, the leftmost for axis 1.
+  /// Where the extension line at one end of an axis begins: the position, along the other axis, of the drawn point at
+  /// that end which is nearest to the dimension line. This is the lowest such point (y is down) for axis 0, the
+  /// leftmost for axis 1.
   [[nodiscard]] double foot_of_end(int axis, double end) const {
     const double slack = same_place_on_paper + widest_sagitta * (box.high[axis] - box.low[axis]) / 2;
     const int other = 1 - axis;
@@ -133,8 +134,8 @@ struct MeasuredView {
 
 constexpr double extension_gap = 1;        // millimetres between the measured feature and its extension line
 constexpr double extension_overshoot = 2;  // beyond the dimension line
-constexpr double first_distance = 10;      // of a dimension line from the view
-constexpr double text_distance = 1;        // of a number from its line, and from everything else
+constexpr double first_distance = 10;      // distance of a dimension line from the view
+constexpr double text_distance = 1;        // distance of a number from its line, and from everything else
 
 /// Registers everything drawn as obstacles.
 class DimensionPen {
@@ -152,7 +153,8 @@ class DimensionPen {
     add_arrowhead(lines_, tip, pointing, arrow_length());
   }
 
-  /// Draws text above `at`, which is the middle or an end of its line; level, or upright to be read from the right.
+  /// Draws text above `at`, which is the middle or an end of the text's base line. The text is level, or upright, to be
+  /// read from the right.
   void text(std::string_view text, const glm::dvec2& at, TextAlign align, bool is_upright = false) {
     const glm::dvec2 above = is_upright ? glm::dvec2(-text_distance, 0) : glm::dvec2(0, -text_distance);
     add_text(texts_, text, at + above,
@@ -187,14 +189,14 @@ class DimensionPen {
   PageGroup lines_{"", Pen()}, texts_;
 };
 
-constexpr double least_turn = 190 * std::numbers::pi / 180;  // less is an arc, and has a radius
+constexpr double least_turn = 190 * std::numbers::pi / 180;  // a round of less is an arc, and has a radius instead
 constexpr double same_radius = 1e-3;                         // as a share of the radius
 constexpr double same_axis = 5e-3;                           // as a share of the radius
-constexpr double chamfer = 0.25;                             // as a share of the radius: how much wider its rim is
-constexpr double same_place = 0.05;                          // millimetres
-constexpr std::size_t most_circles = 4096;                   // per view
+constexpr double chamfer = 0.25;  // how much wider the rim of a chamfer may be than its wall, as a share of the radius
+constexpr double same_place = 0.05;         // millimetres
+constexpr std::size_t most_circles = 4096;  // per view
 constexpr std::size_t most_diameters = 64;
-constexpr std::size_t most_tried = 12;  // circles of one size
+constexpr std::size_t most_tried = 12;  // circles of one size that are tried
 constexpr double nearest_knee = 5, farthest_knee = 90, knee_step = 2.5;
 constexpr double cost_of_crossing = 4;  // in millimetres of leader
 constexpr int most_crossed = 16;        // no eye could follow a leader that crosses more
@@ -210,7 +212,7 @@ bool is_same_radius(const Round& a, const Round& b) {
   return std::abs(a.radius - b.radius) <= same_radius * std::max(a.radius, b.radius);
 }
 
-/// Whether the circle ends a chamfer at a wall.
+/// Whether the circle is the rim of a chamfer at the end of a wall.
 bool is_rim(const SeenCircle& circle, const std::vector<SeenCircle>& all) {
   if (circle.round->kind == RoundKind::cylinder) return false;
   return std::any_of(all.begin(), all.end(), [&](const SeenCircle& wall) {
@@ -222,9 +224,9 @@ bool is_rim(const SeenCircle& circle, const std::vector<SeenCircle>& all) {
 
 const std::string diameter_sign = "\u2300";
 
-/// The diameters of a sheet, each once.
+/// Places the diameters of a sheet, each once.
 struct Diameters {
-  /// Marks a cylinder and its continuations as dimensioned. \returns false if it was already.
+  /// Marks a cylinder and its continuations as dimensioned. \returns false if the cylinder was marked before.
   bool take(const Round& round) {
     const bool is_new = std::none_of(taken.begin(), taken.end(), [&](const Round& other) {
       return is_same_radius(other, round) && is_coaxial(other, round);
@@ -233,7 +235,7 @@ struct Diameters {
     return is_new;
   }
 
-  /// Adds the diameters that this view shows and no earlier view does.
+  /// Adds the diameters that this view shows and no earlier view has shown.
   void add(const MeasuredView& view, Dimensions& all) {
     all.left_out += view.circles.size() - std::min(view.circles.size(), most_circles);
     for (const Group& group : groups_of(view)) {
@@ -283,7 +285,7 @@ struct Diameters {
     std::vector<Group> groups;
     for (const SeenCircle& circle : circles) {
       if (circle.round->turn < least_turn || is_rim(circle, circles) || !take(*circle.round)) continue;
-      // Grouped by radius and not by number: rounding may split one size.
+      // Circles are grouped by radius and not by number, because rounding may split one size.
       auto group = std::find_if(groups.begin(), groups.end(),
                                 [&](const Group& g) { return is_same_radius(*g.circles[0].round, *circle.round); });
       if (group == groups.end()) {
@@ -296,7 +298,7 @@ struct Diameters {
       });
       if (!is_there) group->circles.push_back(circle);
     }
-    // The largest have the longest leaders around inner circles.
+    // The largest circles come first, because they have the longest leaders around inner circles.
     std::stable_sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) {
       return a.circles[0].round->radius > b.circles[0].round->radius;
     });
@@ -339,7 +341,7 @@ struct Diameters {
 
 constexpr double same_direction = 0.9999;  // cosine
 
-/// Draws an overall size along an axis: a level one as it is; for an upright one, x and y are swapped, seen from the
+/// Draws an overall size along an axis: level for axis 0; for axis 1 upright, with x and y swapped, to be read from the
 /// right. `taken`: millimetres on the left of the view and below it that other marks occupy.
 void draw_overall_size(DimensionPen& pen, const MeasuredView& view, const glm::dvec2& taken, int axis, const Extent& e,
                        const std::string& text) {

@@ -23,24 +23,24 @@ struct DimensionedView {
 
 struct DimensionOptions {
   double numbers_per_unit = 1;  ///< numbers per unit of length of the scene; above 0
-  int decimals = 2;             ///< at most, except for small numbers, which have three digits; 0 to 6
+  int decimals = 2;             ///< the most decimals, 0 to 6; small numbers have three significant digits
   double text_height = 3.5;     ///< millimetres, as in TextStyle
 };
 
 /// The overall sizes of a view.
 struct OverallSizes {
-  bool width = false;   ///< drawn below it
-  bool height = false;  ///< drawn on its left
+  bool width = false;   ///< drawn below the view
+  bool height = false;  ///< drawn on the left of the view
 };
 
-/// The overall sizes of each view. Each direction of space has one size, in the first view that shows it in true
-/// length, level or upright. Views that are not dimensioned have none.
+/// Decides which overall sizes each view has. Each direction of space has one size, in the first view that shows the
+/// direction in true length, level or upright. Views that are not dimensioned have no sizes.
 [[nodiscard]] std::vector<OverallSizes> overall_sizes_of(std::span<const DimensionedView> views);
 /// Millimetres that these sizes occupy on the left of the view and below it, in addition to other marks.
 [[nodiscard]] glm::dvec2 room_for(const OverallSizes& sizes, double text_height);
 
-/// A number without trailing zeros, with at most so many decimals or three significant digits, whichever is more. Where
-/// a half would be rounded, it has one more digit: "50", "12.7", "1.875".
+/// The text of a number, without trailing zeros, with at most `decimals` decimals or three significant digits,
+/// whichever is more. If a half would have to be rounded, the text has one more digit: "50", "12.7", "1.875".
 [[nodiscard]] std::string dimension_text(double number, int decimals);
 
 struct Dimensions {
@@ -48,7 +48,7 @@ struct Dimensions {
   std::size_t count = 0;            ///< number of dimensions on the page
   std::size_t left_out = 0;         ///< diameters without room
   std::size_t undrawn = 0;          ///< diameters of cylinders that are seen along their axes, but not drawn
-  std::size_t prisms = 0;           ///< likewise, of cylinders of fewer than 18 sides, which count as polygons
+  std::size_t prisms = 0;           ///< diameters of cylinders of fewer than 18 sides, which count as polygons
 };
 
 /// Places overall sizes by overall_sizes_of(), and the diameters of circles and cylinders seen along their axes, each

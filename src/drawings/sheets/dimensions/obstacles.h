@@ -31,7 +31,7 @@ class Obstacles {
   }
 
   void add(const PageSegment& segment) {
-    // In steps, so that a long segment does not fill the box around it.
+    // A segment is added in steps, so that a long one does not fill all cells of the box around it.
     const double length = glm::distance(segment.from, segment.to);
     const int steps = int(std::clamp(std::ceil(length / cell_side), 1.0, 1.0 * most_cells));
     for (int i = 0; i < steps; ++i) {
@@ -133,7 +133,7 @@ class Obstacles {
            cross(v, a.from - b.from) * cross(v, a.to - b.from) < 0;
   }
 
-  /// Visits the cells that a box touches. Cells at the border also hold everything beyond it.
+  /// Visits the cells that a box touches. Cells at the border also contain everything beyond the border.
   template <class Visit>
   void visit_cells(const PageBox& box, const Visit& visit) const {
     const auto cell = [&](const glm::dvec2& at) {
